@@ -4,12 +4,12 @@ Usage: python -m benchmarks.beside_avaframe AVAFRAME_PYTHON [--particles 360 110
 [--projects FOLDER ...]
 
 AVAFRAME_PYTHON is the interpreter of an environment with AvaFrame 2.1 (``pip install
-avaframe==2.1``). Both run the same project folders in turn, in steps of 0.01 s; the best of three
-counts. The projects are slabs on an incline with run-out, with about the given numbers of
-particles, and copies of the given FOLDERs without their ini. AvaFrame's times are those of its loop
-over time steps, which also updates the peaks and reports progress, and of its function for a time
-step alone. Our time is that of the loop over time steps, with the peaks. Nothing else should run on
-the machine meanwhile.
+avaframe==2.1``). Both programs run the same project folders in turn, in steps of 0.01 s; the best
+of three runs counts. The projects are slabs with about the given numbers of particles on an incline
+with run-out, and copies of the given FOLDERs without their ini files. For AvaFrame two times are
+given: that of its loop over time steps, which also updates the peaks and reports progress, and that
+of its function for a time step alone. Our time is that of the loop over time steps, including the
+peaks. Nothing else should run on the machine meanwhile.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ from snowshed.running.simulation import Simulation
 from snowshed.scene.builders.avaframe import avaframe_scene
 
 CELL = 2.0  # m
-THICKNESS = 0.5  # m; two particles a cell
+THICKNESS = 0.5  # m; two particles per cell
 REPETITIONS = 3
 
-# Runs in AvaFrame's environment: makes the shapefile that it and we read, or times its steps.
+# Program for AvaFrame's environment: makes the shapefile that both programs read, or times steps.
 AVAFRAME = """
 import json, logging, sys, time
 from pathlib import Path
@@ -95,7 +95,7 @@ def make_project(folder: Path, particles: int, python: str) -> None:
 
 
 def avaframe_seconds(folder: Path, steps: int, python: str) -> tuple[float, float]:
-    """Return AvaFrame's time for a particle step in s: by its loop, and by the steps alone."""
+    """Return AvaFrame's time for a particle step (s), from its loop and from its steps alone."""
     subprocess.run(
         [python, "-I", "-c", AVAFRAME, str(folder), str(steps)],
         check=True,
@@ -107,7 +107,7 @@ def avaframe_seconds(folder: Path, steps: int, python: str) -> tuple[float, floa
 
 
 def our_seconds(folder: Path, steps: int) -> tuple[float, int]:
-    """Return our time for a particle step, s, and the number of particles."""
+    """Return our time for a particle step (s), and the number of particles."""
     simulation = Simulation(avaframe_scene(folder))
     simulation.begin_event()
     particles = simulation.particle_count

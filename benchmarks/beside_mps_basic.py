@@ -7,9 +7,9 @@ PROGRAM is the program of MPS-Basic (Koshizuka and Shibata laboratory, MIT licen
 optimisation and OpenMP. In both programs a column of water, twice as high as wide, collapses in a
 basin twice as long as the column, with the same distance between particles and the same radius of
 the pressure's weights. The unit is a step of one water particle, and the best of three runs counts.
-MPS-Basic's walls are particles and ours are mirrors, so its speed per particle with the walls is
-printed, too. Writes benchmarks/results/DATE-mps.json. Nothing else should run on the machine
-meanwhile.
+MPS-Basic has walls of particles and snowshed has mirrors. The speed of MPS-Basic per particle,
+including its walls, is therefore printed, too. The command writes benchmarks/results/DATE-mps.json.
+Nothing else should run on the machine meanwhile.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 
 SPACING = 0.01  # m
-GRADIENT_RADIUS = 2.1  # of MPS-Basic, in spacings, by default
-BASIN = 2  # its length, in widths of the column
-LAYERS = 4  # of its wall: two whose pressure is known, and two behind them
-STEP = 4e-4  # s, of MPS-Basic, in its own proportion to the spacing
-FIRST_STEPS, STEPS = 5, 30  # of MPS-Basic: untimed steps first, then timed ones
+GRADIENT_RADIUS = 2.1  # default of MPS-Basic, in spacings
+BASIN = 2  # length of the basin, in widths of the column
+LAYERS = 4  # layers of MPS-Basic's wall: two with a pressure, and two behind them
+STEP = 4e-4  # s, time step of MPS-Basic, with its usual ratio to the spacing
+FIRST_STEPS, STEPS = 5, 30  # steps of MPS-Basic without and with timing
 OUR_STEPS = 400
 REPETITIONS = 3
 FLUID, WALL, DUMMY = 1, 2, 3
@@ -75,14 +75,15 @@ outputVtkInBinary: true
 
 @dataclass(frozen=True)
 class Column:
-    """A column of water in a basin.
+    """Column of water in a basin.
 
     Attributes
     ----------
     dimension
         2 or 3.
     across
-        Particles along its width. It is twice as high, and as deep as wide.
+        Number of particles along its width. The column is twice as high as wide, and as deep as
+        wide.
     radius
         Radius of the weights, in spacings.
     """
@@ -137,7 +138,7 @@ def our_scene(column: Column, threads: int) -> Scene:
 
 
 def our_speed(column: Column, threads: int) -> tuple[float, float]:
-    """Return our particle steps per second, and the mean time step, s."""
+    """Return snowshed's particle steps per second, and the mean time step (s)."""
     simulation = Simulation(our_scene(column, threads))
     simulation.begin_event()
     simulation.step(10)
@@ -148,7 +149,7 @@ def our_speed(column: Column, threads: int) -> tuple[float, float]:
 
 
 def write_basin(column: Column, folder: Path) -> int:
-    """Write MPS-Basic's particles; return how many there are, with walls."""
+    """Write MPS-Basic's particles, and return their number, including walls."""
     across, inside = column.across, [BASIN * column.across, 2 * column.across + 10]
     if column.dimension == 3:
         inside.append(across)
@@ -171,7 +172,7 @@ def write_basin(column: Column, folder: Path) -> int:
 
 
 def their_seconds(program: Path, column: Column, steps: int, threads: int, folder: Path) -> float:
-    """Return the time of MPS-Basic for a number of steps, including its start, s."""
+    """Return the time (s) of MPS-Basic for its start and a number of steps."""
     far = (BASIN + 1) * column.width + 2 * LAYERS * SPACING
     text = SETTINGS.format(
         dimension=column.dimension,
@@ -230,7 +231,7 @@ def compare(program: Path, column: Column, threads: int) -> dict[str, float]:
 
 
 def main() -> None:
-    """Print a table of speeds and their ratios, and keep it."""
+    """Print a table of speeds and their ratios, and write it to a file."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("program", type=Path, help="program of MPS-Basic")
     parser.add_argument("--radius", type=float, nargs="*", default=[2.1, 3.1])

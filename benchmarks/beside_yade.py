@@ -2,10 +2,10 @@
 
 Usage: python -m benchmarks.beside_yade [--size 40] [--threads 2]
 
-Both take steps of the same length in the same confined compression of the same clumps, bonds and
-plates (see benchmarks/engines); the best of two runs counts. A step of one sphere on the surface
-of a grain is the unit. Writes benchmarks/results/DATE-grains.json. Nothing else should run on the
-machine meanwhile.
+Both programs take steps of the same length in a confined compression of the same clumps, bonds and
+plates (see benchmarks/engines); the best of two runs counts. The unit is a step of one sphere on
+the surface of a grain. The command writes benchmarks/results/DATE-grains.json. Nothing else should
+run on the machine meanwhile.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ PRESS = Press(time_step=1e-8, strain=0.3, damping=0.2)
 
 
 def our_speed(labels: np.ndarray, threads: int, steps: int, folder: Path) -> float:
-    """Return sphere steps a second."""
+    """Return snowshed's sphere steps per second."""
     file = folder / "labels.npy"
     np.save(file, labels)
     settings = GrainsSettings(damping=PRESS.damping, threads=threads)
@@ -50,7 +50,7 @@ def our_speed(labels: np.ndarray, threads: int, steps: int, folder: Path) -> flo
 
 
 def main() -> None:
-    """Measure both, print, and keep the numbers."""
+    """Measure both programs, print the numbers, and write them to a file."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--size", type=int, default=40, help="voxels along an edge")
     parser.add_argument("--threads", type=int, default=2)

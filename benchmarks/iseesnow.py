@@ -6,17 +6,18 @@ ISeeSnow is an intercomparison of avalanche models (doi:10.5194/egusphere-2025-6
 under EUPL-1.2 and not part of snowshed. FOLDER has one folder per case with the elevations
 (``DEM_*.asc``), the release (``*.shp``) and the peak rasters of a model (``*_pft.asc``, thickness
 in m, and ``*_pfv.asc``, speed in m/s); rasters may be packed (``.xz``). The release is 1.5 m thick
-and mu is 0.4; xi is 2000 m/s2, except in cases with Coulomb in their name, which have none. All
-other settings are the defaults, without bonds.
+and mu is 0.4. xi is 2000 m/s2, except in cases with Coulomb in their name, which have no xi. There
+are no bonds, and all other settings are the defaults.
 
-The program prints, for both and as a ratio:
+The program prints for both models, with their relative difference:
 
 - peak speed and peak thickness: the largest values of the rasters;
 - area: the number of cells whose peak thickness exceeds 0.1 m, times the area of a cell;
 - farthest x: the largest coordinate among these cells;
 
-and cell by cell, over the cells where either exceeds 0.1 m: the mean absolute difference over the
-mean of the model's values, and the share of these cells that both have in common.
+It also compares the cells in which either thickness exceeds 0.1 m: it prints the mean absolute
+difference, relative to the mean of the model's values, and the share of these cells in which both
+exceed it.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ MIN_THICKNESS = 0.1  # m
 
 
 def unpacked(folder: Path, pattern: str, to: Path) -> Path:
-    """Return the file that matches a pattern in a folder, or a copy without ``.xz``."""
+    """Return the file that matches a pattern in a folder, or an unpacked copy of it."""
     files = sorted([*folder.glob(pattern), *folder.glob(pattern + ".xz")])
     if not files:
         raise SystemExit(f"{folder}: there is no {pattern}")
@@ -54,7 +55,7 @@ def unpacked(folder: Path, pattern: str, to: Path) -> Path:
 
 
 def our_peaks(case: Path, folder: Path, changes: dict[str, object]) -> tuple[Raster, Raster]:
-    """Return our peak thickness and speed of a case."""
+    """Return the peak thickness and speed of a case by snowshed."""
     law = "coulomb" if "coulomb" in case.name.lower() else "voellmy"
     settings = {
         "bonds": False,
@@ -75,7 +76,7 @@ def our_peaks(case: Path, folder: Path, changes: dict[str, object]) -> tuple[Ras
 
 
 def readings(thickness: Raster, speed: Raster) -> dict[str, float]:
-    """Return the figures of two peak rasters."""
+    """Return peak speed, peak thickness, area and farthest x of two peak rasters."""
     reached = thickness.heights > MIN_THICKNESS
     columns = np.flatnonzero(reached.any(axis=0))
     return {
@@ -87,7 +88,7 @@ def readings(thickness: Raster, speed: Raster) -> dict[str, float]:
 
 
 def difference(ours: Floats, theirs: Floats, where: np.ndarray) -> float:
-    """Return the mean absolute difference over the mean of the model's values."""
+    """Return the mean absolute difference, relative to the mean of the model's values."""
     return float(np.abs(ours - theirs)[where].sum() / theirs[where].sum())
 
 

@@ -1,4 +1,4 @@
-"""Keep what a benchmark has measured, with its machine and date."""
+"""Files with the results of benchmarks, their machine and date."""
 
 from __future__ import annotations
 

@@ -1,11 +1,11 @@
-"""Measure every kernel with every instruction set, and name the cells that are out of line.
+"""Measure every kernel with every instruction set, and name cells with unexpected times.
 
 Usage: python -m benchmarks.matrix path/to/snowshed_bench
 
 Prints nanoseconds of processor time for each particle update, on one thread, and writes
-benchmarks/results/DATE-matrix-COMPILER.json. A cell is out of line if its time is
-more than twice, or less than half, the time that the other cells predict. In the prediction each
-choice, such as the transfer, multiplies the time by a factor of its own.
+benchmarks/results/DATE-matrix-COMPILER.json. The time of a cell is unexpected if it is more than
+twice, or less than half, the time that the other cells predict. In the prediction each choice, such
+as the transfer, multiplies the time by its own factor.
 """
 
 from __future__ import annotations
@@ -25,17 +25,17 @@ from snowshed.base.machine import cpu_name
 RESULTS = Path(__file__).parent / "results"
 VARIANTS = ("baseline", "avx2", "avx512")
 CHOICES = ("dimension", "precision", "transfer", "basis", "snow")
-#: Largest factor between the time of a cell and its predicted time that is not a finding.
+#: Largest factor by which the time of a cell may differ from its prediction.
 MAX_FACTOR = 2.0
-#: Largest time in double precision, over that in single precision.
-DOUBLE_OVER_FLOAT = 2.3
+#: Largest expected time in double precision, relative to that in single precision.
+MAX_DOUBLE_OVER_FLOAT = 2.3
 
 Cell = tuple[str, ...]
 Times = dict[Cell, float]
 
 
 def measure(program: str, variant: str, repetitions: int = 3) -> tuple[Times, str]:
-    """Return the least processor time of an update, in ns, of each cell; and the compiler."""
+    """Return the least processor time per update (ns) for each cell, and the compiler."""
     command = [
         program,
         "--benchmark_format=json",
@@ -52,13 +52,13 @@ def measure(program: str, variant: str, repetitions: int = 3) -> tuple[Times, st
         if row["run_type"] != "iteration":
             continue
         cell = tuple(row["name"].split("/")[1 : 1 + len(CHOICES)])
-        updates = row["items_per_second"] * row["real_time"] * 1e-3  # in a step
+        updates = row["items_per_second"] * row["real_time"] * 1e-3  # particle updates in a step
         times[cell] = min(times.get(cell, np.inf), row["cpu_time"] * 1e6 / updates)
     return times, report["context"]["compiler"].strip()
 
 
 def predicted(times: Times, cell: Cell) -> float:
-    """Return the prediction of the other cells: additive in the logarithms, by least squares."""
+    """Return the time of a cell (ns) by a least-squares model of the other cells' logarithms."""
     others = [other for other in times if other != cell]
     values = [sorted({other[i] for other in times}) for i in range(len(CHOICES))]
 
@@ -73,19 +73,19 @@ def predicted(times: Times, cell: Cell) -> float:
 
 
 def findings(times: Times) -> Iterator[str]:
-    """Yield a sentence for each cell that is out of line, or too slow in double precision."""
+    """Yield a sentence for each cell with an unexpected time or too slow double precision."""
     for cell, time in times.items():
         expected = predicted(times, cell)
         if not 1 / MAX_FACTOR < time / expected < MAX_FACTOR:
             yield f"{'/'.join(cell)}: {time:.1f} ns, where the other cells predict {expected:.1f}"
         if cell[1] == "double":
             ratio = time / times[(cell[0], "float", *cell[2:])]
-            if ratio > DOUBLE_OVER_FLOAT:
+            if ratio > MAX_DOUBLE_OVER_FLOAT:
                 yield f"{'/'.join(cell)}: {ratio:.2f} times as long as in single precision"
 
 
 def table(matrix: dict[str, Times]) -> str:
-    """Return the matrix as a table in Markdown: float and double of each set of instructions."""
+    """Return a Markdown table of times in float and double for each set of instructions."""
     head = [f"{v}, {p}" for v in matrix for p in ("float", "double")]
     lines = ["| kernel | " + " | ".join(head) + " |", "| --- |" + " ---: |" * len(head)]
     cells = sorted(cell for cell in next(iter(matrix.values())) if cell[1] == "float")
@@ -101,7 +101,7 @@ def table(matrix: dict[str, Times]) -> str:
 
 
 def double_over_float(times: Times) -> tuple[float, float]:
-    """Return the least and the largest ratio of times in double and in single precision."""
+    """Return the smallest and the largest ratio of times in double and single precision."""
     ratios = [
         time / times[(cell[0], "float", *cell[2:])]
         for cell, time in times.items()
@@ -111,7 +111,7 @@ def double_over_float(times: Times) -> tuple[float, float]:
 
 
 def main() -> None:
-    """Measure, print and keep the matrix."""
+    """Measure and print the matrix, and write it to a file."""
     if len(sys.argv) != 2:
         raise SystemExit(__doc__)
     measured = {variant: measure(sys.argv[1], variant) for variant in VARIANTS}

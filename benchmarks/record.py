@@ -1,4 +1,4 @@
-"""Measure the solver and whole problems, and keep the numbers.
+"""Measure the solver and whole problems, and write the numbers to a file.
 
 Usage: python -m benchmarks.record path/to/snowshed_bench
 
@@ -28,7 +28,7 @@ Case = dict[str, Any]
 
 
 def solver_cases(program: str, repetitions: int = 5) -> list[Case]:
-    """Run the slabs of Google Benchmark: medians; the repetitions of all cases are interleaved."""
+    """Return medians for the slabs of Google Benchmark, with interleaved repetitions."""
     report = json.loads(
         subprocess.run(
             [
@@ -54,7 +54,7 @@ def solver_cases(program: str, repetitions: int = 5) -> list[Case]:
 
 
 def largest_case(program: str) -> Case:
-    """Run the slab of ten million particles alone, for the memory of the whole process."""
+    """Return the result of the slab of ten million particles, with the memory of its process."""
     case = "scaling_3d/10000000"
     command = [program, "--benchmark_format=json", f"--benchmark_filter={case}"]
     report = json.loads(subprocess.run(command, check=True, capture_output=True).stdout)
@@ -69,7 +69,7 @@ def largest_case(program: str) -> Case:
 
 
 def whole_run(name: str, scene: Scene) -> Case:
-    """Run a scene with all its events, as `snowshed run` would."""
+    """Run a scene with all its events, as `snowshed run` does, and return its cost."""
     with tempfile.TemporaryDirectory() as folder:
         table = run_events(scene, folder, pictures=False)
         run = json.loads((Path(folder) / "run.json").read_text(encoding="utf-8"))
@@ -90,7 +90,7 @@ def whole_run(name: str, scene: Scene) -> Case:
 
 
 def lab(dimension: int, **more: float) -> Scene:
-    """Return five events of the laboratory experiment (Table 2.3.1, tilt 50 degrees)."""
+    """Return a scene of five laboratory events (Table 2.3.1, tilt 50 degrees)."""
     return Scene.preset("lab-50").update(
         {
             "dimension": dimension,
@@ -101,13 +101,13 @@ def lab(dimension: int, **more: float) -> Scene:
 
 
 def geometry(**more: float) -> Scene:
-    """Return a panel of chapter 5: 2 m high, 2 m long, five events in 2D."""
+    """Return a scene of chapter 5: a panel 2 m high and 2 m long, with five events in 2D."""
     panel = {"panel.height": 2.0, "panel.length": 2.0, "numerics.dx": 0.01}
     return lab(2, **more).update(panel)
 
 
 def sleeping(name: str, make: Callable[..., Scene], seeds: int, **more: float) -> list[Case]:
-    """Run a scene with snow that sleeps and with snow that never does, for some seedings."""
+    """Return the costs of a scene with and without sleep, for several seedings."""
     cases = []
     for seed in range(1, seeds + 1):
         for state, speed in (("asleep", {}), ("awake", {"numerics__sleep_speed": 0.0})):

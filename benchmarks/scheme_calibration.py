@@ -1,4 +1,4 @@
-"""Search the snow with which each scheme of the MPM makes the stacks of the calibrated snow.
+"""Search the snow for each scheme of the MPM whose stacks are those of the calibrated snow.
 
 Usage: python -m benchmarks.scheme_calibration run FOLDER
        python -m benchmarks.scheme_calibration rank
@@ -29,16 +29,16 @@ STACKS = RESULTS / "calibration-schemes.csv"
 SCHEMES = ("objective", "thesis")
 #: The six stacks of the scheme thesis that stand in for measured ones.
 STAND_IN, STAND_IN_SEEDS = "thesis", range(101, 107)
-#: Snows stronger than those of the thesis's grid.
+#: Snows that are stronger than those of the thesis's grid.
 STRONGER_SNOWS = {SLOPE: [0.5, 0.7], PRESSURE: [10e3, 14e3], COHESION: [0.2, 0.4]}
 TILT = "panel.tilt"
 TILTS = {TILT: [40.0, 50.0]}
 SNOW = [SLOPE, PRESSURE, COHESION]
-MEASURED = ["height", "length"]
+COMPARED_QUANTITIES = ["height", "length"]
 
 
 def run(folder: Path) -> None:
-    """Make the stacks and append them to the record."""
+    """Compute the stacks, and append them to the record."""
     lab = Scene.preset("lab-50").with_({"dimension": 2, "panel.friction": 0.6, "events.count": 5})
     calibrated = Snow.preset("calibrated").to_data()
     known = {path: [calibrated[path.rpartition(".")[2]]] for path in SNOW}
@@ -59,26 +59,33 @@ def _stacks(
     scene = lab.with_({"numerics.scheme": scheme, "numerics.dx": 0.01})
     axes = {**TILTS, **{path: list(values) for path, values in snows.items()}}
     rows = Study.product(scene, axes, seeds=seeds).run(folder, threads=1)
-    columns = [*SNOW, TILT, "seed", "event", *map(measured_column, MEASURED), "centre_height_m"]
+    columns = [
+        *SNOW,
+        TILT,
+        "seed",
+        "event",
+        *map(measured_column, COMPARED_QUANTITIES),
+        "centre_height_m",
+    ]
     return rows[columns].assign(scheme=scheme)
 
 
 def ranked(scheme: str) -> pd.DataFrame:
-    """Return the snows of a scheme, the best first.
+    """Return the snows of a scheme, sorted from the best.
 
     Returns
     -------
     pandas.DataFrame
-        As `rank_sets` returns it, with the mean deviation of the height, ``height_bias_m``, m.
+        The table of `rank_sets` with the mean deviation of the height, ``height_bias_m`` (m).
     """
-    columns = {TILT: "tilt", **{measured_column(name): name for name in MEASURED}}
+    columns = {TILT: "tilt", **{measured_column(name): name for name in COMPARED_QUANTITIES}}
     table = pd.read_csv(STACKS).rename(columns=columns)
     of_stand_in = (table["scheme"] == STAND_IN) & table["seed"].isin(STAND_IN_SEEDS)
-    means = table[of_stand_in].groupby(["tilt", "event"])[MEASURED].mean()
+    means = table[of_stand_in].groupby(["tilt", "event"])[COMPARED_QUANTITIES].mean()
     targets = [
         Measurement(tilt, event, 1, name, row[name], 1.0)
         for (tilt, event), row in means.iterrows()
-        for name in MEASURED
+        for name in COMPARED_QUANTITIES
     ]
     rows = table[~of_stand_in & (table["scheme"] == scheme)]
     rows = rows.assign(set=rows.groupby(SNOW, sort=False).ngroup() + 1)

@@ -8,7 +8,7 @@ Usage: python -m benchmarks.stack_grid run FOLDER [--case lab2d] [--seeds 12]
 `run` makes the stacks of the record (hours on 0.25 cm cells) and appends them to
 benchmarks/results/stack-grid.csv. `time` runs each grid once, scheme after scheme on one thread,
 and keeps the times in stack-grid-times.csv; nothing else should run on the machine meanwhile.
-`draw` draws error over time into docs/images/stack-grid.png, and prints the deviations.
+`draw` draws errors over run time into docs/images/stack-grid.png, and prints the deviations.
 """
 
 from __future__ import annotations
@@ -40,9 +40,9 @@ QUANTITIES = {
     "length_m": "length",
     "centre_height_m": "height of the centre of mass",
 }
-#: Distance of a point's label from it, points.
+#: Distance of a label from its point, points.
 LABEL_ABOVE = {"thesis": 7, "objective": -15}
-#: Columns of the record, and the fields of a panel that they hold.
+#: Columns of the record, with the fields of a panel.
 PANEL = {"tilt": "tilt", "panel_length": "length", "friction": "friction"}
 COLUMNS = (
     *("case", "scheme", *PANEL, "dx", "seed", "event", *QUANTITIES),
@@ -67,7 +67,7 @@ CASES = {
         {"panel.tilt": [40.0], "panel.length": [0.5, 2.0, 4.0]},
     ),
 }
-#: Cells whose mean stacks count as exact, m.
+#: Size of cells whose mean stacks count as exact, m.
 REFERENCE_CELLS = 0.0025
 
 
@@ -84,7 +84,7 @@ def scene_of(scheme: str, cells: float, case: str = "lab2d") -> Scene:
 
 
 def run(folder: Path, case: str, seeds: int, all_cells: Sequence[float]) -> None:
-    """Make the stacks of a case and append them to the record."""
+    """Compute the stacks of a case, and append them to the record."""
     for scheme in SCHEMES:
         for cells in all_cells:
             scene = scene_of(scheme, cells, case)
@@ -99,7 +99,7 @@ def run(folder: Path, case: str, seeds: int, all_cells: Sequence[float]) -> None
 
 
 def measure_times(all_cells: Sequence[float]) -> None:
-    """Run each grid with each scheme in turn, and keep the times."""
+    """Run each grid with each scheme in turn, and write the times to a file."""
     rows = []
     for cells in all_cells:
         for scheme in SCHEMES:
@@ -119,8 +119,8 @@ def deviations() -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        A row for each case, scheme, panel, event and size of cells, with the number of
-        seeds `n`, means in m, their standard errors (`_sem`) and relative deviations (`_off`).
+        A row for each case, scheme, panel, event and size of cells. Columns are the number of seeds
+        `n`, means in m, their standard errors (`_sem`) and their relative deviations (`_off`).
     """
     circumstances = ["case", "scheme", "tilt", "panel_length", "friction", "event"]
     groups = pd.read_csv(STACKS).groupby([*circumstances, "dx"])

@@ -5,9 +5,10 @@ Usage: python -m benchmarks.strength_beside_yade FOLDER/samples/field-318-*-coar
 
 The files are those of `snowshed reproduce hagenmuller2015 --quick -o FOLDER`: labels on voxels of
 100 um. Both engines press the same clumps, bonds and plates with the same law. Ice has its own
-density, and the plate is so fast that density times speed squared is that of the reproduction.
-Prints the peak below 5 % of strain and the means from 5 to 10 and from 10 to 15 %, kPa, and writes
-benchmarks/results/DATE-yade-strength.json. Yade takes some five minutes a sample.
+density, and the speed of the plate is chosen so that density times speed squared is that of the
+reproduction. The command prints the peak below 5 % of strain and the means from 5 to 10 and from 10
+to 15 % (kPa), and writes benchmarks/results/DATE-yade-strength.json. Yade takes about five minutes
+per sample.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ RANGES = ((0.05, 0.10), (0.10, 0.15))
 
 
 def snowshed_stresses(file: Path, strain: float) -> list[float]:
-    """Return the peak and the means that snowshed finds, kPa."""
+    """Return the peak and the means by snowshed, kPa."""
     stage = LoadingStage(kind="compress", speed=SPEED, strain=strain)
     scene = grains_scene(file, VOXEL, [stage], settings=GrainsSettings(damping=0.2, threads=1))
     with tempfile.TemporaryDirectory() as name:
@@ -43,7 +44,7 @@ def snowshed_stresses(file: Path, strain: float) -> list[float]:
 
 
 def yade_stresses(file: Path, strain: float) -> list[float]:
-    """Return the peak and the means that Yade finds, kPa."""
+    """Return the peak and the means by Yade, kPa."""
     sample = VoxelSample.of_labels(np.load(file), VOXEL)
     press = Press(YADE_STEP, SPEED, strain, friction=0.2, damping=0.2, every=200)
     with tempfile.TemporaryDirectory() as name:
@@ -56,7 +57,7 @@ def yade_stresses(file: Path, strain: float) -> list[float]:
 
 
 def main() -> None:
-    """Compare, print, and keep the numbers."""
+    """Compare the stresses, print them, and write them to a file."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("samples", type=Path, nargs="+")
     parser.add_argument("--strain", type=float, default=0.15)

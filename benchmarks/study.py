@@ -1,9 +1,10 @@
-"""Measure the overhead of the study engine, and the gain of two workers with equal runs.
+"""Measure the overhead of the study engine, and the gain from two workers with equal runs.
 
 Usage: python -m benchmarks.study
 
-Prints the overhead (wall time beyond the runs' own) and the gain of two workers, and keeps both in
-benchmarks/results/DATE-study.json. Nothing else should run on the machine meanwhile.
+The command prints the overhead (wall time beyond that of the runs) and the gain from two workers,
+and writes both to benchmarks/results/DATE-study.json. Nothing else should run on the machine
+meanwhile.
 """
 
 from __future__ import annotations
@@ -24,13 +25,13 @@ RUNS = 12
 
 
 def equal_runs() -> Study:
-    """Five laboratory events in 2D, a few seconds each run; only the seeds differ."""
+    """Return a study of five laboratory events in 2D; its runs of a few seconds differ in seeds."""
     scene = Scene.preset("lab-50").update({"dimension": 2, "numerics.dx": 0.005})
     return Study.product(scene, {"panel.friction": [0.3]}, name="equal", seeds=range(1, RUNS + 1))
 
 
 def measure(jobs: int) -> dict[str, float]:
-    """Return the study's wall time and the sum of its runs' own, s."""
+    """Return the wall time of the study and the sum of those of its runs, s."""
     with tempfile.TemporaryDirectory() as folder:
         start = time.perf_counter()
         equal_runs().run(folder, jobs=jobs, threads=1)
@@ -40,7 +41,7 @@ def measure(jobs: int) -> dict[str, float]:
 
 
 def main() -> None:
-    """Measure one worker and two, and keep the numbers."""
+    """Measure with one worker and with two, and write the numbers to a file."""
     single, double = measure(1), measure(2)
     result = {
         "machine": cpu_name(),

@@ -1,4 +1,4 @@
-"""The tables of docs/trust/performance.md, from the cases that benchmarks/record.py measured.
+"""Tables of docs/trust/performance.md, from the cases that benchmarks/record.py measured.
 
 Usage: python -m benchmarks.tables benchmarks/results/DATE.json
 """
@@ -14,7 +14,7 @@ import numpy as np
 
 Case = dict[str, Any]
 
-#: Features of the price list, each with the two cases whose difference is its price.
+#: Features, each with the two cases whose difference is its cost.
 PRICES = {
     "third dimension (27 nodes instead of 9)": ("base_3d", "base_2d"),
     "plasticity and hardening, snow not yielding": ("cam_clay_elastic", "base_3d"),
@@ -50,7 +50,7 @@ def speeds(cases: list[Case]) -> None:
 
 
 def prices(cases: list[Case]) -> None:
-    """Print what each feature adds to an update, in ns and in bytes per particle."""
+    """Print the cost of each feature in an update, in ns and in bytes per particle."""
     prefix = "price/"
     features = {
         case["case"][len(prefix) :].rsplit("/", 1)[0]: case
@@ -67,7 +67,7 @@ def prices(cases: list[Case]) -> None:
 
 
 def exponent(cases: list[Case]) -> float:
-    """Return the power of the particle number that the time of a step follows."""
+    """Return the exponent of the number of particles in the time of a step."""
     scaled = [case for case in cases if case["case"].startswith("scaling_")]
     particles = np.array([float(case["case"].split("/")[1]) for case in scaled])
     seconds = particles / np.array([case["updates_per_s"] for case in scaled])
@@ -110,7 +110,7 @@ def whole_problems(cases: list[Case]) -> None:
 
 
 def print_tables(cases: list[Case]) -> None:
-    """Print everything, in the order of docs/trust/performance.md."""
+    """Print all tables in the order of docs/trust/performance.md."""
     for table in (speeds, prices, scaling, whole_problems):
         table(cases)
         print()

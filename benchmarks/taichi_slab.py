@@ -2,15 +2,16 @@
 
 Usage: python -m benchmarks.taichi_slab [--steps 50] [--threads 2] [--atomic] [--json FILE]
 
-Needs Taichi (pip install taichi). 262 144 particles of reference snow on sticky ground, float,
-quadratic splines, FLIP 0.99. Taichi takes the time steps that snowshed chose, which costs it
-nothing, and the end states are compared. Numbers in parentheses are equations of
+The benchmark needs Taichi (pip install taichi). The slab has 262 144 particles of reference snow on
+sticky ground, with float, quadratic splines and FLIP 0.99. Taichi uses the time steps that snowshed
+chose, at no cost, and the final states are compared. Numbers in parentheses are equations of
 docs/methods/mpm.md.
 
-The Taichi version is the fastest of those tried: grid flat or in blocks, as one or eight arrays;
-particles as one or many arrays; stress in a separate kernel or not; transfers fused or not.
-Particles are sorted by cell once. Slabs of cells scatter in two colours, without atomics, which
-holds until a particle strays two cells from its slab; --atomic scatters as is usual in Taichi.
+The Taichi version is the fastest of several variants: grid flat or in blocks, as one or eight
+arrays; particles as one or many arrays; stress in a separate kernel or not; transfers fused or not.
+Particles are sorted by cell once. Slabs of cells scatter in two colours without atomic operations.
+This is correct until a particle is two cells away from its slab. --atomic scatters with atomic
+operations, as is usual in Taichi.
 """
 
 import argparse
@@ -33,18 +34,18 @@ except ImportError:
 DX = 1 / 32  # m
 CELLS = (64, 16, 32)
 MARGIN = 8  # empty cells around the slab
-WIDTH = 8  # cells along x that are scattered by one thread
-WARM_UP, REPETITIONS = 10, 3  # steps that are not timed; runs from the start
-TOLERANCE = 0.02  # of mean fall and mean bottom pressure
+WIDTH = 8  # cells along x whose particles one thread scatters
+WARM_UP, REPETITIONS = 10, 3  # untimed steps; number of runs
+TOLERANCE = 0.02  # relative difference of mean fall and of mean bottom pressure
 CASES = {"at rest": [0.0, 0.0, 0.0], "falling": [0.0, 0.0, -5.0]}  # initial velocity, m/s
-ORDERS = range(8, 0, -1)  # of power series, highest first
+ORDERS = range(8, 0, -1)  # orders of the power series, from the highest
 LOG1P = (*((-1) ** (k + 1) / k for k in ORDERS), 0.0)
 EXPM1 = (*(1 / math.factorial(k) for k in ORDERS), 0.0)
 
 
 @ti.func
 def power_series(coefficients: ti.template(), a):
-    """Sum of c_k a^k by Horner's scheme and Cayley-Hamilton."""
+    """Return the sum of c_k a^k by Horner's scheme and Cayley-Hamilton."""
     a2 = a @ a
     i1, i3 = a.trace(), a.determinant()
     i2 = 0.5 * (i1 * i1 - a2.trace())
@@ -56,7 +57,7 @@ def power_series(coefficients: ti.template(), a):
 
 @ti.data_oriented
 class CamClay:
-    """Elasticity (1)-(5), yield surface (6), hardening (7) and return mapping (9)-(11)."""
+    """Snow with elasticity (1)-(5), yield surface (6), hardening (7), return mapping (9)-(11)."""
 
     def __init__(self, snow):
         e, nu = snow["youngs_modulus"], snow["poissons_ratio"]
@@ -68,14 +69,14 @@ class CamClay:
 
     @ti.func
     def preconsolidation(self, ev):
-        """(7) and its slope; the power series of sinh is exact enough, and so near zero, too."""
+        """Return p0 (7) and its slope; the power series of sinh is exact enough, also near zero."""
         x = self.xi * ti.max(-ev, 0.0)
         slope = -self.bulk * self.xi * (1 + x * x / 2 * (1 + x * x / 12))
         return self.bulk * x * (1 + x * x / 6 * (1 + x * x / 20)), ti.select(ev < 0, slope, 0.0)
 
     @ti.func
     def plastic_change(self, p_trial, q_trial, ev):
-        """Root D of (10): Newton's steps, bisection where they leave the bracket."""
+        """Return the root D of (10) by Newton's steps, or bisection if they leave the bracket."""
         p0, p0_slope = self.preconsolidation(ev)
         side = 2 * p_trial - (1 - self.beta) * p0
         c = 6 * self.mu * self.shear
@@ -105,7 +106,7 @@ class CamClay:
 
     @ti.func
     def return_map(self, p_trial, q_trial, ev):
-        """Pressure, Mises stress and volumetric plastic strain within the yield surface."""
+        """Return pressure, Mises stress and volumetric plastic strain within the yield surface."""
         p, q = p_trial, q_trial
         p0, _ = self.preconsolidation(ev)
         if self.shear * q * q + (p + self.beta * p0) * (p - p0) > 0:
@@ -122,7 +123,7 @@ class CamClay:
 
     @ti.func
     def stress(self, b, ev):
-        """Kirchhoff stress, elastic b - I and plastic strain from the trial b - I."""
+        """Return Kirchhoff stress, elastic b - I and plastic strain from the trial b - I."""
         identity = ti.Matrix.identity(ti.f32, 3)
         strain = 0.5 * power_series(LOG1P, b)
         shear = strain - strain.trace() / 3 * identity
@@ -137,7 +138,7 @@ class CamClay:
 
 @ti.data_oriented
 class TaichiSlab:
-    """The same slab as a scene of snowshed. Lengths are in cells, all else in SI units."""
+    """Slab of a snowshed scene in Taichi; lengths are in cells, all other values in SI units."""
 
     def __init__(self, scene, positions, mass, atomic):
         self.clay, self.gravity = CamClay(scene["snow"]), scene["gravity"]
@@ -154,11 +155,11 @@ class TaichiSlab:
         self.b, self.tau = ti.Matrix.field(3, 3, ti.f32), ti.Matrix.field(3, 3, ti.f32)
         self.ev = ti.field(ti.f32)
         ti.root.dense(ti.i, self.count).place(self.x, self.v, self.b, self.tau, self.ev)
-        # Mass, momentum, force; after the update mass, velocity, change of velocity.
+        # Mass, momentum and force; after the update mass, velocity and change of velocity.
         self.grid = ti.Vector.field(8, ti.f32, shape=tuple(n + 2 * MARGIN for n in CELLS))
 
     def reset(self, velocity):
-        """Start again with the unstressed lattice."""
+        """Reset the slab to the unstressed lattice."""
         self.x.from_numpy(self.start)
         self.v.fill(ti.Vector(velocity))
         self.b.fill(0.0)
@@ -167,7 +168,7 @@ class TaichiSlab:
 
     @ti.func
     def splines(self, x):
-        """First of three nodes an axis, splines (19) and their slopes."""
+        """Return the first of three nodes along each axis, splines (19) and their slopes."""
         base = ti.cast(x - 0.5, ti.i32)
         f = x - base
         weights = [0.5 * (1.5 - f) ** 2, 0.75 - (f - 1) ** 2, 0.5 * (f - 0.5) ** 2]
@@ -175,7 +176,7 @@ class TaichiSlab:
 
     @ti.kernel
     def particles_to_grid(self, first: ti.i32, stride: ti.i32):
-        """Scatter (13) from every slab, or from those of a colour, which share no nodes."""
+        """Scatter (13) from all slabs, or from the slabs of a colour, which share no nodes."""
         ti.loop_config(block_dim=1)
         for n in range(self.slabs // stride):
             slab = first + n * stride
@@ -191,12 +192,12 @@ class TaichiSlab:
                     node = base + ti.Vector([i, j, k])
                     if ti.static(self.atomic):
                         self.grid[node] += sums
-                    else:  # Taichi makes += atomic, but not this.
+                    else:  # Taichi makes += atomic, but not this sum.
                         self.grid[node] = self.grid[node] + sums
 
     @ti.kernel
     def update_grid(self, dt: ti.f32):
-        """(14) and the sticky ground."""
+        """Apply (14) and the sticky ground."""
         for node in ti.grouped(self.grid):
             s = self.grid[node]
             if s[0] > 0:
@@ -209,7 +210,7 @@ class TaichiSlab:
 
     @ti.kernel
     def grid_to_particles(self, dt: ti.f32):
-        """(15) to (17) and the new stress."""
+        """Apply (15) to (17), and update the stress."""
         for p in self.x:
             base, w, g = self.splines(self.x[p])
             velocity, change = ti.Vector.zero(ti.f32, 3), ti.Vector.zero(ti.f32, 3)
@@ -240,7 +241,7 @@ class TaichiSlab:
         ti.sync()
 
     def state(self):
-        """Heights, m, and pressures, Pa, in the order of the positions given."""
+        """Return heights (m) and pressures (Pa) in the order of the initial positions."""
         heights, pressures = np.empty(self.count), np.empty(self.count)
         heights[self.order] = (self.x.to_numpy()[:, 2] - MARGIN) * DX
         pressures[self.order] = -self.tau.to_numpy().trace(axis1=1, axis2=2) / 3
@@ -248,7 +249,7 @@ class TaichiSlab:
 
 
 def snowshed_slab(velocity, threads):
-    """Return snowshed's simulation of the slab; nothing sleeps."""
+    """Return snowshed's simulation of the slab without sleep."""
     size = [n * DX for n in CELLS]
     box = {"type": "box", "center": [s / 2 for s in size], "size": size}
     numerics = {"transfer": "flip", "flip_ratio": 0.99, "basis": "quadratic", "sleep_speed": 0}
@@ -286,7 +287,7 @@ def time_taichi(slab, velocity, time_steps):
 
 
 def measure(velocity, args):
-    """Time both in turn; compare mean height and mean bottom pressure in the end."""
+    """Time both programs in turn, and compare the final mean height and bottom pressure."""
     simulation = snowshed_slab(velocity, args.threads)
     start = simulation.positions()
     mass = float(simulation.masses()[0])
@@ -296,7 +297,7 @@ def measure(velocity, args):
         simulation.step()
         times.append(simulation.time_s)
     slab.reset(velocity)
-    slab.run([0.0])  # compiles
+    slab.run([0.0])  # compile the kernels
     walls = [
         (
             time_snowshed(velocity, args.threads, args.steps),
@@ -318,7 +319,7 @@ def measure(velocity, args):
 
 
 def main():
-    """Measure, print and keep the results; fail where the two do not agree."""
+    """Measure and print the results; fail if the two programs do not agree."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--steps", type=int, default=50, help="steps timed in each run")
     parser.add_argument("--threads", type=int, default=2, choices=range(1, 5))

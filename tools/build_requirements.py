@@ -1,6 +1,6 @@
 """Print the requirements that pip must install before snowshed can be built, one per line.
 
-These are the build requirements of pyproject.toml, and cmake and ninja if the system has none.
+These are the build requirements of pyproject.toml, and cmake and ninja if the system lacks them.
 """
 
 import ast
@@ -15,7 +15,8 @@ CMAKE_NEEDED = (3, 20)
 def declared_requirements(pyproject: str) -> list:
     """Return the list `requires` of [build-system].
 
-    A regular expression finds it, since Python 3.9 has no TOML parser. Its text is Python, too.
+    A regular expression finds the list, because Python 3.9 has no TOML parser. The text of the list
+    is also valid Python.
     """
     table = re.search(r"^\[build-system\]$(.*?)(?=^\[|\Z)", pyproject, re.M | re.S)
     requires = table and re.search(r"^requires\s*=\s*(\[.*?\])\s*$", table[1], re.M | re.S)
@@ -25,7 +26,7 @@ def declared_requirements(pyproject: str) -> list:
 
 
 def system_has_cmake() -> bool:
-    """Return whether a new enough cmake is on the path."""
+    """Return whether the path has a cmake that is new enough."""
     if not shutil.which("cmake"):
         return False
     answer = subprocess.run(["cmake", "--version"], capture_output=True, text=True).stdout

@@ -1,4 +1,4 @@
-"""The Attributes section of a component's docstring, as the schema has it."""
+"""Attributes section of a component's docstring, from the schema."""
 
 import re
 import textwrap
@@ -15,7 +15,7 @@ TYPES = {"number": "float", "integer": "int", "boolean": "bool", "string": "str"
 
 
 def attributes_section(record, schema, node):
-    """Return the section for a record that mirrors a node of the schema, indented as in source."""
+    """Return the section for a record of a schema node, indented as in the source."""
     lines = ["Attributes", "----------"]
     fields = record.keys()
     for key, described in properties(schema, node).items():
@@ -47,7 +47,7 @@ def _type(record, key, child):
 
 
 def _notes(child, required):
-    """Return a sentence of range, default and other names."""
+    """Return a sentence on range, default and other names."""
     limited = child["anyOf"][0] if "anyOf" in child else child.get("items", child)
     low = [text.format(f"{limited[k]:g}") for k, text in LIMITS[:2] if k in limited]
     high = [text.format(f"{limited[k]:g}") for k, text in LIMITS[2:] if k in limited]
@@ -78,7 +78,7 @@ def _shown(default):
 
 
 def _in_shapes(schema, node, key):
-    """Return the meanings of a key in the types of shape that have it."""
+    """Return the meanings of a key in all types of shapes that have the key."""
     kinds = {}
     for variant in node["oneOf"]:
         if key in variant["properties"]:

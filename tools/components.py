@@ -1,10 +1,11 @@
-"""Writes the fields of the scene's components, and their descriptions in docstrings.
+"""Write the fields of the scene's components, and their descriptions in docstrings.
 
 The core describes every field of a scene once (cpp/snowshed/scene/describe.hpp), with its type,
-unit, range, default and meaning. This program brings the dataclasses in python/snowshed to that
-description: it adds and removes fields, orders them, and writes the section "Attributes" of each
-docstring. Methods, other sections and the first line of a docstring are written by hand. The
-package exports the settings of every method in the registry; this program writes those lines, too.
+unit, range, default and meaning. This program changes the dataclasses in python/snowshed so that
+they agree with the description: it adds, removes and orders fields, and writes the section
+"Attributes" of each docstring. Methods, other sections and the first line of a docstring are
+written by hand. The package exports the settings of every method in the registry; this program
+writes those lines, too.
 
     python -m tools.components            # after a change of the description and `make build`
     python -m tools.components --check    # say which files differ; exit code 1
@@ -33,9 +34,10 @@ TYPES = {"number": "float", "integer": "int", "boolean": "bool", "string": "str"
 
 
 def components() -> dict[type[Record], dict]:
-    """Return every class of a scene's components with the node of the schema that describes it.
+    """Return every class of a scene's components with the schema node that describes it.
 
-    A part of several methods is described for each method, and the scene by the whole schema.
+    Parts that several methods have are described for each method. The node of the scene is the
+    whole schema.
     """
     nodes: dict[type[Record], dict] = {}
     for name, method in METHODS.items():
@@ -101,7 +103,7 @@ def _with_section(head: str, record: type[Record], described: dict) -> str:
 
 
 def _annotation(key: str, child: Mapping) -> str:
-    """Return the type of a field that is new in the description."""
+    """Return the Python type of a new field in the description."""
     full = resolve(scene_schema(), child)
     if "enum" in full:
         return f"Optional[Literal[{', '.join(repr(value) for value in full['enum'])}]]".replace(
@@ -113,7 +115,7 @@ def _annotation(key: str, child: Mapping) -> str:
 
 
 def with_settings_exports(stub: str) -> str:
-    """Return a stub that exports the settings of the methods in the registry, and of no others."""
+    """Return a stub that exports the settings of exactly the methods in the registry."""
     begin = "from .methods."
     others = [
         line
@@ -127,7 +129,7 @@ def with_settings_exports(stub: str) -> str:
 
 
 def main() -> int:
-    """Write all modules, or say which differ from the description."""
+    """Write all modules, or print which modules differ from the description."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument(
         "--check", action="store_true", help="Change nothing; fail on a difference."

@@ -1,11 +1,11 @@
 """Confined compression of a sample with LAMMPS: python lammps_press.py SAMPLE PRESS OUT.
 
-SAMPLE is what `VoxelSample.save` writes, PRESS what `Press.save` writes, OUT an NPZ file with
-time_s, top_n (force on the top plate), bonds, wall_s of the steps, and the number of spheres.
+SAMPLE is a file of `VoxelSample.save`, and PRESS a file of `Press.save`. OUT becomes an NPZ file
+with time_s, top_n (force on the top plate), bonds, wall_s of the steps, and spheres (their number).
 
-Grains are bodies of fix rigid/small with the mass and inertia of their voxels, bonds are those of
-bpm/rotational without resistance to bending and twist, which break in tension only; other contacts
-are granular springs with friction. There is no local damping of rigid bodies in LAMMPS.
+Grains are bodies of fix rigid/small with the mass and inertia of their voxels. Bonds are those of
+bpm/rotational without resistance to bending and twist; they break in tension only. Other contacts
+are granular springs with friction. LAMMPS has no local damping of rigid bodies.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def write_data(sample: VoxelSample, file: Path) -> None:
 
 
 def write_bodies(sample: VoxelSample, file: Path) -> None:
-    """Write masses, centres and inertia of the grains, at rest, for fix rigid/small."""
+    """Write masses, centres and inertia of the resting grains for fix rigid/small."""
     lines = [str(len(sample.mass))]
     for i, (m, c, j) in enumerate(zip(sample.mass, sample.centre, sample.inertia), start=1):
         tensor = (j[0, 0], j[1, 1], j[2, 2], j[0, 1], j[0, 2], j[1, 2])
@@ -68,7 +68,7 @@ def write_bodies(sample: VoxelSample, file: Path) -> None:
 
 
 def commands(sample: VoxelSample, press: Press, folder: Path) -> list[str]:
-    """Return the commands for LAMMPS before its run."""
+    """Return the commands for LAMMPS up to the run."""
     radius = sample.radius
     normal = press.elastic_modulus * radius
     shear = press.stiffness_ratio * normal
@@ -111,7 +111,7 @@ def commands(sample: VoxelSample, press: Press, folder: Path) -> list[str]:
 
 
 def main() -> None:
-    """Press, and write the record."""
+    """Run the test, and write its record."""
     sample, press = VoxelSample.load(Path(sys.argv[1])), Press.load(Path(sys.argv[2]))
     with TemporaryDirectory() as name:
         folder = Path(name)

@@ -1,4 +1,4 @@
-"""The test that all engines run: a sample is compressed between plates and smooth walls."""
+"""Test that all engines run: a sample is compressed between plates and smooth walls."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class Press:
     Attributes
     ----------
     strain
-        Strain at which the test ends, relative to the sample's height.
+        Strain at the end of the test, relative to the sample's height.
     every
         Steps between two records of the force.
     """
@@ -35,10 +35,10 @@ class Press:
         return int(self.strain * height / self.speed / self.time_step)
 
     def save(self, file: Path) -> None:
-        """Write to a JSON file."""
+        """Write the parameters to a JSON file."""
         file.write_text(json.dumps(asdict(self)), encoding="utf-8")
 
     @classmethod
     def load(cls, file: Path) -> Press:
-        """Read what `save` wrote."""
+        """Return the parameters from a file of `save`."""
         return cls(**json.loads(file.read_text(encoding="utf-8")))

@@ -1,4 +1,4 @@
-"""A small sample that looks like snow."""
+"""Small random samples that resemble snow."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ from scipy import ndimage
 
 
 def random_snow(size: int, grain: float, ice: float = 0.45, seed: int = 1) -> np.ndarray:
-    """Return labels (size, size, size) of a smoothed random field, cut into cells.
+    """Return grain labels (size, size, size) of a smoothed random field that is cut into cells.
 
     Parameters
     ----------
     size
         Voxels along an edge.
     grain
-        About the width of a grain, voxels.
+        Approximate width of a grain, voxels.
     ice
-        Share of the volume before pieces of fewer than eight voxels are left out.
+        Volume fraction of ice before pieces of fewer than eight voxels are removed.
     """
     random = np.random.default_rng(seed)
     field = ndimage.gaussian_filter(

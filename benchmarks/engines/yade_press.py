@@ -1,12 +1,12 @@
 """Confined compression of a sample with Yade: yade -n -x yade_press.py SAMPLE PRESS OUT [steps].
 
-SAMPLE is a file of `VoxelSample.save`, PRESS a file of `Press.save`, OUT an NPZ file with time_s,
-top_n (force on the top plate), bonds, and wall_s of the steps.
+SAMPLE is a file of `VoxelSample.save`, and PRESS a file of `Press.save`. OUT becomes an NPZ file
+with time_s, top_n (force on the top plate), bonds, and wall_s of the steps.
 
-Yade weighs a clump by its spheres. So all voxels become spheres here, also the inner ones, with the
-mass of a voxel. The difference in inertia between a cube and a ball is isotropic and is added.
-Measurements of speed give a number of steps; then only the spheres of the surface are made, with
-the same mass.
+In Yade the mass of a clump is that of its spheres. Therefore all voxels become spheres with the
+mass of a voxel, also the inner ones. The difference in inertia between a cube and a ball is
+isotropic and is added. If the number of steps is given, as in measurements of speed, only the
+voxels of the surface become spheres, with the same mass.
 
 The folder of this file must be in PYTHONPATH.
 """
@@ -26,7 +26,7 @@ from yade import wrapper as y
 
 
 def material(press: Press, friction: float) -> y.CohFrictMat:
-    """Return a material without cohesion, with the mass of a voxel in each ball."""
+    """Return a material without cohesion that gives each ball the mass of a voxel."""
     return y.CohFrictMat(
         young=press.elastic_modulus,
         poisson=press.stiffness_ratio,
@@ -37,7 +37,7 @@ def material(press: Press, friction: float) -> y.CohFrictMat:
 
 
 class Pressed:
-    """A sample between plates and walls, in Yade's scene."""
+    """Sample between plates and walls in Yade's scene."""
 
     def __init__(self, sample: VoxelSample, press: Press, hollow: bool) -> None:
         self.press = press
@@ -66,7 +66,7 @@ class Pressed:
         return ids
 
     def _add_plate(self, sample: VoxelSample, rough: int, z: float, speed: float) -> list[int]:
-        """Add a grid that reaches two spheres beyond the box."""
+        """Add a grid of spheres that extends two spheres beyond the box."""
         ids = []
         for i in range(-2, round(sample.box[0] / sample.radius / 2) + 2):
             for j in range(-2, round(sample.box[1] / sample.radius / 2) + 2):
@@ -105,7 +105,7 @@ class Pressed:
         y.O.dt = self.press.time_step
 
     def _bond(self, sample: VoxelSample) -> list[tuple[int, int]]:
-        """Make a separate bond of each pair of voxels of two grains that share a face."""
+        """Make a bond for each pair of voxels of different grains that share a face."""
         face = (2 * sample.radius) ** 2
         pairs = [(int(a), int(b)) for a, b in self.ids[sample.bonds]]
         for a, b in pairs:
@@ -131,7 +131,7 @@ class Pressed:
 
 
 def main() -> None:
-    """Press, and write the record."""
+    """Run the test, and write its record."""
     sample, press = VoxelSample.load(Path(sys.argv[1])), Press.load(Path(sys.argv[2]))
     timed = len(sys.argv) > 4
     pressed = Pressed(sample, press, hollow=timed)

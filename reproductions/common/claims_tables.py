@@ -12,7 +12,7 @@ from reproductions.common.hypothesis_tests import (
     UNDECIDED,
     Claim,
     Finding,
-    Judged,
+    JudgedClaim,
 )
 from snowshed._core import InputError
 from snowshed.io.csv_table import csv_text, read_csv
@@ -22,7 +22,7 @@ VERDICTS = (CONTRADICTED, CONFIRMED, UNDECIDED)
 COLUMNS = ("source", "claim", "confirmed_if", "verdict", "finding")
 
 
-def claims_grid(claims: Sequence[Judged], author: str) -> HtmlTable:
+def claims_grid(claims: Sequence[JudgedClaim], author: str) -> HtmlTable:
     """Return claims and findings, contradictions first; `author` is the heading of the claims."""
     ordered = sorted(claims, key=lambda claim: VERDICTS.index(claim.finding.verdict))
     rows = [
@@ -38,7 +38,7 @@ def rules_grid(claims: Sequence[Claim[Any]]) -> HtmlTable:
     return HtmlTable(["section", "claim", "confirmed if"], rows, "lll")
 
 
-def claims_csv(claims: Sequence[Judged]) -> str:
+def claims_csv(claims: Sequence[JudgedClaim]) -> str:
     """Return claims and findings as CSV."""
     import pandas as pd
 
@@ -49,7 +49,7 @@ def claims_csv(claims: Sequence[Judged]) -> str:
     return csv_text(pd.DataFrame(rows, columns=list(COLUMNS)))
 
 
-def read_claims(path: Path) -> list[Judged]:
+def read_claims(path: Path) -> list[JudgedClaim]:
     """Return claims and findings from a file that `claims_csv` made.
 
     Raises
@@ -61,6 +61,6 @@ def read_claims(path: Path) -> list[Judged]:
     if tuple(table.columns) != COLUMNS or not table["verdict"].isin(VERDICTS).all():
         raise InputError(f"{path}: not a table of claims; the columns must be {', '.join(COLUMNS)}")
     return [
-        Judged(source, claim, rule, Finding(verdict, finding))
+        JudgedClaim(source, claim, rule, Finding(verdict, finding))
         for source, claim, rule, verdict, finding in table.itertuples(index=False)
     ]

@@ -22,7 +22,7 @@ PATH = click.Path(path_type=Path)
 def command_of(package: str, name: str) -> click.Command:
     """Return the command of a package of `reproductions`, under a name."""
     module = importlib.import_module(f"reproductions.{package}.publication")
-    declared: Reproduction[Any] = module.REPRODUCTION
+    reproduction: Reproduction[Any] = module.REPRODUCTION
 
     def reproduce(
         folder: Path,
@@ -33,32 +33,34 @@ def command_of(package: str, name: str) -> click.Command:
         jobs: Optional[int] = None,
         **options: Any,
     ) -> None:
-        chosen = declared.size(size)
-        work = declared.stages(folder, chosen.settings, **options)
-        declared.prepare(folder, size, options)
+        chosen = reproduction.size(size)
+        work = reproduction.stages(folder, chosen.settings, **options)
+        reproduction.prepare(folder, size, options)
         stages = choose(work.stages, names)
         if not report_only:
             _compute(stages, folder, jobs, quiet=quiet)
-        claims = write_report(declared, chosen, folder, work)
+        claims = write_report(reproduction, chosen, folder, work)
         if not quiet:
-            print_claims(claims, declared.author)
-            click.echo(f"report in {declared.report(folder)}")
+            print_claims(claims, reproduction.author)
+            click.echo(f"report in {reproduction.report(folder)}")
         _check_failures(work.stages)
 
-    return click.Command(name, callback=reproduce, params=_options(declared), help=declared.help)
+    return click.Command(
+        name, callback=reproduce, params=_options(reproduction), help=reproduction.help
+    )
 
 
-def _options(declared: Reproduction[Any]) -> list[click.Parameter]:
+def _options(reproduction: Reproduction[Any]) -> list[click.Parameter]:
     sizes = [
         click.Option(
             [f"--{size.name}", "size"],
             flag_value=size.name,
             help=size.help,
-            **({"default": True} if size is declared.sizes[0] else {}),
+            **({"default": True} if size is reproduction.sizes[0] else {}),
         )
-        for size in declared.sizes
+        for size in reproduction.sizes
     ]
-    jobs = click.Option(["--jobs"], type=int, help=declared.jobs_help)
+    jobs = click.Option(["--jobs"], type=int, help=reproduction.jobs_help)
     return [
         click.Option(
             ["-o", "--output", "folder"],
@@ -67,16 +69,18 @@ def _options(declared: Reproduction[Any]) -> list[click.Parameter]:
             help="Results folder, old or new.",
         ),
         *sizes,
-        click.Option(["--stage", "names"], multiple=True, metavar="NAME", help=declared.stage_help),
-        *declared.options,
+        click.Option(
+            ["--stage", "names"], multiple=True, metavar="NAME", help=reproduction.stage_help
+        ),
+        *reproduction.options,
         click.Option(["--report-only"], is_flag=True, help="Compute nothing, write the report."),
-        *([jobs] if declared.jobs_help else []),
+        *([jobs] if reproduction.jobs_help else []),
         click.Option(["-q", "--quiet"], is_flag=True, help="Print nothing but errors."),
     ]
 
 
 def _compute(stages: Sequence[Stage], folder: Path, jobs: Optional[int], *, quiet: bool) -> None:
-    """Compute the rest of some stages; end like other commands after Ctrl-C or a full disk."""
+    """Compute the rest of some stages; raise Stopped after Ctrl-C, and Failed after an error."""
     try:
         with progress_bar(quiet=quiet) as progress:
             compute(stages, jobs=jobs, progress=progress)
@@ -88,7 +92,7 @@ def _compute(stages: Sequence[Stage], folder: Path, jobs: Optional[int], *, quie
 
 
 def _check_failures(stages: Sequence[Stage]) -> None:
-    """End the command if something has failed."""
+    """Raise Failed if a simulation of any stage has failed."""
     failures = {stage.name: failure for stage in stages if (failure := stage.failure())}
     if failures:
         stores = {stage.runs for stage in stages if isinstance(stage, StudyStage)}

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from typing import Optional
 
-from reproductions.common.hypothesis_tests import CONTRADICTED, UNDECIDED, Judged
+from reproductions.common.hypothesis_tests import CONTRADICTED, UNDECIDED, JudgedClaim
 from snowshed.base.formatting import about
 from snowshed.base.progress import Progress, Reporter
 from snowshed.cli import progress as bar
@@ -29,7 +29,7 @@ def _announcement(progress: Progress) -> str:
     return f"{progress.count} stages; expected time: {expected}"
 
 
-def print_claims(claims: Sequence[Judged], author: str) -> None:
+def print_claims(claims: Sequence[JudgedClaim], author: str) -> None:
     """Print the verdicts on an author's claims, and their numbers."""
     table = plain_table(f"Claims of {author}")
     for title in ("", "section", "claim", "finding"):

@@ -1,9 +1,9 @@
-"""The folder of a reproduction, which names its publication, so that no other writes into it.
+"""The folder of a reproduction, which names its publication so that no other uses it.
 
 ==================== ========================================================================
 reproduction.json    the publication, the size and the options of the folder
 claims.csv           one row per claim: source, claim, rule, verdict, finding
-runs/                the store of all simulations, where the stages are studies
+runs/                the store of all simulations, if the stages are studies
 ==================== ========================================================================
 
 The report is named after the publication.
@@ -49,14 +49,14 @@ class ReproductionFolder:
         Parameters
         ----------
         identity
-            Names and values of the options that decide its content.
+            Names and values of the options that decide the content of the folder.
         former
             Values of options that older folders do not name.
 
         Raises
         ------
         InputError
-            If it holds a reproduction with other options, or something else.
+            If the folder holds a reproduction with other options, or something else.
         """
         file = self.path / IDENTITY
         if file.is_file():

@@ -10,7 +10,7 @@ from typing import Generic, TypeVar
 from snowshed.base.formatting import MISSING, number, percent
 
 CONFIRMED, CONTRADICTED, UNDECIDED = "confirmed", "contradicted", "undecided"
-#: Number of standard deviations of its noise from which a difference counts.
+#: A difference counts if it is larger than this number of standard deviations of its noise.
 SIGMAS = 2.0
 
 Data = TypeVar("Data")
@@ -46,14 +46,14 @@ class Estimate:
         """
         if unit == "%":
             return f"{percent(self.value)} ± {percent(self.noise, 2)}"
-        known = MISSING if math.isnan(self.noise) else number(self.noise, 2)
-        return f"{number(self.value)} ± {known} {unit}".rstrip()
+        noise = MISSING if math.isnan(self.noise) else number(self.noise, 2)
+        return f"{number(self.value)} ± {noise} {unit}".rstrip()
 
 
 def widening(freedom: float) -> float:
-    """Return the factor of Student's t on a noise that was estimated from few numbers.
+    """Return the factor by which Student's t widens a noise estimated from few numbers.
 
-    `SIGMAS` times the widened noise then hold 95 %, as with an exact noise.
+    Then `SIGMAS` times the widened noise covers 95 %, as with an exact noise.
 
     Examples
     --------
@@ -100,8 +100,8 @@ class Claim(Generic[Data]):
     text
         The claim.
     rule
-        Condition for "confirmed"; the opposite contradicts the claim, and a number closer than
-        `SIGMAS` deviations of noise leaves it undecided.
+        Condition for "confirmed". The opposite contradicts the claim, and a number
+        within `SIGMAS` deviations of noise from the bound leaves it undecided.
     judge
         Function from the data to the finding.
     """
@@ -113,7 +113,7 @@ class Claim(Generic[Data]):
 
 
 @dataclass(frozen=True)
-class Judged:
+class JudgedClaim:
     """A claim's text with its finding."""
 
     source: str
@@ -122,9 +122,11 @@ class Judged:
     finding: Finding
 
 
-def judge(claims: Sequence[Claim[Data]], data: Data) -> list[Judged]:
+def judge(claims: Sequence[Claim[Data]], data: Data) -> list[JudgedClaim]:
     """Test claims against the same data; missing data leave a claim undecided."""
-    return [Judged(claim.source, claim.text, claim.rule, _finding(claim, data)) for claim in claims]
+    return [
+        JudgedClaim(claim.source, claim.text, claim.rule, _finding(claim, data)) for claim in claims
+    ]
 
 
 def _finding(claim: Claim[Data], data: Data) -> Finding:
@@ -152,22 +154,22 @@ def negative(estimate: Estimate, what: str, unit: str = "") -> Finding:
     return Finding(_sign(-estimate.value, estimate.noise), _sentence(what, estimate, unit))
 
 
-def small(estimate: Estimate, bound: float, what: str, unit: str = "") -> Finding:
-    """Test the claim that a number is small: not above a bound, with either sign.
+def is_small(estimate: Estimate, bound: float, what: str, unit: str = "") -> Finding:
+    """Test the claim that the magnitude of a number is at most a bound.
 
     Examples
     --------
-    >>> [small(Estimate(x, 0.02), 0.1, "").verdict for x in (0.01, -0.2, 0.09)]
+    >>> [is_small(Estimate(x, 0.02), 0.1, "").verdict for x in (0.01, -0.2, 0.09)]
     ['confirmed', 'contradicted', 'undecided']
     """
     verdict = _sign(bound - abs(estimate.value), estimate.noise)
     return Finding(verdict, _sentence(what, estimate, unit))
 
 
-def near(estimate: Estimate, aim: float, bound: float, what: str, unit: str = "") -> Finding:
+def is_near(estimate: Estimate, target: float, bound: float, what: str, unit: str = "") -> Finding:
     """Test the claim that a number is close to another: their difference is within a bound."""
-    away = Estimate(estimate.value - aim, estimate.noise)
-    return Finding(small(away, bound, "").verdict, _sentence(what, estimate, unit))
+    difference = Estimate(estimate.value - target, estimate.noise)
+    return Finding(is_small(difference, bound, "").verdict, _sentence(what, estimate, unit))
 
 
 def all_of(findings: Sequence[Finding]) -> Finding:

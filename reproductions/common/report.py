@@ -8,7 +8,7 @@ from pathlib import Path
 
 from reproductions.common.claims_tables import claims_csv, claims_grid, rules_grid
 from reproductions.common.folder import ReproductionFolder
-from reproductions.common.hypothesis_tests import SIGMAS, Judged
+from reproductions.common.hypothesis_tests import SIGMAS, JudgedClaim
 from reproductions.common.reproduction import Reproduction, Work
 from reproductions.common.size import Settings, Size
 from snowshed import _core
@@ -20,13 +20,13 @@ PACKAGE, TEMPLATE = "reproductions.common", "reproduction.html.j2"
 
 
 def write_report(
-    declared: Reproduction[Work], size: Size[Settings], folder: Path, work: Work
-) -> list[Judged]:
+    reproduction: Reproduction[Work], size: Size[Settings], folder: Path, work: Work
+) -> list[JudgedClaim]:
     """Write the report and the table of the claims; return the claims with their findings.
 
     Parameters
     ----------
-    declared
+    reproduction
         The reproduction.
     size, folder
         The size, and the results folder.
@@ -34,10 +34,10 @@ def write_report(
         Its stages, computed or not.
     """
     states = {stage.name: stage.state() for stage in work.stages}
-    sections = [(section, section.content(work, states)) for section in declared.sections]
-    judged = [claim for _, content in sections for claim in content.claims]
+    sections = [(section, section.content(work, states)) for section in reproduction.sections]
+    judged_claims = [claim for _, content in sections for claim in content.claims]
     missing = dict.fromkeys(line for _, content in sections for line in content.missing)
-    write_text(ReproductionFolder(folder).claims, claims_csv(judged))
+    write_text(ReproductionFolder(folder).claims, claims_csv(judged_claims))
     facts = {
         "size": size.name,
         "version": _core.version,
@@ -46,16 +46,16 @@ def write_report(
         "stages": "; ".join(f"{name} {state.text()}" for name, state in states.items()),
     }
     page = template(PACKAGE, TEMPLATE).render(
-        publication=declared,
+        publication=reproduction,
         caution=size.caution,
         facts=facts,
         sigmas=SIGMAS,
-        counts=Counter(claim.finding.verdict for claim in judged),
-        claims=claims_grid(judged, declared.author),
-        rules=rules_grid(declared.claims),
+        counts=Counter(claim.finding.verdict for claim in judged_claims),
+        claims=claims_grid(judged_claims, reproduction.author),
+        rules=rules_grid(reproduction.claims),
         missing=list(missing),
         sections=sections,
-        of_section=lambda some: claims_grid(some, declared.author),
+        of_section=lambda some: claims_grid(some, reproduction.author),
     )
-    write_text(declared.report(folder), page)
-    return judged
+    write_text(reproduction.report(folder), page)
+    return judged_claims

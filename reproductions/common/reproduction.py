@@ -34,7 +34,7 @@ class Reproduction(Generic[Work]):
     Attributes
     ----------
     name, alias
-        The package and its command; a short name, after which the report is named too.
+        Name of the package and of its command; short name, which the report has, too.
     author
         Name of the publication in texts, such as "the paper".
     title, about, noise
@@ -43,7 +43,7 @@ class Reproduction(Generic[Work]):
     help, stage_help
         Help texts of the command and of its option ``--stage``.
     sizes
-        The first is the default.
+        The sizes; the first is the default.
     stages
         ``stages(folder, settings, **options)`` returns the computation. It writes nothing, and
         raises InputError if an option is wrong.

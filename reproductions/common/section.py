@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Generic, Literal, TypeVar
 
-from reproductions.common.hypothesis_tests import UNDECIDED, Finding, Judged
+from reproductions.common.hypothesis_tests import UNDECIDED, Finding, JudgedClaim
 from reproductions.common.stage import State
 from snowshed._core import InputError
 from snowshed.plot.html_page import HtmlTable, Picture
@@ -33,7 +33,7 @@ class Content:
     paragraphs: Sequence[str] = ()
     tables: Sequence[tuple[str, HtmlTable]] = ()
     pictures: Sequence[Picture] = ()
-    claims: Sequence[Judged] = ()
+    claims: Sequence[JudgedClaim] = ()
     missing: Sequence[str] = ()
 
 
@@ -50,9 +50,9 @@ class Section(Generic[Work]):
     stages
         Names of its stages.
     judged
-        When its claims are judged: on "any" part of the stages, when they have "ended" with or
-        without failures, or when everything is "done". Before that, claims stay open, because means
-        over part of a design compare different points.
+        Condition for judging its claims: "any": always; "ended": all work of its stages is done or
+        has failed; "done": all is done. Otherwise claims stay undecided, because means over part of
+        a design compare different points.
     """
 
     name: str
@@ -80,10 +80,10 @@ class Section(Generic[Work]):
             return Content(missing=[*lines, str(error)])
         for state in parts.values():
             if self.judged == "done" or (self.judged == "ended" and not state.finished):
-                content = _left_open(content, state)
+                content = _undecided_content(content, state)
         return replace(content, missing=[*content.missing, *lines])
 
 
-def _left_open(content: Content, state: State) -> Content:
+def _undecided_content(content: Content, state: State) -> Content:
     finding = Finding(UNDECIDED, f"the stage is not complete, {state.text()}")
     return replace(content, claims=[replace(claim, finding=finding) for claim in content.claims])

@@ -1,4 +1,4 @@
-"""Stages of the reproduction, and those that are studies."""
+"""Stages of a reproduction, and stages that compute studies."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ class Stage(Protocol):
         """Compute the rest."""
 
     def failure(self) -> str:
-        """Return a text on the failures; empty without one."""
+        """Return a text on the failures; empty if nothing failed."""
 
 
 class StudyStage:
@@ -100,12 +100,12 @@ class StudyStage:
 
     def state(self) -> State:
         """Return its progress."""
-        counts = Counter(run.status for run in self._stored())
+        counts = Counter(run.status for run in self._stored_runs())
         return State(counts["done"], counts["failed"], sum(counts.values()))
 
     def expected_s(self, jobs: Optional[int]) -> float:
         """Return the expected remaining time, s; measures the machine's speed."""
-        pending = [run.scene for run in self._stored() if run.status == "pending"]
+        pending = [run.scene for run in self._stored_runs() if run.status == "pending"]
         if not pending:
             return 0.0
         workers, at_once = Resources(jobs).workers(len(pending))
@@ -113,13 +113,13 @@ class StudyStage:
             threads = workers.threads(len(pending))
         finally:
             workers.close()
-        return cost_estimate.expected(
+        return cost_estimate.expected_time(
             pending, [cost_estimate.work(scene) for scene in pending], at_once, threads
         )
 
     def compute(self, jobs: Optional[int], report: StageReporter) -> None:
         """Compute the rest; raises StudyInterrupted after Ctrl-C."""
-        names = self._registered()
+        names = self._register_studies()
         for number, name in enumerate(names):
 
             def report_runs(progress: Progress, name: str = name, number: int = number) -> None:
@@ -129,17 +129,17 @@ class StudyStage:
             resume(self.runs, name, jobs=jobs, progress=report_runs)
 
     def failure(self) -> str:
-        """Return the number of failed simulations, and the place of their errors."""
+        """Return a text with the number of failed simulations; empty if none failed."""
         failed = self.state().failed
         return f"{failed} of {self.name}" if failed else ""
 
     def scenes(self, study: str) -> list[str]:
         """Return the complete scenes of a study, as JSON."""
-        self._registered()
+        self._register_studies()
         with Store.open(self.runs) as store:
             return [run.scene for run in store.runs(study)]
 
-    def _registered(self) -> list[str]:
+    def _register_studies(self) -> list[str]:
         """Enter the studies into the store, once; return their names."""
         if self._names is None:
             studies = self._make()
@@ -151,15 +151,15 @@ class StudyStage:
             self._names = [study.name for study in studies]
         return self._names
 
-    def _stored(self) -> list[StoredRun]:
-        names = self._registered()
+    def _stored_runs(self) -> list[StoredRun]:
+        names = self._register_studies()
         with Store.open(self.runs) as store:
             runs = {run.hash: run for name in names for run in store.runs(name)}
         return list(runs.values())
 
 
 def choose(stages: Sequence[Stage], names: Sequence[str]) -> list[Stage]:
-    """Return the stages with some names, in their order; without names, all.
+    """Return the stages with the given names, in their order; all stages if no name is given.
 
     Raises
     ------
@@ -190,7 +190,7 @@ def compute(
     Raises
     ------
     KeyboardInterrupt
-        After Ctrl-C (such as StudyInterrupted); what is done is kept.
+        After Ctrl-C (such as StudyInterrupted); finished work is kept.
     InputError, StudyError
         If a stage cannot be computed.
     """

@@ -19,7 +19,7 @@ import click
 
 from reproductions.common.claims_tables import VERDICTS, claims_csv, claims_grid, read_claims
 from reproductions.common.folder import ReproductionFolder
-from reproductions.common.hypothesis_tests import CONTRADICTED, Judged
+from reproductions.common.hypothesis_tests import CONTRADICTED, JudgedClaim
 from reproductions.common.markdown import markdown_table
 from reproductions.frischholz2023.claims.causes import CAUSES
 from snowshed._core import InputError
@@ -32,7 +32,7 @@ DOCS = Path(__file__).parents[2] / "docs" / "trust"
 PAGE, REPORT = DOCS / "thesis-claims.md", DOCS / "reports" / "thesis-middle.html"
 REPORT_FILE = "thesis.html"  # of `--middle`
 CLAIMS_FILE, COMPUTED_FILE = "claims.csv", "claims-computed.json"
-#: Condition on runs; a store may also hold runs of earlier sizes.
+#: SQL condition for runs of a study; a store may also hold runs of earlier sizes.
 OF_A_STUDY = "hash IN (SELECT hash FROM study_run)"
 
 
@@ -62,18 +62,18 @@ def page(data: Path = DATA) -> str:
         "`python -m reproductions.frischholz2023.claims_page` writes this page from the results "
         "in `reproductions/frischholz2023/data`. Do not edit it by hand.",
         "## Contradicted claims, and their likely causes",
-        "\n".join(_contradiction(claim) for claim in _contradicted(claims)),
+        "\n".join(_contradiction(claim) for claim in _contradicted_claims(claims)),
         "## All claims",
         markdown_table(claims_grid(claims, "the thesis")),
     ]
     return "\n\n".join(parts) + "\n"
 
 
-def _contradicted(claims: Sequence[Judged]) -> list[Judged]:
+def _contradicted_claims(claims: Sequence[JudgedClaim]) -> list[JudgedClaim]:
     return [claim for claim in claims if claim.finding.verdict == CONTRADICTED]
 
 
-def _contradiction(claim: Judged) -> str:
+def _contradiction(claim: JudgedClaim) -> str:
     if claim.text not in CAUSES:
         raise InputError(f"claims/causes.py: no cause for {claim.text!r}")
     return f"- **{claim.text}** ({claim.source}) {CAUSES[claim.text]}"

@@ -23,18 +23,18 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-GROWN = {
+GROWTH_LABELS = {
     "head": "head, m from the panel's centre",
     "tail": "tail, m from the panel's centre",
     "length": "length, m",
     "height": "height, m",
 }
-VARIED = {
+INPUT_LABELS = {
     "panel_length": "panel length, m",
     "panel_height": "panel height, m",
     "panel_tilt": "panel tilt, °",
 }
-TARGETS = {"ratio": "H/L", "height": "stack height, m", "length": "stack length, m"}
+TARGET_LABELS = {"ratio": "H/L", "height": "stack height, m", "length": "stack length, m"}
 
 
 def growth_figure(rows: pd.DataFrame) -> Figure:
@@ -51,7 +51,9 @@ def growth_figure(rows: pd.DataFrame) -> Figure:
     with matplotlib.rc_context(STYLE):
         figure = blank_figure(8.4, 6.4)
         headline(figure, "The laboratory's stacks, simulated")
-        for axes, (column, label) in zip(figure.subplots(2, 2, sharex=True).flat, GROWN.items()):
+        for axes, (column, label) in zip(
+            figure.subplots(2, 2, sharex=True).flat, GROWTH_LABELS.items()
+        ):
             for group, runs in rows.groupby(keys):
                 at = runs.groupby("event")[column].agg(["mean", "std"])
                 axes.errorbar(
@@ -100,9 +102,9 @@ def geometry_figure(table: pd.DataFrame) -> Figure:
             f"Stacks while one input of the panel varies; the others: {_size_text(reference)}",
         )
         grid = figure.subplots(3, 3, sharex="row", squeeze=False)
-        for row, (varied, label) in zip(grid, VARIED.items()):
-            rows = _at(table, {name: reference[name] for name in VARIED if name != varied})
-            for axes, (target, name) in zip(row, TARGETS.items()):
+        for row, (varied, label) in zip(grid, INPUT_LABELS.items()):
+            rows = _at(table, {name: reference[name] for name in INPUT_LABELS if name != varied})
+            for axes, (target, name) in zip(row, TARGET_LABELS.items()):
                 _draw(axes, rows, varied, target, events, shades)
                 axes.set(xlabel=label, ylabel=name, ylim=(0, 1.08 * rows[target].max()))
         keys = [
@@ -124,14 +126,14 @@ def _draw(
 def _reference(table: pd.DataFrame) -> dict[str, float]:
     wanted = {"panel_length": 2.0, "panel_height": 2.0, "panel_tilt": 40.0}
     panels = table[list(wanted)].drop_duplicates()
-    aim = np.array(list(wanted.values()))
-    away = ((panels.to_numpy(float) / aim - 1) ** 2).sum(axis=1)
-    nearest = panels.iloc[int(np.argmin(away))]
+    target = np.array(list(wanted.values()))
+    distances = ((panels.to_numpy(float) / target - 1) ** 2).sum(axis=1)
+    nearest = panels.iloc[int(np.argmin(distances))]
     return {name: float(nearest[name]) for name in wanted}
 
 
 def _size_text(reference: dict[str, float]) -> str:
-    length, height, tilt = (reference[name] for name in VARIED)
+    length, height, tilt = (reference[name] for name in INPUT_LABELS)
     return f"length {length:g} m, height {height:g} m, tilt {tilt:g}°"
 
 

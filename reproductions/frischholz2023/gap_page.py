@@ -24,7 +24,7 @@ from reproductions.frischholz2023.sections import deviations as deviations_secti
 from reproductions.frischholz2023.sections.regression import (
     errors_grid,
     quartiles_grid,
-    read_regressed,
+    read_results,
     rows_grid,
     rows_label,
 )
@@ -114,7 +114,7 @@ def _causes_part(stacks: pd.DataFrame, errors: pd.DataFrame) -> list[str]:
         *_variations_part(stacks),
         "### Quartiles of H/L with each deviation undone",
         markdown_table(deviations_section.quartiles_grid(stacks)),
-        *_left_over(stacks),
+        *_remaining_gaps(stacks),
         "### Regressions with each deviation undone",
         f"The table has regressions of H/L (ε-SVR) for {errors['rows'].max():.0f} rows of each "
         "variant, by "
@@ -150,7 +150,7 @@ def _cause(stacks: pd.DataFrame, name: str) -> str:
     return f"**`{name}`**: {size}. {texts}"
 
 
-def _left_over(stacks: pd.DataFrame) -> list[str]:
+def _remaining_gaps(stacks: pd.DataFrame) -> list[str]:
     """Return the differences that remain between Table 5.3.1 and the preset ``thesis``."""
     of_all = stacks[stacks["variant"] == THESIS]
     if of_all.empty:
@@ -168,11 +168,11 @@ def _gaps(ours: list[float]) -> str:
     return ", ".join(f"{100 * part:+.0f}" for part in parts) + " %"
 
 
-def regressed_rows() -> dict[str, StackRows]:
+def rows_of_regressions() -> dict[str, StackRows]:
     """Return the rows of the regressions in ``data``, by the name of their folder.
 
     For each trimming rule of the data set these are the rows of one seed, and the means if a row
-    has several.
+    has several seeds.
     """
     rows_by_name = {}
     for name in TRIMMINGS:
@@ -187,9 +187,9 @@ def regressed_rows() -> dict[str, StackRows]:
 
 
 def _regression_part(data: Path) -> list[str]:
-    parts = regressed_rows()
+    parts = rows_of_regressions()
     regressions: Mapping[str, RegressionResults] = {
-        f"{rows.settings['trimming']}, {rows_label(rows)}": read_regressed(
+        f"{rows.settings['trimming']}, {rows_label(rows)}": read_results(
             data / folder, len(rows), rows.panel_count
         )
         for folder, rows in parts.items()
@@ -231,7 +231,7 @@ def _predicted_quartiles(regressed: RegressionResults) -> list[float]:
 
 
 def _share(regressed: RegressionResults) -> float:
-    """Return the RBF kernel's error over its median prediction."""
+    """Return the RBF kernel's error relative to its median prediction."""
     return (
         float(regressed.errors["mean_absolute_error"]["rbf"]) / _predicted_quartiles(regressed)[1]
     )
@@ -243,7 +243,7 @@ def keep(
     seeds: Optional[Path],
     regressions: Optional[Path],
 ) -> None:
-    """Copy new results into the folder of the page's data; None: the old ones stay.
+    """Copy new results into the folder of the page's data; None keeps the old ones.
 
     Raises
     ------
@@ -257,7 +257,7 @@ def keep(
     if seeds is not None:
         write_csv(read_scatter(seeds), data / SCATTER_FILE, float_format="%.5g")
     if regressions is not None:
-        for name in regressed_rows():
+        for name in rows_of_regressions():
             for file in COPIED_FILES:
                 (data / name / file).parent.mkdir(parents=True, exist_ok=True)
                 shutil.copyfile(regressions / name / file, data / name / file)
@@ -269,7 +269,7 @@ def keep(
 @click.option(
     "--regressions",
     type=click.Path(path_type=Path),
-    help="New regressions: a folder of those that `regressed_rows` names.",
+    help="Folder of new regressions, as `rows_of_regressions` names them.",
 )
 def main(deviations: Optional[Path], seeds: Optional[Path], regressions: Optional[Path]) -> None:
     """Write docs/trust/thesis-gap.md from the folder data, after taking new results into it."""

@@ -21,9 +21,9 @@ class Printed:
     text
         The values as the thesis prints them, or "not printed".
     name
-        Displayed name, where that differs from its `label`.
+        Displayed name, if it differs from the `label`.
     zero
-        Text in place of zero, if zero has a special meaning.
+        Text instead of zero, if zero has a special meaning.
     """
 
     path: str

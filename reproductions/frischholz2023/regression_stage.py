@@ -19,7 +19,7 @@ from snowshed.base.progress import Progress, Reporter
 KINDS = ("linear", "rbf")
 TARGET = "ratio"
 NAME = "regression"
-#: For the estimate of costs: rows for which the cost of a fold is known, and its inner folds.
+#: Numbers of rows and of inner folds for which the cost of a fold is known.
 KNOWN_ROWS, KNOWN_INNER = 610, 5
 
 
@@ -53,7 +53,7 @@ class GeometryRows:
         Raises
         ------
         InputError
-            If the table is wrong, or not all panels are simulated.
+            If the table is invalid, or not all panels are simulated.
         """
         if self.table is not None:
             return read_rows(self.table)
@@ -88,7 +88,7 @@ class Part:
 
     @property
     def done(self) -> int:
-        """Number of computed folds; all only when the tables are written."""
+        """Number of computed folds; less than `count` until the tables are written."""
         done = len(list(self.folder.glob("folds/*/*/*.npz")))
         written = (self.folder / TARGET / "errors.csv").is_file()
         return done if written else min(done, self.count - 1)
@@ -97,7 +97,7 @@ class Part:
 class RegressionStage:
     """Nested cross-validation of the linear and the RBF kernel.
 
-    Where a row is the mean of several seeds, the rows of a single seed are regressed as well: the
+    If a row is the mean of several seeds, the rows of a single seed are regressed as well: the
     thesis has one stack for each row, and means scatter less.
     """
 
@@ -114,7 +114,7 @@ class RegressionStage:
         Raises
         ------
         InputError
-            If the rows are not there.
+            If the rows are missing.
         """
         rows, scheme = self._rows.read(), self._settings.folds
         if rows.most_seeds == 1:
@@ -151,7 +151,7 @@ class RegressionStage:
         Raises
         ------
         InputError
-            If the rows are not there.
+            If the rows are missing.
         """
         from snowshed.analysis.regression.pipeline import regress
 
@@ -172,7 +172,7 @@ class RegressionStage:
             )
 
     def failure(self) -> str:
-        """Return nothing: a fold that fails ends the command."""
+        """Return an empty text, because a fold that fails ends the command."""
         return ""
 
     def _part(self, rows: StackRows, scheme: CrossValidation) -> Part:

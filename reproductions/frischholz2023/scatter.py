@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from reproductions.frischholz2023.studies import PANEL
-from reproductions.frischholz2023.variants import MEASURED, SETTINGS, measured_as
+from reproductions.frischholz2023.variants import MEASURE_COLUMNS, SETTINGS, measured_as
 from snowshed._core import InputError
 from snowshed.io.csv_table import read_csv
 
 if TYPE_CHECKING:
     import pandas as pd
 
-COLUMNS = (*PANEL, "event", "seed", *SETTINGS, *MEASURED)
+COLUMNS = (*PANEL, "event", "seed", *SETTINGS, *MEASURE_COLUMNS)
 
 
 def read_scatter(file: Path) -> pd.DataFrame:
-    """Return stacks of several seeds below the same panels; raises InputError if they are not."""
+    """Return stacks of several seeds below the same panels; raises InputError if none are."""
     table = read_csv(file)
     missing = set(COLUMNS) - set(table)
     if missing:
@@ -30,7 +30,7 @@ def read_scatter(file: Path) -> pd.DataFrame:
 
 
 def scatter(stacks: pd.DataFrame, trimming: str, quantity: str) -> float:
-    """Return the deviation between seedings as a part of the mean.
+    """Return the deviation between seedings, relative to the mean.
 
     Parameters
     ----------

@@ -16,7 +16,7 @@ import click
 
 from reproductions.common.claims_tables import VERDICTS, claims_csv, read_claims
 from reproductions.common.folder import ReproductionFolder
-from reproductions.common.hypothesis_tests import Judged
+from reproductions.common.hypothesis_tests import JudgedClaim
 from reproductions.common.markdown import markdown_table
 from reproductions.frischholz2023.claims.scheme_reasons import REASONS
 from reproductions.frischholz2023.claims_page import DATA, DOCS
@@ -67,7 +67,7 @@ def page(data: Path = DATA) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def _reason(claim: Judged) -> str:
+def _reason(claim: JudgedClaim) -> str:
     if claim.text not in REASONS:
         raise InputError(f"claims/scheme_reasons.py: no reason for {claim.text!r}")
     return f"- **{claim.text}** ({claim.source}) {REASONS[claim.text]}"
@@ -85,7 +85,7 @@ def _file(data: Path, scheme: str) -> Path:
     return data / f"claims-planar-{scheme}.csv"
 
 
-def _pairs(data: Path) -> list[tuple[Judged, Judged]]:
+def _pairs(data: Path) -> list[tuple[JudgedClaim, JudgedClaim]]:
     tables = [read_claims(_file(data, scheme)) for scheme in (THESIS, OBJECTIVE)]
     listed = [[(claim.source, claim.text) for claim in table] for table in tables]
     if listed[0] != listed[1]:
@@ -93,7 +93,7 @@ def _pairs(data: Path) -> list[tuple[Judged, Judged]]:
     return list(zip(*tables))
 
 
-def _counts_grid(pairs: Sequence[tuple[Judged, Judged]]) -> HtmlTable:
+def _counts_grid(pairs: Sequence[tuple[JudgedClaim, JudgedClaim]]) -> HtmlTable:
     counts = [Counter(judged.finding.verdict for judged in claims) for claims in zip(*pairs)]
     rows = [
         [f"`{scheme}`", *(str(count[verdict]) for verdict in VERDICTS)]
@@ -102,7 +102,7 @@ def _counts_grid(pairs: Sequence[tuple[Judged, Judged]]) -> HtmlTable:
     return HtmlTable(["scheme", *VERDICTS], rows, "lrrr")
 
 
-def _findings_grid(pairs: Sequence[tuple[Judged, Judged]]) -> HtmlTable:
+def _findings_grid(pairs: Sequence[tuple[JudgedClaim, JudgedClaim]]) -> HtmlTable:
     rows = [
         [claims[0].source, claims[0].text]
         + [f"{claim.finding.verdict}: {claim.finding.sentence}" for claim in claims]

@@ -10,7 +10,7 @@ from snowshed.analysis.regression.folds import CrossValidation
 from snowshed.methods.mpm.settings import Scheme
 from snowshed.scene.components import Condition
 
-#: Friction of the panel where a single value is used: the smallest static one in the thesis.
+#: Friction of the panel if a single value is used: the smallest static coefficient in the thesis.
 MEASURED_FRICTION = 0.6
 
 
@@ -32,7 +32,7 @@ class Settings:
     grid_events
         Events of the calibration.
     slopes, pressures, cohesions
-        Triplets of the calibration: M, p0 (Pa), beta.
+        Values of M, p0 (Pa) and beta in the triplets of the calibration.
     steps
         Steps of the posterior's Markov chains.
     simulates_panels
@@ -41,13 +41,13 @@ class Settings:
     deviation_dx
         Sizes of the grid cells (m) in the runs that undo deviations one by one: ours, and one that
         stands for the thesis's. Their ratio is that of 1.5 cm to 1 cm.
-    deviation_panels, deviation_longest, deviation_seeds
+    deviation_panels, deviation_max_length, deviation_seeds
         Every n-th panel of the data set is simulated, up to a length, m, with a number of seeds. (n
         has no factor in common with the numbers of lengths; otherwise lengths would repeat.)
     folds
         Folds of the nested cross-validation.
     one_seed_rounds
-        Rounds of the folds for the rows of one seed, where there are several.
+        Rounds of the folds for the rows of one seed, if rows are means over several seeds.
     condition
         Contact condition of the panel: "separate" (our default) or "slip" (the thesis's).
     scheme
@@ -70,7 +70,7 @@ class Settings:
     simulates_panels: bool
     deviation_dx: tuple[float, float]
     deviation_panels: int
-    deviation_longest: float
+    deviation_max_length: float
     deviation_seeds: int
     folds: CrossValidation
     one_seed_rounds: int
@@ -96,7 +96,7 @@ FULL = Settings(
     simulates_panels=True,
     deviation_dx=(0.015, 0.01),
     deviation_panels=4,
-    deviation_longest=10.0,
+    deviation_max_length=10.0,
     deviation_seeds=2,
     folds=CrossValidation(),
     one_seed_rounds=10,
@@ -113,7 +113,7 @@ MIDDLE = replace(
     grid_seeds=1,
     simulates_panels=False,
     deviation_panels=7,
-    deviation_longest=2.0,
+    deviation_max_length=2.0,
     deviation_seeds=1,
     folds=CrossValidation(rounds=3),
     one_seed_rounds=3,
@@ -137,7 +137,7 @@ QUICK = Settings(
     simulates_panels=False,
     deviation_dx=(0.03, 0.02),
     deviation_panels=7,
-    deviation_longest=1.0,
+    deviation_max_length=1.0,
     deviation_seeds=1,
     folds=CrossValidation(rounds=2, folds=5, inner_folds=3),
     one_seed_rounds=1,

@@ -17,7 +17,7 @@ from snowshed.analysis.regression.rows import read_rows
 from snowshed.methods.mpm.settings import Scheme
 from snowshed.scene.components import Condition
 
-#: Stages that vary the scheme of the thesis.
+#: Stages that are computed only with the scheme of the thesis.
 THESIS_SCHEME_STAGES = ("deviations", "variations")
 #: Stages of panels. Their particles are stored, so that stacks can be measured again.
 PARTICLE_STAGES = ("deviations", "variations", "geometry")
@@ -77,7 +77,7 @@ def stages(
     condition: Condition,
     scheme: Scheme,
 ) -> ThesisComputation:
-    """Return the stages, with a condition of the panel and a scheme.
+    """Return the computation with a contact condition of the panel and a scheme.
 
     Raises
     ------

@@ -90,7 +90,7 @@ def fixation(settings: Settings) -> list[Study]:
 
 
 def calibration(settings: Settings) -> list[Study]:
-    """Return the grid of chapter 4, and the runs that stand for its measurements.
+    """Return the grid of chapter 4, and the runs that replace its measurements.
 
     Examples
     --------
@@ -99,7 +99,7 @@ def calibration(settings: Settings) -> list[Study]:
     [[24, 2], [192, 2]]
     """
     last = [Measurement(tilt, settings.grid_events, 1, "height", 1.0, 1.0) for tilt in LAB_TILTS]
-    scene = _resized(calibration_study(last, seeds=1), settings)
+    scene = _scene_with_size(calibration_study(last, seeds=1), settings)
     axes = {
         "panel.tilt": list(LAB_TILTS),
         SLOPE: list(settings.slopes),
@@ -109,13 +109,13 @@ def calibration(settings: Settings) -> list[Study]:
     seeds = list(range(1, settings.grid_seeds + 1))
     grid = Study.product(scene, axes, name=GRID, seeds=seeds)
     snow = {"snow": Snow.preset("calibrated").to_data()}
-    known = _resized(calibration_study(last, seeds=1), settings).update(snow)
+    true_scene = _scene_with_size(calibration_study(last, seeds=1), settings).update(snow)
     tilts = {"panel.tilt": list(LAB_TILTS)}
-    return [grid, Study.product(known, tilts, name=TRUTH, seeds=[TRUTH_SEED])]
+    return [grid, Study.product(true_scene, tilts, name=TRUTH, seeds=[TRUTH_SEED])]
 
 
 def geometry(settings: Settings) -> list[Study]:
-    """Return the panels of chapter 5, and those that Table 5.1.1 has besides the data set."""
+    """Return the panels of chapter 5, and the panels of Table 5.1.1 that the data set lacks."""
     panels = geometry_study(MODEL_BETWEEN)
     scene = _with_choices(panels.scene, settings)
     panels = Study(scene, panels.parts, PANELS, panels.seeds)
@@ -130,9 +130,9 @@ def geometry(settings: Settings) -> list[Study]:
 
 
 def deviations(settings: Settings) -> list[Study]:
-    """Return a sample of the panels: with our settings, with each deviation undone, and with all.
+    """Return a sample of the panels: with our settings, with each deviation undone, and all undone.
 
-    A deviation in the measuring needs no additional runs.
+    A deviation that changes only the measuring needs no additional runs.
 
     Examples
     --------
@@ -148,7 +148,7 @@ def deviations(settings: Settings) -> list[Study]:
 
 
 def variations(settings: Settings) -> list[Study]:
-    """Return the sample of panels of `deviations` with settings of ours varied one by one.
+    """Return the sample of panels of `deviations`, with our settings varied one by one.
 
     Examples
     --------
@@ -166,7 +166,7 @@ def variations(settings: Settings) -> list[Study]:
 
 
 def study_of(variant: str) -> str:
-    """Return the name of the study whose runs are those of a variant or a variation."""
+    """Return the name of the study that has the runs of a variant or a variation."""
     if variant in VARIATIONS:
         return f"variations-{variant}"
     measured_only = variant in DEVIATIONS and not DEVIATIONS[variant].simulated
@@ -174,12 +174,12 @@ def study_of(variant: str) -> str:
 
 
 def sampled_panels(settings: Settings) -> dict[str, list[Any]]:
-    """Return the panels for the deviations: every n-th of the data set, in its order.
+    """Return the panels for the deviations: every n-th panel of the data set, after sorting.
 
-    The choice depends on their geometry alone.
+    The choice depends on the geometry of the panels alone.
     """
     panels = sorted(panel for grid in GRIDS for panel in product(*grid))
-    few = [panel for panel in panels if panel[2] <= settings.deviation_longest]
+    few = [panel for panel in panels if panel[2] <= settings.deviation_max_length]
     chosen = few[min(settings.deviation_panels, len(few)) // 2 :: settings.deviation_panels]
     return {path: list(values) for path, values in zip(PANEL, zip(*chosen))}
 
@@ -202,10 +202,10 @@ def _lab_scene(settings: Settings, dimension: int) -> Scene:
 
 def _sensitivity(method: str, name: str, settings: Settings, seeds: int) -> Study:
     study = sensitivity_study(method, seeds=seeds)
-    return Study(_resized(study, settings), study.parts, name, study.seeds)
+    return Study(_scene_with_size(study, settings), study.parts, name, study.seeds)
 
 
-def _resized(study: Study, settings: Settings) -> Scene:
+def _scene_with_size(study: Study, settings: Settings) -> Scene:
     numerics = {"dimension": settings.dimension, "numerics.dx": settings.dx}
     scene = study.scene.update({**numerics, "panel.friction": MEASURED_FRICTION})
     return _with_choices(scene, settings)

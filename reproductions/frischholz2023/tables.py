@@ -1,4 +1,4 @@
-"""A section of the report, and tables that several sections share."""
+"""Tables, texts and numbers that several sections of the report share."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 #: Resolution of the figures that stages save, see `snowshed.plot.figure_style.save_figure`.
 SAVED_DPI = 160
-#: For sections whose panel has one friction.
+#: Text of sections whose panel has a single friction.
 PANEL_FRICTION = (
     f"The thesis does not print the panel's friction; here it is {MEASURED_FRICTION}, the least "
     "static coefficient that it measured."
@@ -76,7 +76,7 @@ def widenings(table: pd.DataFrame, noise: pd.DataFrame) -> Floats:
 
 
 def grouped(table: pd.DataFrame, *keys: str) -> Iterator[tuple[tuple[Any, ...], pd.DataFrame]]:
-    """Yield the rows that share some columns, with their values there, in the table's order."""
+    """Yield the values of some columns, and the rows that have them, in the table's order."""
     for values, rows in table.groupby(list(keys), sort=False):
         yield tuple(values) if isinstance(values, tuple) else (values,), rows
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Optional
 import click
 
 from reproductions.frischholz2023.regression_stage import KINDS, TARGET
-from reproductions.frischholz2023.sections.regression import ERRORS, read_regressed
+from reproductions.frischholz2023.sections.regression import ERRORS, read_results
 from reproductions.frischholz2023.studies import PANEL
 from reproductions.frischholz2023.variants import (
     measured_as,
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 FILE = Path(__file__).with_name("data") / "deviation-errors.csv"
-#: The columns of a regression's inputs, in its order.
+#: Columns of the inputs, in the order of the regression.
 INPUTS = ("event", "panel.height", "panel.length", "panel.tilt")
 COLUMNS = ("variant", "trimming", "model", "rows", *QUARTILES, *ERRORS)
 #: A sample has a tenth of the rows of the data set, so its folds are fewer.
@@ -57,7 +57,7 @@ def variant_errors(
     Returns
     -------
     pandas.DataFrame
-        ``variant``, ``trimming``, ``model``; how many ``rows``; the quartiles of the predictions
+        ``variant``, ``trimming``, ``model``; number of ``rows``; the quartiles of the predictions
         (``Q1`` to ``Q4``), ``mean_absolute_error`` and ``standard_deviation`` as in Tables 5.3.1
         and 5.3.2, and ``held_out_error``, on rows that were not trained on.
     """
@@ -82,7 +82,7 @@ def _stack_errors(
         regress(
             rows, folder, targets=[TARGET], models=KINDS, scheme=scheme, jobs=jobs, figures=False
         )
-        regressed = read_regressed(
+        regressed = read_results(
             Path(folder), len(rows), len(stacks[list(PANEL)].drop_duplicates())
         )
     table = regressed.quartiles.loc[list(KINDS), list(QUARTILES)]
@@ -90,7 +90,7 @@ def _stack_errors(
 
 
 def read_variant_errors(file: Path = FILE) -> pd.DataFrame:
-    """Return the table from a file; raises InputError if it is not one."""
+    """Return the table from a file; raises InputError if columns are missing."""
     table = read_csv(file)
     missing = set(COLUMNS) - set(table)
     if missing:

@@ -1,4 +1,4 @@
-"""Stacks with each deviation from the thesis undone, or a setting varied, and the changes."""
+"""Stacks with each deviation from the thesis undone or a setting varied, and their changes."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from snowshed.study.table import read_table
 if TYPE_CHECKING:
     import pandas as pd
 
-#: Table 5.3.1's: three quartiles and the largest.
+#: Quantiles of Table 5.3.1: three quartiles and the maximum.
 QUANTILES = (0.25, 0.5, 0.75, 1.0)
-ROW = (*PANEL, "event", "seed")
-MEASURED = tuple(
+ROW_KEYS = (*PANEL, "event", "seed")
+MEASURE_COLUMNS = tuple(
     MEASURES[name].column(quantity) for name in TRIMMINGS for quantity in ("height", "length")
 )
 SETTINGS = ("dx",)
@@ -38,7 +38,7 @@ def read_variants(store: Path) -> pd.DataFrame:
     -------
     pandas.DataFrame
         ``variant``, the panel, ``event``, ``seed``, ``dx``, the measures by both trimming rules,
-        and ``same_runs``: whether all its runs are those of the defaults.
+        and ``same_runs``: whether all runs of the variant are those of the defaults.
     """
     import pandas as pd
 
@@ -51,9 +51,9 @@ def read_variants(store: Path) -> pd.DataFrame:
         }
     tables = []
     for name, runs in hashes.items():
-        table = read_table(store, study_of(name)).dropna(subset=list(MEASURED))
+        table = read_table(store, study_of(name)).dropna(subset=list(MEASURE_COLUMNS))
         same = runs == hashes.get(DEFAULTS)
-        columns = [*ROW, *SETTINGS, *MEASURED]
+        columns = [*ROW_KEYS, *SETTINGS, *MEASURE_COLUMNS]
         tables.append(table[columns].assign(variant=name, same_runs=same))
     if not tables or tables[0].empty:
         raise InputError("no panel of the sample is computed yet")
@@ -62,9 +62,9 @@ def read_variants(store: Path) -> pd.DataFrame:
 
 
 def read_variants_file(file: Path) -> pd.DataFrame:
-    """Return the stacks of all variants from a file; raises InputError if it is not one."""
+    """Return the stacks of all variants from a file; raises InputError if columns are missing."""
     table = read_csv(file)
-    missing = {"variant", "same_runs", *ROW, *SETTINGS, *MEASURED} - set(table)
+    missing = {"variant", "same_runs", *ROW_KEYS, *SETTINGS, *MEASURE_COLUMNS} - set(table)
     if missing:
         raise InputError(f"{file}: no column {', '.join(sorted(missing))}")
     return table
@@ -84,7 +84,7 @@ def measured_as(stacks: pd.DataFrame, trimming: str, quantity: str) -> pd.Series
 
 
 def quartiles(stacks: pd.DataFrame, trimming: str) -> list[float]:
-    """Return the quartiles of H/L, the last one the largest, by a trimming rule of A.4.2."""
+    """Return the quartiles of H/L by a trimming rule of A.4.2; the last one is the maximum."""
     return [float(quartile) for quartile in np.quantile(ratios(stacks, trimming), QUANTILES)]
 
 
@@ -106,8 +106,8 @@ def change(
     """Return the relative change of a stack by a deviation.
 
     Each stack is compared with that of the defaults below the same panel after the same event with
-    the same seed. The change is the mean over panels of the logarithm of their ratio; its noise is
-    the standard error over panels, which are independent, widened where they are few.
+    the same seed. The change is the geometric mean of their ratios over panels, minus 1. Its noise
+    is the standard error over panels, which are independent, widened if panels are few.
 
     Parameters
     ----------
@@ -138,14 +138,14 @@ def change(
 
 
 def _rows(stacks: pd.DataFrame, variant: str) -> pd.DataFrame:
-    return stacks[stacks["variant"] == variant].set_index(list(ROW))
+    return stacks[stacks["variant"] == variant].set_index(list(ROW_KEYS))
 
 
 def by_size(stacks: pd.DataFrame) -> list[str]:
-    """Return the deviations that were computed, the one that changes H/L most first."""
-    there = [name for name in DEVIATIONS if name in set(stacks["variant"])]
-    sizes = {name: abs(change(stacks, name, "ratio").value) for name in there}
-    return sorted(there, key=lambda name: (is_unswitched(stacks, name), -sizes[name]))
+    """Return the computed deviations by their change of H/L, the largest first."""
+    present_names = [name for name in DEVIATIONS if name in set(stacks["variant"])]
+    sizes = {name: abs(change(stacks, name, "ratio").value) for name in present_names}
+    return sorted(present_names, key=lambda name: (is_unswitched(stacks, name), -sizes[name]))
 
 
 def is_unswitched(stacks: pd.DataFrame, name: str) -> bool:

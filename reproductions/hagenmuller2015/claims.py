@@ -21,10 +21,10 @@ from reproductions.common.hypothesis_tests import (
     Estimate,
     Finding,
     all_of,
-    near,
+    is_near,
+    is_small,
     negative,
     positive,
-    small,
     widening,
 )
 from reproductions.hagenmuller2015.printed import YADE
@@ -53,7 +53,8 @@ HALF_EDGE = "volume / 8"
 MAX_LOG_SIMILAR, MIN_LOG_DISTINCT = math.log(1.3), math.log(2.0)
 #: Log ratio above which two of Yade's numbers differ by more than a sample's scatter.
 MIN_LOG_CLEAR = math.log(1.5)
-#: Largest remaining part of a reversible strain, relative to the peak strain; least R2 of a line.
+#: Largest remaining part of a reversible strain, relative to the peak strain; smallest R2 of a
+#: linear curve.
 MAX_REMAINING_STRAIN, MIN_LINEARITY = 0.05, 0.95
 
 
@@ -80,7 +81,7 @@ class LoadingTests:
         return _estimate(LogMean.of(self.of(variant)[stress].astype(float).tolist()))
 
     def change(self, variant: str, stress: str, base: str = BASE) -> Estimate:
-        """Return the logarithm of a stress over that of another variant, sample by sample."""
+        """Return the mean log ratio of a stress to that of another variant, sample by sample."""
         table = self._with(variant, base)
         return _estimate(LogMean.of(paired_ratios(table, variant, stress, base).tolist()))
 
@@ -114,14 +115,17 @@ def is_reversible(tests: LoadingTests) -> Finding:
     """Test whether loading and unloading in the elastic phase leaves no trace."""
     rows = tests.of(ELASTIC)
     broken = (rows["broken_in_tension"] + rows["broken_in_shear"]).astype(float)
-    peak, rest = rows["elastic_limit_strain"].astype(float), rows["axial_strain"].astype(float)
+    peak, remaining = rows["elastic_limit_strain"].astype(float), rows["axial_strain"].astype(float)
     linear = rows["linearity"].astype(float)
-    good = (broken == 0) & (rest.abs() <= MAX_REMAINING_STRAIN * peak) & (linear >= MIN_LINEARITY)
-    verdict = CONFIRMED if good.all() else CONTRADICTED if not good.any() else UNDECIDED
+    is_good = (
+        (broken == 0) & (remaining.abs() <= MAX_REMAINING_STRAIN * peak) & (linear >= MIN_LINEARITY)
+    )
+    verdict = CONFIRMED if is_good.all() else CONTRADICTED if not is_good.any() else UNDECIDED
     return Finding(
         verdict,
-        f"{int(good.sum())} of {len(rows)} samples: at most {int(broken.max())} bonds broken, "
-        f"{percent((rest.abs() / peak).max(), 2)} of the strain left, R2 from {linear.min():.3f}",
+        f"{int(is_good.sum())} of {len(rows)} samples: at most {int(broken.max())} bonds broken, "
+        f"{percent((remaining.abs() / peak).max(), 2)} of the strain left, "
+        f"R2 from {linear.min():.3f}",
     )
 
 
@@ -129,7 +133,7 @@ def softens(tests: LoadingTests) -> Finding:
     """Test whether the stress falls after its peak."""
     rows = tests.of(BASE)
     drop = _estimate(LogMean.of((rows[EARLY].astype(float) / rows[PEAK].astype(float)).tolist()))
-    return _factors(negative(drop, ""), drop, "mean from 5 to 10 % over the peak below 5 %")
+    return _with_factor(negative(drop, ""), drop, "mean from 5 to 10 % over the peak below 5 %")
 
 
 def hardens(tests: LoadingTests) -> Finding:
@@ -137,7 +141,7 @@ def hardens(tests: LoadingTests) -> Finding:
     rows = tests.of(BASE)
     growth = (rows[DENSE].astype(float) / rows[MIDDLE].astype(float)).tolist()
     rise = _estimate(LogMean.of(growth))
-    finding = _factors(
+    finding = _with_factor(
         positive(rise - Estimate(MIN_LOG_DISTINCT, 0.0), ""), rise, "25 to 30 % over 10 to 15 %"
     )
     onset = rows["hardening_onset_strain"].astype(float)
@@ -152,16 +156,16 @@ def rises(variant: str, base: str, stresses: Sequence[str], tests: LoadingTests)
     changes = [tests.change(variant, stress, base) for stress in stresses]
     return all_of(
         [
-            _factors(positive(change, ""), change, STRESSES[name])
+            _with_factor(positive(change, ""), change, STRESSES[name])
             for change, name in zip(changes, stresses)
         ]
     )
 
 
 def falls(variant: str, stress: str, tests: LoadingTests, *, by: float = 0.0) -> Finding:
-    """Test whether a stress is less than the base's, by a logarithm."""
+    """Test whether the logarithm of a stress is below the base's by more than `by`."""
     change = tests.change(variant, stress)
-    return _factors(negative(change - Estimate(-by, 0.0), ""), change, STRESSES[stress])
+    return _with_factor(negative(change - Estimate(-by, 0.0), ""), change, STRESSES[stress])
 
 
 def hardly_differs(
@@ -172,7 +176,9 @@ def hardly_differs(
     for variant in variants:
         change = tests.change(variant, stress, base)
         findings.append(
-            _factors(small(change, MAX_LOG_SIMILAR, ""), change, f"{variant}, {STRESSES[stress]}")
+            _with_factor(
+                is_small(change, MAX_LOG_SIMILAR, ""), change, f"{variant}, {STRESSES[stress]}"
+            )
         )
     return all_of(findings)
 
@@ -182,13 +188,16 @@ def agrees_with_yade(stress: str, tests: LoadingTests) -> Finding:
     value = YADE[BASE][list(STRESSES).index(stress)]
     assert value is not None
     logarithm = tests.log(BASE, stress)
-    verdict = near(logarithm, math.log(1e3 * value), MAX_LOG_SIMILAR, "").verdict
+    verdict = is_near(logarithm, math.log(1e3 * value), MAX_LOG_SIMILAR, "").verdict
     text = f"{STRESSES[stress]} {math.exp(logarithm.value) / 1e3:.3g} kPa, Yade {value:g} kPa"
     return Finding(verdict, factor(logarithm - Estimate(math.log(1e3 * value), 0.0), text))
 
 
 def same_signs(variant: str, tests: LoadingTests) -> Finding:
-    """Test whether stresses change as in Yade, where these change by more than the scatter."""
+    """Test whether stresses change in the same direction as in Yade.
+
+    Stresses that change in Yade by less than the scatter are left out.
+    """
     findings = []
     for stress, printed, base in zip(STRESSES, YADE[variant], YADE[BASE]):
         if printed is None or base is None or abs(math.log(printed / base)) < MIN_LOG_CLEAR:
@@ -196,12 +205,12 @@ def same_signs(variant: str, tests: LoadingTests) -> Finding:
         change = tests.change(variant, stress)
         test = positive if printed > base else negative
         text = f"{STRESSES[stress]} (Yade x {printed / base:.3g})"
-        findings.append(_factors(test(change, ""), change, text))
+        findings.append(_with_factor(test(change, ""), change, text))
     return all_of(findings)
 
 
 def same_order(stress: str, tests: LoadingTests) -> Finding:
-    """Test whether two variants are in Yade's order, for all pairs that are clearly apart."""
+    """Test whether all pairs of variants that differ clearly in Yade have the same order here."""
     place = list(STRESSES).index(stress)
     pairs = []
     for first, second in combinations(YADE, 2):
@@ -219,7 +228,7 @@ def same_order(stress: str, tests: LoadingTests) -> Finding:
     return Finding(verdict, "; ".join([text, *wrong]))
 
 
-def _factors(finding: Finding, change: Estimate, what: str) -> Finding:
+def _with_factor(finding: Finding, change: Estimate, what: str) -> Finding:
     return Finding(finding.verdict, factor(change, what))
 
 

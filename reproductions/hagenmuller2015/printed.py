@@ -1,4 +1,4 @@
-"""Numbers to compare with: one sample, compressed with Yade.
+"""Stresses for comparison: those of one sample that was compressed with Yade.
 
 The paper's own tables are not available to us. These stresses were measured with Yade 2023.02a on
 one synthetic sample of 87 grains (318 kg/m3, a cube of 2.4 mm, 4153 spheres), by the same contact
@@ -13,7 +13,8 @@ from typing import Optional
 from reproductions.hagenmuller2015.studies import HEAVY_SNOW, LIGHT_SNOW
 from snowshed.analysis.grains.variants import BASE
 
-#: Peak below 5 %, means from 5 to 10, 10 to 15 and 25 to 30 %, kPa; by the names of variants.
+#: Stresses by the names of variants, kPa: peak up to a strain of 5 %, and means from 5 to 10, 10 to
+#: 15 and 25 to 30 %.
 Line = tuple[Optional[float], Optional[float], Optional[float], Optional[float]]
 YADE: Mapping[str, Line] = {
     BASE: (69.0, 26.0, 47.0, 2516.0),

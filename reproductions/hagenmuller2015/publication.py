@@ -24,8 +24,8 @@ QUICK_CAUTION = (
 )
 NOISE = (
     "Here it is the logarithm of a ratio of stresses, taken sample by sample. Its noise is the "
-    "standard error by the scatter between samples, widened by Student's t, as samples are few. "
-    "“Hardly” means by less than a factor of 1.3."
+    "standard error from the scatter between samples, widened by Student's t because samples are "
+    "few. “Hardly” means by less than a factor of 1.3."
 )
 HELP = """Judge the claims of Hagenmuller, Chambon and Naaim (2015) on snow in compression.
 

@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 
     import pandas as pd
 
-COMPARED = (
-    "Stresses on the top plate in kPa, geometric means over the samples, with the factor by which "
-    "samples differ; in brackets those of Yade on its one sample.",
+STRESSES_TEXT = (
+    "The tables have stresses on the top plate in kPa: geometric means over the samples, with the "
+    "factor by which samples differ. Numbers in brackets are the stresses of Yade's one sample.",
 )
 
 
@@ -42,14 +42,14 @@ def engine(work: GrainsComputation) -> Content:
         for name, table in zip(reversed(list(MAKERS)), work.tests.tables)
         if BASE in set(table["variant"])
     ]
-    return Content(COMPARED, tables, claims=judge(ENGINE, work.tests))
+    return Content(STRESSES_TEXT, tables, claims=judge(ENGINE, work.tests))
 
 
 def sensitivity(work: GrainsComputation) -> Content:
     """Return the sensitivity of the strength."""
     folder = work.folder.of_stage("sensitivity")
     evaluate_variants(work.comparisons["brittle"], work.folder.runs, folder)
-    caption = "As of `snowshed grains sensitivity`; the numbers are in sensitivity/sensitivity.csv."
+    caption = "As by `snowshed grains sensitivity`; the numbers are in sensitivity/sensitivity.csv."
     return Content(pictures=[Picture.read(folder / FIGURE, "Sensitivity", caption, dpi=160)])
 
 
@@ -60,12 +60,14 @@ def sample_grid(tables: Sequence[pd.DataFrame]) -> HtmlTable:
     tests = pd.concat([table for table in tables if len(table)])
     rows = []
     for variant, own in tests.drop_duplicates(["variant", "sample"]).groupby("variant", sort=False):
-        numbers = [_span(own[name]) for name in ("final_particles", "spheres", "density_kg_m3")]
+        numbers = [
+            _range_text(own[name]) for name in ("final_particles", "spheres", "density_kg_m3")
+        ]
         rows.append([str(variant), str(len(own)), *numbers])
     return HtmlTable(["variant", "samples", "grains", "spheres", "kg/m3"], rows, "lrrrr")
 
 
-def _span(values: pd.Series) -> str:
+def _range_text(values: pd.Series) -> str:
     low, high = float(values.min()), float(values.max())
     return f"{low:,.0f}" if round(low) == round(high) else f"{low:,.0f} to {high:,.0f}"
 

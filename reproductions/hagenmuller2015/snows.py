@@ -21,8 +21,8 @@ VOXELS_PER_SPHERE = 2  # voxels along the edge of a sphere
 DENSITY, LIGHT_DENSITY, HEAVY_DENSITY = 318.0, 192.0, 427.0  # kg/m3
 #: Sphere packs of equal density: their density, diameter, and radius of the necks.
 PACK_DENSITY, PACK_DIAMETER, THIN_NECK_RATIO, WIDE_NECK_RATIO = 250.0, 4.5e-4, 0.3, 0.6
-MAX_FIELDS = 20  # tried for one sample
-#: Least depth of a neck, which gives fewer grains than the default (0.75 voxels).
+MAX_FIELDS = 20  # fields that are tried for one sample
+#: Smallest depth of a neck. This depth gives fewer grains than the default (0.75 voxels).
 DEEP_NECKS = SegmentationSettings(depth=1.25)
 
 
@@ -42,7 +42,7 @@ class Samples:
     count: int
 
 
-#: 2.4 mm and some 90 grains, as the sample that Yade loaded; below a representative volume.
+#: 2.4 mm and some 90 grains, like the sample that Yade loaded; less than a representative volume.
 QUICK = Samples(48, 4)
 #: 5.6 mm and more than 1000 grains.
 FULL = Samples(112, 3)
@@ -74,7 +74,7 @@ def _field(edge: int, seed: int, density: float) -> IceImage:
 
 
 def pack_snow(edge: int, seed: int, neck_ratio: float) -> LabelledSample:
-    """Return spheres that are joined by necks, which are its grains."""
+    """Return spheres that are joined by necks; each sphere is a grain."""
     image = sphere_snow(
         (edge, edge, edge), VOXEL, diameter=PACK_DIAMETER, density=PACK_DENSITY,
         neck_ratio=neck_ratio, seed=seed,

@@ -37,7 +37,7 @@ BRITTLE_STAGE = LoadingStage(kind="compress", speed=0.02, strain=0.05)
 #: Steps are three times the default: peaks of four samples stayed within 5 %, and energies balanced
 #: within 2e-4 of the work.
 SETTINGS = GrainsSettings(density_scaling=10.0, courant_factor=0.9)
-#: Loading within the elastic phase, and back: slow, so that waves are small.
+#: Loading and unloading within the elastic phase; slow, so that waves are small.
 ELASTIC_STRAIN, ELASTIC_SPEED = 1e-4, 5e-4
 #: Density scaling with far too much inertia.
 EXCESSIVE_SCALING = 1e4
@@ -86,18 +86,18 @@ class Comparisons:
         return self.samples(lambda seed: field_snow(self.edge, seed, DENSITY))
 
     def samples(self, snow: Snow) -> list[LabelledSample]:
-        """Return the samples of each snow."""
+        """Return the samples of a snow."""
         return [snow(seed) for seed in range(1, self._count + 1)]
 
     def variant(self, name: str, varied: str, snow: Snow) -> Variant:
-        """Return a variant that is another snow."""
+        """Return a variant with another snow."""
         coarse = [sample.coarser(VOXELS_PER_SPHERE) for sample in self.samples(snow)]
         files = [sample.write(self.folder) for sample in coarse]
         return Variant(name, varied, files, coarse[0].voxel_size)
 
 
 def dense_tests(comparisons: Comparisons) -> Comparison:
-    """Return the tests up to 30 %: other settings, densities and necks."""
+    """Return the tests up to a strain of 30 %: other settings, densities and necks."""
     edge = comparisons.edge
     base = comparisons.variant(BASE, BASE, lambda seed: field_snow(edge, seed, DENSITY))
     settings = [
@@ -128,9 +128,10 @@ def dense_tests(comparisons: Comparisons) -> Comparison:
 
 
 def brittle_tests(comparisons: Comparisons) -> Comparison:
-    """Return the variants of `snowshed grains sensitivity`, fewer grains, and the trap of inertia.
+    """Return the tests of the brittle phase.
 
-    One variant has spheres half as large, which take ten times as long.
+    They are the variants of `snowshed grains sensitivity`, a variant with fewer grains, and one
+    with far too much inertia. One variant has spheres half as large, and takes ten times as long.
     """
     comparison = sensitivity_variants(
         comparisons.base_snow(),
@@ -145,17 +146,19 @@ def brittle_tests(comparisons: Comparisons) -> Comparison:
         FEWER_GRAINS, "segmentation", lambda seed: field_snow(edge, seed, DENSITY, DEEP_NECKS)
     )
     scaling = {"numerics.density_scaling": EXCESSIVE_SCALING}
-    trap = Variant(EXCESSIVE_INERTIA, "density of ice", base.samples, base.voxel_size, scaling)
-    return Comparison(comparison.scene, [*comparison.variants, fewer, trap], "hagenmuller-brittle")
+    inertia = Variant(EXCESSIVE_INERTIA, "density of ice", base.samples, base.voxel_size, scaling)
+    return Comparison(
+        comparison.scene, [*comparison.variants, fewer, inertia], "hagenmuller-brittle"
+    )
 
 
 def elastic_tests(comparisons: Comparisons) -> Comparison:
-    """Return loading within the elastic phase, and back until the plate is free."""
+    """Return the tests that load within the elastic phase, and unload until the plate is free."""
     edge = comparisons.edge
     base = comparisons.variant(ELASTIC, ELASTIC, lambda seed: field_snow(edge, seed, DENSITY))
-    there = LoadingStage(kind="compress", speed=ELASTIC_SPEED, strain=ELASTIC_STRAIN)
-    back = LoadingStage(kind="unload", speed=ELASTIC_SPEED, strain=2 * ELASTIC_STRAIN)
-    return Comparison(_scene(base, [there, back]), [base], "hagenmuller-elastic")
+    load = LoadingStage(kind="compress", speed=ELASTIC_SPEED, strain=ELASTIC_STRAIN)
+    unload = LoadingStage(kind="unload", speed=ELASTIC_SPEED, strain=2 * ELASTIC_STRAIN)
+    return Comparison(_scene(base, [load, unload]), [base], "hagenmuller-elastic")
 
 
 def _scene(base: Variant, stages: Sequence[LoadingStage]) -> Scene:

@@ -1,9 +1,9 @@
 """The scenes: two slopes with an erodible layer, and a wooden slope with and without obstacles.
 
 The paper prints density, adhesive force, friction angle, viscosity, spacing and the thickness of
-the erodible layer. All shapes are ours, because its drawings are lost: tilts, lengths of slopes 1
-and 2, the amount of snow, stakes and board. The limits of the dilatant branch, of erosion and of
-deposition are ours, too.
+the erodible layer. All shapes are ours, because our copy lacks the drawings: tilts, lengths of
+slopes 1 and 2, the amount of snow, stakes and board. The limits of the dilatant branch, of erosion
+and of deposition are ours, too.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ from snowshed.scene.shape import Shape
 SLOPE_SNOW = MpsSettings(
     spacing=0.5, density=320, cohesion=100, friction_angle=24, viscosity=0.01, max_time_step=0.01
 )
-ERODIBLE = 0.25  # m, printed
+ERODIBLE_THICKNESS = 0.25  # m, printed
 #: Printed: wooden slope.
 WOOD_SNOW = MpsSettings(
     density=200, cohesion=0, friction_angle=24, viscosity=0.012, max_time_step=0.01
 )
 WOOD_LENGTH = 5.4  # m, printed
 #: Inferred, wooden slope.
-WOOD_TILT, RUN_OUT = 30.0, 1.5  # degrees, m
+WOOD_TILT = 30.0  # degrees
 BLOCK = (0.4, 0.2)  # m, length and height of the block of snow; it fills the slope's width
 OBSTACLE_DISTANCE = 0.3  # m above the foot of the slope
 STAKE_WIDTH, STAKE_HEIGHT = 0.02, 0.2  # m
@@ -56,7 +56,7 @@ NO_OBSTACLE, NARROW_STAKES, WIDE_STAKES, NOTCHED_BOARD = (
     "stakes 0.04 m",
     "notched board",
 )
-OBSTACLES = (NO_OBSTACLE, NARROW_STAKES, WIDE_STAKES, NOTCHED_BOARD)
+OBSTACLE_NAMES = (NO_OBSTACLE, NARROW_STAKES, WIDE_STAKES, NOTCHED_BOARD)
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,8 @@ class GroundProfile:
     Attributes
     ----------
     corners
-        (x, z) of the upper end of the first plane and of the lower ends of all, m, from the top.
+        (x, z) of the upper end of the first plane and of the lower ends of all planes, m, from
+        the top.
     """
 
     corners: Sequence[tuple[float, float]]
@@ -152,7 +153,7 @@ class GroundProfile:
         across: float = 0.0,
         above: float = 0.0,
     ) -> Shape:
-        """Return a box on the ground, or above it, at a distance along the path and at a y."""
+        """Return a box on or above the ground, at a distance along the path and across it, m."""
         point, _, normal, tilt = self.frame(distance)
         centre = point + (0.5 * size[2] + above) * normal + np.array([0.0, across, 0.0])
         box = Shape.box((0, 0, 0), size)
@@ -254,10 +255,10 @@ def slope_case(number: int, model: str, resolution: Resolution) -> Case:
     settings = replace(SLOPE_SNOW, stress_growth=STRESS_GROWTH, dilatant_rate=SLOPE_LIMIT)
     if model == BINGHAM:
         settings = replace(settings, rheology="bingham")
-        snow = snow[:1]  # nothing is taken up
+        snow = snow[:1]  # without the layer: nothing is eroded
     else:
-        # The layer is thinner than a particle: it is the first row above the ground.
-        settings = replace(settings, erosion=True, erodible_thickness=1.2 * ERODIBLE)
+        # The layer is thinner than a particle, so the first row of particles represents it.
+        settings = replace(settings, erosion=True, erodible_thickness=1.2 * ERODIBLE_THICKNESS)
         settings = replace(
             settings, erosion_pressure=1000, deposition_pressure=500, erosion_speed=1.0,
             deposition_speed=0.1,
@@ -272,7 +273,7 @@ def cases(resolution: Resolution) -> list[Case]:
     slopes = [
         slope_case(number, model, resolution) for number in SLOPES for model in (BINGHAM, COMBINED)
     ]
-    return [*(wooden_case(obstacle, resolution) for obstacle in OBSTACLES), *slopes]
+    return [*(wooden_case(obstacle, resolution) for obstacle in OBSTACLE_NAMES), *slopes]
 
 
 def _solid(name: str, shape: Shape) -> Obstacle:

@@ -37,11 +37,11 @@ MIN_HELD_SHARE, MAX_UNHELD_SHARE = 0.10, 0.03
 class Courses:
     """All cases that are computed, by their names."""
 
-    known: Mapping[str, Course]
+    by_name: Mapping[str, Course]
 
     def of(self, name: str) -> Course:
         """Return a case; raises LookupError if it is not complete."""
-        course = self.known.get(name)
+        course = self.by_name.get(name)
         if course is None:
             raise LookupError(name)
         return course
@@ -55,12 +55,12 @@ class Courses:
         return self.of(f"slope {number}, {model}")
 
 
-def between(value: float, low: float, high: float, text: str) -> Finding:
-    """Return confirmed above `high`, contradicted below `low`, undecided between them.
+def judge_bounds(value: float, low: float, high: float, text: str) -> Finding:
+    """Return "confirmed" above `high`, "contradicted" below `low`, and "undecided" between them.
 
     Examples
     --------
-    >>> [between(x, 1, 2, "").verdict for x in (0.5, 1.5, 2.5)]
+    >>> [judge_bounds(x, 1, 2, "").verdict for x in (0.5, 1.5, 2.5)]
     ['contradicted', 'undecided', 'confirmed']
     """
     verdict = CONFIRMED if value > high else CONTRADICTED if value < low else UNDECIDED
@@ -73,7 +73,7 @@ def reaches_the_foot(data: Courses) -> Finding:
     fronts = ", ".join(f"{course.front(course.at(t)):.2f}" for t in (1, 2, 3, 4))
     share = course.passed(course.at(4))
     text = f"front at {fronts} m after 1, 2, 3, 4 s; {100 * share:.0f} % below 0.3 m at 4 s"
-    return between(share, 0.5, 0.8, text)
+    return judge_bounds(share, 0.5, 0.8, text)
 
 
 def held_share(obstacle: str, data: Courses) -> tuple[float, str]:
@@ -86,29 +86,29 @@ def held_share(obstacle: str, data: Courses) -> tuple[float, str]:
 def holds(obstacle: str, data: Courses) -> Finding:
     """Test whether an obstacle holds snow back that would pass without it."""
     share, text = held_share(obstacle, data)
-    return between(share, MAX_UNHELD_SHARE, MIN_HELD_SHARE, text)
+    return judge_bounds(share, MAX_UNHELD_SHARE, MIN_HELD_SHARE, text)
 
 
 def leaks(obstacle: str, data: Courses) -> Finding:
-    """Test whether snow passes an obstacle more and more, but not all at once."""
+    """Test whether snow still passes an obstacle from 3 to 4 s."""
     course = data.wooden(obstacle)
     early, late = course.passed(course.at(3)), course.passed(course.at(4))
     text = f"{100 * early:.1f} % have passed at 3 s, {100 * late:.1f} % at 4 s"
-    return between(late - early, 0.001, 0.005, text)
+    return judge_bounds(late - early, 0.001, 0.005, text)
 
 
-def keeps_none(obstacle: str, data: Courses) -> Finding:
+def holds_hardly_any(obstacle: str, data: Courses) -> Finding:
     """Test whether an obstacle holds back hardly any snow."""
     share, text = held_share(obstacle, data)
-    return between(-share, -MIN_HELD_SHARE, -MAX_UNHELD_SHARE, text)
+    return judge_bounds(-share, -MIN_HELD_SHARE, -MAX_UNHELD_SHARE, text)
 
 
 def leaks_at_edges(data: Courses) -> Finding:
-    """Test whether the snow that passes the board late passes at its edges."""
+    """Test whether most snow that passes the board from 3 to 4 s passes at its edges."""
     course = data.wooden(NOTCHED_BOARD)
-    width = course.snow[0].positions[:, 1].max()  # half that of the slope, less half a spacing
+    width = course.snow[0].positions[:, 1].max()  # half the slope's width minus half a spacing
     share = course.passed_at_edges(course.at(3), course.at(4), float(width) - 1.25 * BOARD_GAP)
-    return between(share, 0.3, 0.5, f"{100 * share:.0f} % of what passes from 3 to 4 s")
+    return judge_bounds(share, 0.3, 0.5, f"{100 * share:.0f} % of what passes from 3 to 4 s")
 
 
 def never_stops(data: Courses) -> Finding:
@@ -130,7 +130,7 @@ def _moves(course: Course) -> Finding:
         f"{course.case.name}: {speed:.3g} m/s on average after {end.time:.0f} s, its front "
         f"{front:+.2f} m in the last five"
     )
-    return between(speed, REST_SPEED, 5 * REST_SPEED, text)
+    return judge_bounds(speed, REST_SPEED, 5 * REST_SPEED, text)
 
 
 def spreads_wider(data: Courses) -> Finding:
@@ -142,7 +142,7 @@ def spreads_wider(data: Courses) -> Finding:
     if widths[0] == 0:
         raise LookupError("slope 1 in space: here it is a section")
     text = f"{widths[0]:.1f} m, combined model {widths[1]:.1f} m"
-    return between(widths[0] / widths[1], 1.0, 1.05, text)
+    return judge_bounds(widths[0] / widths[1], 1.0, 1.05, text)
 
 
 def undecided_without(what: str) -> Finding:
@@ -175,7 +175,7 @@ WOODEN_CLAIMS: list[Claim[Courses]] = [
         "Stakes 0.04 m apart keep almost no snow.",
         f"at 4 s less than {MAX_UNHELD_SHARE:.0%} more lie above them than without; contradicted "
         f"above {MIN_HELD_SHARE:.0%}",
-        lambda data: keeps_none(WIDE_STAKES, data),
+        lambda data: holds_hardly_any(WIDE_STAKES, data),
     ),
     Claim(
         "experiments, fig. 17",

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from reproductions.saito2012.measures import MOVING, Course
+from reproductions.saito2012.measures import MOVING_KIND, Course
 from snowshed.plot.figure_style import blank_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-DEPOSITED = "0.6"
+DEPOSIT_SHADE = "0.6"
 
 
 def side_views(courses: Sequence[Course], times: Sequence[float]) -> Figure:
@@ -54,9 +54,9 @@ def _views(
             snow = course.at(time)
             points = project(course, snow.positions.astype(float))
             speed = np.linalg.norm(snow.velocities, axis=1)
-            rests = snow.kinds != MOVING
+            rests = snow.kinds != MOVING_KIND
             decorate(axis, course)
-            axis.plot(*points[rests].T, ".", color=DEPOSITED, markersize=1.5)
+            axis.plot(*points[rests].T, ".", color=DEPOSIT_SHADE, markersize=1.5)
             shown = axis.scatter(
                 *points[~rests].T, c=speed[~rests], s=2, vmin=0, vmax=fastest, cmap="viridis"
             )

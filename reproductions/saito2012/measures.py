@@ -11,7 +11,7 @@ from reproductions.saito2012.cases import Case
 from reproductions.saito2012.runs import Snow
 from snowshed.base.arrays import Floats
 
-MOVING = 0
+MOVING_KIND = 0
 #: Share of the moving snow behind the front; single grains run ahead of it.
 FRONT_QUANTILE = 0.99
 #: Largest distance above an obstacle, m, and largest speed, m/s, of snow that it holds.
@@ -39,7 +39,7 @@ class Course:
     @classmethod
     def of(cls, case: Case, snow: Sequence[Snow]) -> Course:
         """Return the course of the stored states of a case, which must include the first."""
-        return cls(case, snow, snow[0].kinds == MOVING)
+        return cls(case, snow, snow[0].kinds == MOVING_KIND)
 
     @property
     def times(self) -> Floats:
@@ -75,7 +75,7 @@ class Course:
         return float(np.quantile(across, 0.99) - np.quantile(across, 0.01))
 
     def held(self, snow: Snow) -> float:
-        """Return the share of the snow that lies slow above the obstacle."""
+        """Return the share of the released snow that is slow and lies just above the obstacle."""
         assert self.case.obstacle is not None
         distances = self.distances(snow)
         near = (distances < self.case.obstacle) & (distances > self.case.obstacle - HELD_LENGTH)
@@ -83,12 +83,12 @@ class Course:
         return float((near & slow).mean())
 
     def passed(self, snow: Snow) -> float:
-        """Return the share of the snow below the obstacle."""
+        """Return the share of the released snow that lies below the obstacle."""
         assert self.case.obstacle is not None
         return float((self.distances(snow) > self.case.obstacle).mean())
 
     def passed_at_edges(self, first: Snow, second: Snow, half_width: float) -> float:
-        """Return the share at the edges of the snow that passes the obstacle between two times."""
+        """Return the share that passes at the edges, among the snow passing between two times."""
         assert self.case.obstacle is not None
         before, after = self.distances(first), self.distances(second)
         through = (before <= self.case.obstacle) & (after > self.case.obstacle)

@@ -135,7 +135,7 @@ class CaseStage:
             written.write_bytes(file.getvalue())
 
     def _failure_reason(self) -> str:
-        """Return the error that ended it, or nothing."""
+        """Return the error that ended the case; empty if none did."""
         file = self.folder / FAILURE
         return file.read_text(encoding="utf-8").strip() if file.is_file() else ""
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from reproductions.common.hypothesis_tests import judge
 from reproductions.common.section import Content
 from reproductions.saito2012 import figures
-from reproductions.saito2012.cases import BINGHAM, COMBINED, OBSTACLES
+from reproductions.saito2012.cases import BINGHAM, COMBINED, OBSTACLE_NAMES
 from reproductions.saito2012.claims import SLOPE_CLAIMS, WOODEN_CLAIMS, Courses
 from reproductions.saito2012.measures import Course
 from reproductions.saito2012.stages import AvalancheComputation
@@ -15,13 +15,13 @@ from snowshed.plot.html_page import HtmlTable, Picture
 
 WOODEN_TIMES = (1.0, 2.0, 3.0, 4.0)
 SLOPE_TIMES = (2.0, 5.0, 10.0, 20.0)
-WOODEN = [f"wooden slope, {name}" for name in OBSTACLES]
+WOODEN = [f"wooden slope, {name}" for name in OBSTACLE_NAMES]
 SLOPES = [f"slope {n}, {model}" for n in (1, 2) for model in (BINGHAM, COMBINED)]
 
 
 def wooden(work: AvalancheComputation) -> Content:
     """Return the content of the section on the wooden slope."""
-    courses = _known(work.courses, WOODEN)
+    courses = _complete_courses(work.courses, WOODEN)
     return Content(
         (),
         _tables(courses, WOODEN_TIMES),
@@ -32,7 +32,7 @@ def wooden(work: AvalancheComputation) -> Content:
 
 def slopes(work: AvalancheComputation) -> Content:
     """Return the content of the section on slopes 1 and 2."""
-    courses = _known(work.courses, SLOPES)
+    courses = _complete_courses(work.courses, SLOPES)
     return Content(
         (),
         _tables(courses, SLOPE_TIMES),
@@ -41,8 +41,8 @@ def slopes(work: AvalancheComputation) -> Content:
     )
 
 
-def _known(courses: Courses, cases: Sequence[str]) -> list[Course]:
-    return [courses.known[name] for name in cases if name in courses.known]
+def _complete_courses(courses: Courses, cases: Sequence[str]) -> list[Course]:
+    return [courses.by_name[name] for name in cases if name in courses.by_name]
 
 
 def _pictures(courses: Sequence[Course], times: Sequence[float], name: str) -> list[Picture]:

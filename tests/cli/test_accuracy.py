@@ -181,7 +181,7 @@ def packaged(tmp_path, monkeypatch):
     """Make the commands read made-up measurements instead of those of the package."""
     path = tmp_path / "recorded.json"
     record(RECORDED, path)
-    monkeypatch.setattr(recorded, "PACKAGED", path)
+    monkeypatch.setattr(recorded, "PACKAGED_FILE", path)
 
 
 def test_recorded_measurements_are_read_back(tmp_path):

@@ -14,7 +14,7 @@ from snowshed.cli import main as cli
 from snowshed.cli.commands.panel import panel
 from snowshed.cli.deferred import Deferred
 from snowshed.cli.main import main
-from snowshed.cli.scene_options import PREFIXED, SHORT_NAMES, option_name
+from snowshed.cli.scene_options import PREFIXED_SECTIONS, SHORT_NAMES, option_name
 from snowshed.scene.schema import scene_parameters
 
 TINY = [
@@ -49,7 +49,7 @@ def test_every_parameter_has_an_option_of_its_own():
     assert len(set(names)) == len(names)
     paths = {parameter.path for parameter in scene_parameters()}
     assert set(SHORT_NAMES) <= paths
-    assert set(PREFIXED) <= {path.partition(".")[0] for path in paths}
+    assert set(PREFIXED_SECTIONS) <= {path.partition(".")[0] for path in paths}
     own = {name for o in panel.params for name in o.opts}
     assert len(own) == sum(len(o.opts) for o in panel.params)
     assert set(names) <= own

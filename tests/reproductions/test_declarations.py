@@ -26,7 +26,7 @@ NO_OPTIONS = {
 SMALLER = {"hagenmuller2015": Samples(40, 1)}
 
 
-def declared(name):
+def declaration_of(name):
     return importlib.import_module(f"reproductions.{name}.publication").REPRODUCTION
 
 
@@ -39,7 +39,7 @@ def test_every_package_is_a_command_with_a_former_name():
     folders = {one.name for one in pkgutil.iter_modules(reproductions.__path__) if one.ispkg}
     assert folders - {"common"} == set(NAMES)
     for name, former, _ in PUBLICATIONS:
-        assert (declared(name).name, declared(name).alias) == (name, former)
+        assert (declaration_of(name).name, declaration_of(name).alias) == (name, former)
         assert {name, former} <= set(reproduce.commands)
         assert [one.opts for one in command_of(name, former).params] == [
             one.opts for one in command_of(name, name).params
@@ -48,7 +48,7 @@ def test_every_package_is_a_command_with_a_former_name():
 
 @pytest.mark.parametrize("name", NAMES)
 def test_sections_are_of_stages_and_every_claim_is_declared_once(name, tmp_path):
-    one = declared(name)
+    one = declaration_of(name)
     texts = [(claim.source, claim.text, claim.rule) for claim in one.claims]
     assert len(set(texts)) == len(texts) > 8
     settings = one.sizes[-1].settings
@@ -60,7 +60,7 @@ def test_sections_are_of_stages_and_every_claim_is_declared_once(name, tmp_path)
 
 @pytest.mark.parametrize("name", NAMES)
 def test_rules_stand_in_the_report_before_anything_is_computed(name, tmp_path):
-    one = declared(name)
+    one = declaration_of(name)
     size = one.sizes[0]
     settings = SMALLER.get(name, size.settings)
     work = one.stages(tmp_path, settings, **NO_OPTIONS.get(name, {}))

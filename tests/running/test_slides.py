@@ -130,7 +130,7 @@ def test_a_release_beyond_the_terrain_leaves_nothing_behind(slope, tmp_path):
 def test_snapshots_hold_thickness_speed_and_bonds_as_lines(slope, tmp_path):
     from xml.etree import ElementTree
 
-    from snowshed.io.vtk.vtp import APPENDED, read_particles
+    from snowshed.io.vtk.vtp import APPENDED_HEAD, read_particles
     from snowshed.running.slide_history import slide_states
 
     slope.update({"numerics.max_strain": 0.02, "output.snapshot_interval": 0.5})
@@ -144,7 +144,7 @@ def test_snapshots_hold_thickness_speed_and_bonds_as_lines(slope, tmp_path):
     assert found["bonds"].sum() == 2 * len(state.bonds)
     assert found["thickness"] == pytest.approx(state.thickness, rel=1e-6)
     assert found["speed"] == pytest.approx(np.linalg.norm(found["velocity"], axis=1), rel=1e-5)
-    head, _, data = files[2].read_bytes().partition(APPENDED)
+    head, _, data = files[2].read_bytes().partition(APPENDED_HEAD)
     lines = ElementTree.fromstring(head + b"</VTKFile>").find("PolyData/Piece/Lines")
     offset = int(lines[0].attrib["offset"]) + 8
     ends = np.frombuffer(data, "<i4", 2 * len(state.bonds), offset).reshape(-1, 2)

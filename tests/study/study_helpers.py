@@ -91,7 +91,7 @@ def contents(folder: Path) -> dict[str, list[tuple]]:
 
 
 @pytest.fixture(scope="session")
-def computed(tmp_path_factory):
+def computed_folder(tmp_path_factory):
     """The folder of the tiny study, computed without interruption, once for all test files."""
     folder = tmp_path_factory.getbasetemp() / "computed-tiny-study"
     if not folder.exists():
@@ -100,7 +100,7 @@ def computed(tmp_path_factory):
 
 
 @pytest.fixture
-def scripted(monkeypatch):
+def scripted_workers(monkeypatch):
     """Workers that pretend, in place of the processes."""
     workers = ScriptedWorkers()
     monkeypatch.setattr(session.Resources, "workers", lambda resources, runs: (workers, 2))

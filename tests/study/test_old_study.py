@@ -14,7 +14,7 @@ from snowshed.study.table import read_table
 
 OLD = Path(__file__).with_name("old_study")
 
-scripted = study_helpers.scripted  # a fixture
+scripted_workers = study_helpers.scripted_workers  # a fixture
 
 
 @pytest.fixture
@@ -28,11 +28,11 @@ def store(tmp_path, monkeypatch):
     return folder
 
 
-def test_its_runs_are_found_and_nothing_is_computed_again(store, scripted):
+def test_its_runs_are_found_and_nothing_is_computed_again(store, scripted_workers):
     study = Study.load(OLD / "study.toml")
     assert study.scene.numerics.courant_factor == 0.9
     table = study.run(store)
-    assert scripted.tasks == []
+    assert scripted_workers.tasks == []
     assert table["height_m"].tolist() == [0.318458004]
 
 

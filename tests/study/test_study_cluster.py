@@ -14,7 +14,7 @@ from snowshed.study import Study
 from snowshed.study.cluster import DaskWorkers
 from snowshed.study.outcome import RunTask
 
-computed = study_helpers.computed  # a fixture
+computed_folder = study_helpers.computed_folder  # a fixture
 
 FRICTIONS = (0.1, 0.2, 0.3, 0.25)
 
@@ -27,9 +27,9 @@ def cluster():
         yield cluster
 
 
-def test_a_cluster_gives_the_same_table(cluster, computed, tmp_path):
+def test_a_cluster_gives_the_same_table(cluster, computed_folder, tmp_path):
     tiny_study().run(tmp_path / "store", scheduler=cluster.scheduler_address)
-    assert contents(tmp_path / "store") == contents(computed)
+    assert contents(tmp_path / "store") == contents(computed_folder)
 
 
 def test_a_worker_killed_in_the_middle_costs_only_time(cluster, tmp_path):

@@ -14,7 +14,7 @@ from snowshed.cli.compute_study import announcement
 from snowshed.cli.main import main
 from snowshed.study.store import Store
 
-scripted = study_helpers.scripted  # a fixture
+scripted_workers = study_helpers.scripted_workers  # a fixture
 
 FILE = """
 name = "tiny"
@@ -93,8 +93,8 @@ def test_status_of_an_unfinished_study(tmp_path, capsys):
     assert "2 of 3 runs are not computed yet" in capsys.readouterr().err
 
 
-def test_failed_runs_are_listed_and_code_3(tmp_path, scripted, file, capsys):
-    scripted.answer = lambda task: (
+def test_failed_runs_are_listed_and_code_3(tmp_path, scripted_workers, file, capsys):
+    scripted_workers.answer = lambda task: (
         outcome(task.hash, "failed", 1, "broken") if task.hash == HASHES[1] else outcome(task.hash)
     )
     assert run("run", file, "-o", tmp_path / "store") == 3
@@ -102,10 +102,10 @@ def test_failed_runs_are_listed_and_code_3(tmp_path, scripted, file, capsys):
     assert f"{HASHES[1][:12]} failed: broken" in shown.out
     assert shown.err.endswith(f"error: 1 of 3 runs failed: {HASHES[1][:12]}\n")
     assert run("resume", tmp_path / "store", "-q") == 3
-    assert len(scripted.tasks) == 3
-    scripted.answer = lambda task: outcome(task.hash)
+    assert len(scripted_workers.tasks) == 3
+    scripted_workers.answer = lambda task: outcome(task.hash)
     assert run("resume", tmp_path / "store", "--study", "tiny", "--retry-failed", "-q") == 0
-    assert len(scripted.tasks) == 4
+    assert len(scripted_workers.tasks) == 4
 
 
 def test_the_scene_of_a_run_can_be_had(tmp_path, capsys):

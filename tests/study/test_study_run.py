@@ -24,7 +24,7 @@ from snowshed.study.local import LocalWorkers
 from snowshed.study.outcome import RunTask
 from snowshed.study.store import Store
 
-computed = study_helpers.computed  # a fixture
+computed_folder = study_helpers.computed_folder  # a fixture
 
 #: Runs that take long enough to be killed in the middle, with checkpoints within events.
 KILLABLE = """
@@ -79,8 +79,8 @@ def outcome_of(workers):
     return ended[0]
 
 
-def test_the_table_holds_what_single_runs_give(computed, tmp_path):
-    table = read_table(computed)
+def test_the_table_holds_what_single_runs_give(computed_folder, tmp_path):
+    table = read_table(computed_folder)
     for i, run in enumerate(tiny_study().runs()):
         run_events(ResolvedScene.parse(run.scene), tmp_path / str(i), pictures=False)
         alone = read_events(tmp_path / str(i))[["event", *MEASURED_TYPES]]
@@ -89,9 +89,9 @@ def test_the_table_holds_what_single_runs_give(computed, tmp_path):
     assert len(table) == 6
 
 
-def test_neither_order_nor_threads_nor_parallel_work_change_the_table(computed, tmp_path):
+def test_neither_order_nor_threads_nor_parallel_work_change_the_table(computed_folder, tmp_path):
     tiny_study().run(tmp_path / "store", jobs=2, threads=2)
-    assert contents(tmp_path / "store") == contents(computed)
+    assert contents(tmp_path / "store") == contents(computed_folder)
 
 
 def test_a_run_that_cannot_go_on_is_a_row_with_its_error(tmp_path):
@@ -293,14 +293,14 @@ def test_killed_a_hundred_times_the_table_is_the_same(tmp_path, whole):
     kill_and_compare(tmp_path, whole, kills=100)
 
 
-def test_two_processes_share_one_store(tmp_path, computed):
+def test_two_processes_share_one_store(tmp_path, computed_folder):
     (tmp_path / "study.toml").write_text(TINY + "[accuracy]\ndx = 0.02")
     arguments = ("study", "run", tmp_path / "study.toml", "-o", tmp_path / "store", *COMPUTE)
     commands = [snowshed_command(*arguments) for _ in range(2)]
     for command in commands:
         assert command.communicate(timeout=120) == ("", "")
         assert command.returncode == 0
-    assert contents(tmp_path / "store") == contents(computed)
+    assert contents(tmp_path / "store") == contents(computed_folder)
 
 
 @pytest.mark.parametrize(
@@ -312,7 +312,7 @@ def test_two_processes_share_one_store(tmp_path, computed):
     ],
     ids=["making the store", "storing results", "writing results"],
 )
-def test_a_disk_that_takes_no_more(tmp_path, limit_kb, seeding, file, computed):
+def test_a_disk_that_takes_no_more(tmp_path, limit_kb, seeding, file, computed_folder):
     """The limit on the size of files stands for the full disk, at different places."""
     (tmp_path / "study.toml").write_text(f"{TINY}[accuracy]\ndx = 0.02\n{seeding}")
     command = ["study", "run", str(tmp_path / "study.toml"), "-o", str(tmp_path / "full"), "-q"]
@@ -331,4 +331,6 @@ def test_a_disk_that_takes_no_more(tmp_path, limit_kb, seeding, file, computed):
     study.run(tmp_path / "full", **ALONE)
     if seeding:
         study.run(tmp_path / "whole", **ALONE)
-    assert contents(tmp_path / "full") == contents(tmp_path / "whole" if seeding else computed)
+    assert contents(tmp_path / "full") == contents(
+        tmp_path / "whole" if seeding else computed_folder
+    )

@@ -16,7 +16,7 @@ from snowshed.study.outcome import RunOutcome
 from snowshed.study.owner import ownership
 from snowshed.study.store import Store
 
-scripted = study_helpers.scripted  # a fixture
+scripted_workers = study_helpers.scripted_workers  # a fixture
 
 STUDY = tiny_study()
 HASHES = [run.hash for run in STUDY.runs()]
@@ -27,47 +27,47 @@ def states(folder):
         return [(run.status, run.error) for run in store.runs("tiny")]
 
 
-def test_every_run_is_computed_once(scripted, tmp_path):
+def test_every_run_is_computed_once(scripted_workers, tmp_path):
     STUDY.run(tmp_path / "store")
-    assert sorted(task.hash for task in scripted.tasks) == sorted(HASHES)
+    assert sorted(task.hash for task in scripted_workers.tasks) == sorted(HASHES)
     STUDY.run(tmp_path / "store")
     resume(tmp_path / "store")
-    assert len(scripted.tasks) == 3
-    assert scripted.closed
+    assert len(scripted_workers.tasks) == 3
+    assert scripted_workers.closed
 
 
-def test_studies_that_share_a_store_share_runs(scripted, tmp_path):
+def test_studies_that_share_a_store_share_runs(scripted_workers, tmp_path):
     STUDY.run(tmp_path / "store")
     tiny_study("wider", frictions=(0.3, 0.1, 0.4)).run(tmp_path / "store")
-    assert len(scripted.tasks) == 4
+    assert len(scripted_workers.tasks) == 4
 
 
-def test_the_longest_runs_come_first(scripted, tmp_path):
+def test_the_longest_runs_come_first(scripted_workers, tmp_path):
     scene = STUDY.scene
     Study.product(scene, {"events.count": [1, 3, 2]}).run(tmp_path / "store")
-    works = [cost_estimate.work(task.scene) for task in scripted.tasks]
+    works = [cost_estimate.work(task.scene) for task in scripted_workers.tasks]
     assert works == sorted(works, reverse=True) and len(set(works)) == 3
 
 
-def test_a_failed_run_does_not_stop_the_others_and_can_be_tried_again(scripted, tmp_path):
+def test_a_failed_run_does_not_stop_the_others_and_can_be_tried_again(scripted_workers, tmp_path):
     def fail_one(task):
         failed = task.hash == HASHES[1]
         return outcome(task.hash, "failed", 1, "too steep") if failed else outcome(task.hash)
 
-    scripted.answer = fail_one
+    scripted_workers.answer = fail_one
     table = STUDY.run(tmp_path / "store")
     assert [status for status, _ in states(tmp_path / "store")] == ["done", "failed", "done"]
     (row,) = table[table.ended == "failed"].to_dict("records")
     assert (row["hash"], row["event"], row["error"]) == (HASHES[1], 2, "too steep")
     STUDY.run(tmp_path / "store")
-    assert len(scripted.tasks) == 3
-    scripted.answer = lambda task: outcome(task.hash)
+    assert len(scripted_workers.tasks) == 3
+    scripted_workers.answer = lambda task: outcome(task.hash)
     STUDY.run(tmp_path / "store", retry_failed=True)
-    assert len(scripted.tasks) == 4
+    assert len(scripted_workers.tasks) == 4
     assert states(tmp_path / "store") == [("done", None)] * 3
 
 
-def test_a_worker_that_dies_costs_only_its_run(scripted, tmp_path):
+def test_a_worker_that_dies_costs_only_its_run(scripted_workers, tmp_path):
     died = []
 
     def die_once(task):
@@ -76,14 +76,14 @@ def test_a_worker_that_dies_costs_only_its_run(scripted, tmp_path):
             return RunOutcome(task.hash, "lost", error="the worker was killed")
         return outcome(task.hash)
 
-    scripted.answer = die_once
+    scripted_workers.answer = die_once
     STUDY.run(tmp_path / "store")
-    assert len(scripted.tasks) == 4
+    assert len(scripted_workers.tasks) == 4
     assert states(tmp_path / "store") == [("done", None)] * 3
 
 
-def test_a_run_whose_workers_always_die_fails(scripted, tmp_path):
-    scripted.answer = lambda task: (
+def test_a_run_whose_workers_always_die_fails(scripted_workers, tmp_path):
+    scripted_workers.answer = lambda task: (
         RunOutcome(task.hash, "lost", error="the worker was killed by signal 9 (Killed)")
         if task.hash == HASHES[2]
         else outcome(task.hash)
@@ -94,46 +94,49 @@ def test_a_run_whose_workers_always_die_fails(scripted, tmp_path):
     assert error == "gave up after 3 attempts: the worker was killed by signal 9 (Killed)"
 
 
-def test_a_machine_that_cannot_stops_the_study_and_loses_nothing(scripted, tmp_path):
-    scripted.answer = lambda task: (
+def test_a_machine_that_cannot_stops_the_study_and_loses_nothing(scripted_workers, tmp_path):
+    scripted_workers.answer = lambda task: (
         outcome(task.hash)
-        if len(scripted.tasks) < 3
+        if len(scripted_workers.tasks) < 3
         else RunOutcome(task.hash, "unable", error="checkpoint.bin: No space left on device")
     )
     with pytest.raises(StudyError, match=r"No space left on device; .* safe.*repeat"):
         STUDY.run(tmp_path / "store")
-    assert scripted.stopped and scripted.closed
+    assert scripted_workers.stopped and scripted_workers.closed
     assert sorted(status for status, _ in states(tmp_path / "store")) == [
         "done",
         "pending",
         "pending",
     ]
-    scripted.answer = lambda task: outcome(task.hash)
+    scripted_workers.answer = lambda task: outcome(task.hash)
     resume(tmp_path / "store")
     assert states(tmp_path / "store") == [("done", None)] * 3
 
 
-def test_runs_that_end_beside_one_that_cannot_are_stored(scripted, tmp_path, monkeypatch):
+def test_runs_that_end_beside_one_that_cannot_are_stored(scripted_workers, tmp_path, monkeypatch):
     """Two end at once, the first unable; the third ends while the workers are stopped."""
 
     def unable_first(task):
-        unable = task.hash == scripted.tasks[0].hash
+        unable = task.hash == scripted_workers.tasks[0].hash
         return (
             RunOutcome(task.hash, "unable", error="no such file") if unable else outcome(task.hash)
         )
 
     def all_at_once(timeout):
-        return [scripted.answer(scripted.open.pop(0)) for _ in range(len(scripted.open))]
+        return [
+            scripted_workers.answer(scripted_workers.open.pop(0))
+            for _ in range(len(scripted_workers.open))
+        ]
 
-    scripted.answer = unable_first
-    monkeypatch.setattr(scripted, "collect", all_at_once)
+    scripted_workers.answer = unable_first
+    monkeypatch.setattr(scripted_workers, "collect", all_at_once)
     with pytest.raises(StudyError, match="no such file"):
         STUDY.run(tmp_path / "store")
-    assert scripted.stopped and scripted.closed
+    assert scripted_workers.stopped and scripted_workers.closed
     assert [status for status, _ in states(tmp_path / "store")] == ["pending", "done", "done"]
 
 
-def test_a_full_disk_while_storing(scripted, tmp_path, monkeypatch):
+def test_a_full_disk_while_storing(scripted_workers, tmp_path, monkeypatch):
     monkeypatch.setattr(session.Store, "record", _fill_disk_then_record(session.Store.record))
     with pytest.raises(StudyError, match="disk is full"):
         STUDY.run(tmp_path / "store")
@@ -152,7 +155,7 @@ def _fill_disk_then_record(record):
     return full
 
 
-def test_an_interrupt_keeps_what_ended_meanwhile_and_says_how_to_go_on(scripted, tmp_path):
+def test_an_interrupt_keeps_what_ended_meanwhile_and_says_how_to_go_on(scripted_workers, tmp_path):
     study = tiny_study(frictions=(0.1, 0.2, 0.3, 0.4, 0.5))
 
     def interrupt(progress):
@@ -161,14 +164,14 @@ def test_an_interrupt_keeps_what_ended_meanwhile_and_says_how_to_go_on(scripted,
 
     with pytest.raises(StudyInterrupted, match="interrupted; resume with: snowshed study resume"):
         study.run(tmp_path / "store", progress=interrupt)
-    assert scripted.stopped
+    assert scripted_workers.stopped
     assert sum(status == "done" for status, _ in states(tmp_path / "store")) == 3
     resume(tmp_path / "store")
     assert states(tmp_path / "store") == [("done", None)] * 5
-    assert len(scripted.tasks) == 5
+    assert len(scripted_workers.tasks) == 5
 
 
-def test_runs_of_another_process_are_waited_for(scripted, tmp_path):
+def test_runs_of_another_process_are_waited_for(scripted_workers, tmp_path):
     with Store.create(tmp_path / "store") as other:
         other.register("tiny", STUDY.axes, STUDY.runs())
     ready, go_on = threading.Event(), threading.Event()
@@ -192,20 +195,20 @@ def test_runs_of_another_process_are_waited_for(scripted, tmp_path):
 
     STUDY.run(tmp_path / "store", progress=watch)
     thread.join()
-    assert HASHES[0] not in {task.hash for task in scripted.tasks}
+    assert HASHES[0] not in {task.hash for task in scripted_workers.tasks}
     assert (seen[-1].done, seen[-1].elsewhere, seen[-1].fraction) == (3, 0, 1.0)
 
 
-def test_runs_of_a_process_that_died_are_taken_over(scripted, tmp_path):
+def test_runs_of_a_process_that_died_are_taken_over(scripted_workers, tmp_path):
     with Store.create(tmp_path / "store") as other:
         other.register("tiny", STUDY.axes, STUDY.runs())
         for hash_ in HASHES:
             other.claim(hash_, "somebody-dead")
     STUDY.run(tmp_path / "store")
-    assert len(scripted.tasks) == 3
+    assert len(scripted_workers.tasks) == 3
 
 
-def test_progress_tells_the_whole_story(scripted, tmp_path):
+def test_progress_tells_the_whole_story(scripted_workers, tmp_path):
     seen = []
     STUDY.run(tmp_path / "store", progress=seen.append)
     assert (seen[0].count, seen[0].done, seen[0].fraction) == (3, 0, 0.0)
@@ -214,7 +217,7 @@ def test_progress_tells_the_whole_story(scripted, tmp_path):
     assert (seen[-1].done, seen[-1].running, seen[-1].fraction) == (3, 0, 1.0)
 
 
-def test_leftovers_of_killed_processes_are_removed(scripted, tmp_path):
+def test_leftovers_of_killed_processes_are_removed(scripted_workers, tmp_path):
     with Store.create(tmp_path / "store") as store:
         store.register("tiny", STUDY.axes, STUDY.runs())
         store.record(outcome(HASHES[0]))
@@ -230,7 +233,9 @@ def test_leftovers_of_killed_processes_are_removed(scripted, tmp_path):
     assert not any((tmp_path / "store" / "running").iterdir())
 
 
-def test_unfinished_runs_of_another_version_are_not_mixed_in(scripted, tmp_path, monkeypatch):
+def test_unfinished_runs_of_another_version_are_not_mixed_in(
+    scripted_workers, tmp_path, monkeypatch
+):
     with Store.create(tmp_path / "store") as store:
         store.register("tiny", STUDY.axes, STUDY.runs())
     monkeypatch.setattr(_core, "version", "99.0")
@@ -293,21 +298,21 @@ def test_speeds_count_as_much_as_the_work_they_stand_for(monkeypatch):
         cost_estimate, "speed", lambda scene, threads: 1.0 if scene == "big" else 2.0
     )
     scenes, works = ["small"] * 9 + ["big"], [1.0] * 9 + [21.0]
-    assert cost_estimate.expected(scenes, works, 1, 1) == pytest.approx(30 * (0.5 + 1 + 1) / 3)
-    assert cost_estimate.expected(["small"], [0.0], 1, 1) == 0.0
+    assert cost_estimate.expected_time(scenes, works, 1, 1) == pytest.approx(30 * (0.5 + 1 + 1) / 3)
+    assert cost_estimate.expected_time(["small"], [0.0], 1, 1) == 0.0
 
 
 def test_a_machine_that_is_held_up_for_a_moment_is_not_slow(monkeypatch):
     speeds = iter([2.0, 1.0, 2.0] + [2.0] * 24)
     monkeypatch.setattr(cost_estimate, "speed", lambda scene, threads: next(speeds))
     scenes, works = ["a", "b", "c"], [3600.0] * 3
-    assert cost_estimate.expected(scenes, works, 1, 1) == 3 * 1800.0
+    assert cost_estimate.expected_time(scenes, works, 1, 1) == 3 * 1800.0
 
 
 def test_speeds_before_a_short_study_are_measured_once(monkeypatch):
     measured = []
     monkeypatch.setattr(cost_estimate, "speed", lambda scene, _: measured.append(scene) or 1e9)
-    cost_estimate.expected(["a", "b", "c"], [1.0] * 3, 1, 1)
+    cost_estimate.expected_time(["a", "b", "c"], [1.0] * 3, 1, 1)
     assert sorted(measured) == ["a", "b", "c"]
 
 
@@ -328,14 +333,14 @@ def test_estimating_many_runs_takes_little():
     assert time.process_time() - start < 0.05 * len(scenes)
 
 
-def test_notes_on_runs_are_said_after_them_the_most_frequent_first(scripted, tmp_path):
+def test_notes_on_runs_are_said_after_them_the_most_frequent_first(scripted_workers, tmp_path):
     seen = iter(range(100))
 
     def noted(task):
         notes = ["the slab is thin", *(["one stays"] if next(seen) == 0 else [])]
         return replace(outcome(task.hash), notes=notes)
 
-    scripted.answer = noted
+    scripted_workers.answer = noted
     with pytest.warns(SnowshedNote), record_notes() as said:
         STUDY.run(tmp_path / "store")
     runs = len(states(tmp_path / "store"))

@@ -24,14 +24,14 @@ def study(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def computed(study, tmp_path_factory):
+def computed_folder(study, tmp_path_factory):
     folder = tmp_path_factory.mktemp("store") / "runs"
     study.compute(folder, jobs=1, threads=1, keep_particles=True)
     return folder
 
 
-def test_the_table_tells_what_a_slide_alone_tells(study, computed, tmp_path):
-    table = read_table(computed)
+def test_the_table_tells_what_a_slide_alone_tells(study, computed_folder, tmp_path):
+    table = read_table(computed_folder)
     assert table["ended"].tolist() == ["time_limit"] * 4
     assert table["numerics.friction"].tolist() == [0.3, 0.3, 0.5, 0.5]
     assert not {"height_m", "dx", "trimming"} & set(table)  # of the other method
@@ -49,14 +49,16 @@ def test_the_cost_of_a_study_of_slides_is_known_before(study):
     assert 0.0 < seconds < 600.0 and at_once == 1
 
 
-def test_probabilities_and_percentiles_are_those_of_the_single_slides(study, computed, tmp_path):
+def test_probabilities_and_percentiles_are_those_of_the_single_slides(
+    study, computed_folder, tmp_path
+):
     single = []
     for one in study.runs():
         run(json.loads(one.scene), tmp_path / one.hash, pictures=False)
         names = ("pft", "pfv", "ppr")
         single.append([read_raster(tmp_path / one.hash / f"peaks/{n}.asc").heights for n in names])
     thickness, speed, pressure = np.moveaxis(np.array(single), 1, 0)
-    maps = hazard_maps(computed, reached=0.1, pressures=[1.0])
+    maps = hazard_maps(computed_folder, reached=0.1, pressures=[1.0])
     reached, hit = maps.exceedances
     assert reached.probability == pytest.approx((thickness > 0.1).mean(axis=0))
     assert hit.probability == pytest.approx((pressure > 1.0).mean(axis=0))
@@ -67,10 +69,10 @@ def test_probabilities_and_percentiles_are_those_of_the_single_slides(study, com
     assert maps.terrain.heights.shape == thickness.shape[1:]
 
 
-def test_bands_of_the_terrain_join_to_the_same_maps(computed, monkeypatch):
-    whole = hazard_maps(computed)
+def test_bands_of_the_terrain_join_to_the_same_maps(computed_folder, monkeypatch):
+    whole = hazard_maps(computed_folder)
     monkeypatch.setattr("snowshed.analysis.hazard.maps.BAND_BYTES", 40_000)
-    parts = hazard_maps(computed)
+    parts = hazard_maps(computed_folder)
     for one, other in zip(whole.exceedances, parts.exceedances):
         assert (one.probability == other.probability).all()
     assert all((whole.percentiles[k] == parts.percentiles[k]).all() for k in whole.percentiles)
@@ -83,8 +85,8 @@ def test_a_study_that_kept_no_maps_says_so(study, tmp_path):
         hazard_maps(tmp_path / "runs")
 
 
-def test_damaged_maps_are_told(computed):
-    with Store.open(computed) as store:
+def test_damaged_maps_are_told(computed_folder):
+    with Store.open(computed_folder) as store:
         (data,) = store.particles(store.runs("slides")[0].hash).values()
     with pytest.raises(InputError, match="not maps that snowshed stored"):
         PeakMaps.unpacked(data[:-40])

@@ -20,14 +20,14 @@ HASHES = [run.hash for run in RUNS]
 
 
 @pytest.fixture
-def opened(tmp_path):
-    with Store.create(tmp_path / "store") as opened:
-        opened.register("tiny", ["panel.friction"], RUNS)
-        yield opened
+def tiny_store(tmp_path):
+    with Store.create(tmp_path / "store") as tiny_store:
+        tiny_store.register("tiny", ["panel.friction"], RUNS)
+        yield tiny_store
 
 
-def test_a_study_comes_back_in_order(opened):
-    with Store.open(opened.folder) as again:
+def test_a_study_comes_back_in_order(tiny_store):
+    with Store.open(tiny_store.folder) as again:
         assert again.studies() == ["tiny"]
         assert again.axes("tiny") == ["panel.friction"]
         assert [(run.hash, run.scene) for run in again.runs("tiny")] == [
@@ -36,10 +36,10 @@ def test_a_study_comes_back_in_order(opened):
         assert {run.status for run in again.runs("tiny")} == {"pending"}
 
 
-def test_a_changed_study_replaces_the_one_of_its_name_and_keeps_what_is_done(opened):
-    opened.record(outcome(HASHES[0]))
-    opened.register("tiny", [], RUNS[:2])
-    assert [run.status for run in opened.runs("tiny")] == ["done", "pending"]
+def test_a_changed_study_replaces_the_one_of_its_name_and_keeps_what_is_done(tiny_store):
+    tiny_store.record(outcome(HASHES[0]))
+    tiny_store.register("tiny", [], RUNS[:2])
+    assert [run.status for run in tiny_store.runs("tiny")] == ["done", "pending"]
 
 
 @pytest.mark.parametrize(
@@ -58,85 +58,85 @@ def test_a_changed_study_replaces_the_one_of_its_name_and_keeps_what_is_done(ope
         ("UPDATE event SET ended = x'ff'", "ended: b'.xff'"),
     ],
 )
-def test_what_a_store_cannot_hold_is_named(opened, query, message):
-    opened.record(outcome(HASHES[0]))
-    connection = sqlite3.connect(opened.folder / FILE)
+def test_what_a_store_cannot_hold_is_named(tiny_store, query, message):
+    tiny_store.record(outcome(HASHES[0]))
+    connection = sqlite3.connect(tiny_store.folder / FILE)
     with connection:
         connection.execute(query)
     connection.close()
     with pytest.raises(InputError, match=rf"store\.sqlite: .*{message}"):
-        read_table(opened.folder)
+        read_table(tiny_store.folder)
 
 
-def test_studies_share_runs(opened):
-    opened.register("other", ["panel.friction"], reversed(RUNS))
-    opened.record(outcome(HASHES[1]))
-    assert [run.status for run in opened.runs("other")] == ["pending", "done", "pending"]
+def test_studies_share_runs(tiny_store):
+    tiny_store.register("other", ["panel.friction"], reversed(RUNS))
+    tiny_store.record(outcome(HASHES[1]))
+    assert [run.status for run in tiny_store.runs("other")] == ["pending", "done", "pending"]
     with pytest.raises(InputError, match="holds several studies; name one of: other, tiny"):
-        opened.named(None)
+        tiny_store.named(None)
     with pytest.raises(InputError, match="holds no study 'third'"):
-        opened.named("third")
+        tiny_store.named("third")
 
 
-def test_what_is_recorded_is_read_back_exactly(opened):
+def test_what_is_recorded_is_read_back_exactly(tiny_store):
     value = 0.1 + 0.2
     given = outcome(HASHES[0], events=1)
     given.events[0]["height_m"] = value
     given.events[0]["density_kg_m3"] = None
-    opened.record(given)
-    ((height, density, wall),) = opened.read(
+    tiny_store.record(given)
+    ((height, density, wall),) = tiny_store.read(
         "SELECT height_m, density_kg_m3, wall_s FROM event JOIN event_timing USING (hash, event)"
     )
     assert (height, density, wall) == (value, None, 0.5)
 
 
-def test_only_the_first_result_of_a_run_counts(opened):
-    opened.record(outcome(HASHES[0]))
-    opened.record(outcome(HASHES[0], "failed", 1, "too late"))
-    assert opened.runs("tiny")[0].status == "done"
-    assert opened.read("SELECT count(*) FROM event") == [(2,)]
+def test_only_the_first_result_of_a_run_counts(tiny_store):
+    tiny_store.record(outcome(HASHES[0]))
+    tiny_store.record(outcome(HASHES[0], "failed", 1, "too late"))
+    assert tiny_store.runs("tiny")[0].status == "done"
+    assert tiny_store.read("SELECT count(*) FROM event") == [(2,)]
 
 
-def test_a_study_whose_files_were_moved_goes_on(opened):
+def test_a_study_whose_files_were_moved_goes_on(tiny_store):
     """Same hash, other path: what is computed stays, all else is looked for at the new place."""
-    opened.record(outcome(HASHES[0]))
+    tiny_store.record(outcome(HASHES[0]))
     moved = [replace(run, scene=run.scene.replace("{", '{"moved": 1, ', 1)) for run in RUNS]
-    opened.register("tiny", ["panel.friction"], moved)
-    scenes = [run.scene for run in opened.runs("tiny")]
+    tiny_store.register("tiny", ["panel.friction"], moved)
+    scenes = [run.scene for run in tiny_store.runs("tiny")]
     assert scenes == [RUNS[0].scene, *(run.scene for run in moved[1:])]
-    assert opened.runs("tiny")[0].status == "done"
+    assert tiny_store.runs("tiny")[0].status == "done"
 
 
-def test_a_failed_run_can_be_tried_again(opened):
-    opened.record(outcome(HASHES[0], "failed", 1, "broken"))
-    opened.record(outcome(HASHES[1]))
-    opened.reset(HASHES)
-    assert [run.status for run in opened.runs("tiny")] == ["pending", "done", "pending"]
-    assert opened.read("SELECT DISTINCT hash FROM event") == [(HASHES[1],)]
+def test_a_failed_run_can_be_tried_again(tiny_store):
+    tiny_store.record(outcome(HASHES[0], "failed", 1, "broken"))
+    tiny_store.record(outcome(HASHES[1]))
+    tiny_store.reset(HASHES)
+    assert [run.status for run in tiny_store.runs("tiny")] == ["pending", "done", "pending"]
+    assert tiny_store.read("SELECT DISTINCT hash FROM event") == [(HASHES[1],)]
 
 
-def test_a_run_belongs_to_one_owner_until_it_is_released_or_recorded(opened):
+def test_a_run_belongs_to_one_owner_until_it_is_released_or_recorded(tiny_store):
     one, other, _ = HASHES
-    assert opened.claim(one, "a") and opened.claim(other, "a")
-    assert opened.claim(one, "a")
-    assert not opened.claim(one, "b")
-    opened.record(outcome(one))
-    assert not opened.claim(one, "b")
-    opened.release("a")
-    assert opened.claim(other, "b")
-    assert opened.owners() == ["b"]
+    assert tiny_store.claim(one, "a") and tiny_store.claim(other, "a")
+    assert tiny_store.claim(one, "a")
+    assert not tiny_store.claim(one, "b")
+    tiny_store.record(outcome(one))
+    assert not tiny_store.claim(one, "b")
+    tiny_store.release("a")
+    assert tiny_store.claim(other, "b")
+    assert tiny_store.owners() == ["b"]
 
 
-def test_the_claims_of_a_dead_owner_are_taken_over(opened):
-    assert opened.claim(HASHES[0], "died-long-ago")
-    with Store.open(opened.folder) as another, ownership(another) as living:
+def test_the_claims_of_a_dead_owner_are_taken_over(tiny_store):
+    assert tiny_store.claim(HASHES[0], "died-long-ago")
+    with Store.open(tiny_store.folder) as another, ownership(another) as living:
         assert another.claim(HASHES[1], living)
-        assert is_alive(opened, living) and not is_alive(opened, "died-long-ago")
-        release_dead(opened)
-        assert opened.claim(HASHES[0], "me")
-        assert not opened.claim(HASHES[1], "me")
-    assert opened.claim(HASHES[1], "me")
-    assert not any(opened.running.iterdir())
+        assert is_alive(tiny_store, living) and not is_alive(tiny_store, "died-long-ago")
+        release_dead(tiny_store)
+        assert tiny_store.claim(HASHES[0], "me")
+        assert not tiny_store.claim(HASHES[1], "me")
+    assert tiny_store.claim(HASHES[1], "me")
+    assert not any(tiny_store.running.iterdir())
 
 
 def _claim_all(folder, owner, answers):
@@ -182,32 +182,32 @@ def test_processes_that_make_the_same_store_at_once_all_succeed(tmp_path):
         assert len(mine.runs("race")) == 3
 
 
-def test_a_full_disk_is_a_clear_error_and_loses_nothing(opened):
-    opened.record(outcome(HASHES[0]))
-    before = contents(opened.folder)
-    (pages,) = opened.read("PRAGMA page_count")[0]
-    opened.read(f"PRAGMA max_page_count = {pages}")
+def test_a_full_disk_is_a_clear_error_and_loses_nothing(tiny_store):
+    tiny_store.record(outcome(HASHES[0]))
+    before = contents(tiny_store.folder)
+    (pages,) = tiny_store.read("PRAGMA page_count")[0]
+    tiny_store.read(f"PRAGMA max_page_count = {pages}")
     with pytest.raises(StudyError, match=r"disk is full; stored results are safe.*repeat"):
-        opened.record(outcome(HASHES[1], events=5000))
-    assert contents(opened.folder) == before
-    opened.read(f"PRAGMA max_page_count = {pages + 10000}")
-    opened.record(outcome(HASHES[1], events=5000))
-    assert opened.state(HASHES[1]) == ("done", None)
+        tiny_store.record(outcome(HASHES[1], events=5000))
+    assert contents(tiny_store.folder) == before
+    tiny_store.read(f"PRAGMA max_page_count = {pages + 10000}")
+    tiny_store.record(outcome(HASHES[1], events=5000))
+    assert tiny_store.state(HASHES[1]) == ("done", None)
 
 
-def test_runs_are_found_by_the_beginning_of_their_hash(opened):
-    assert opened.find(HASHES[0][:12]).hash == HASHES[0]
+def test_runs_are_found_by_the_beginning_of_their_hash(tiny_store):
+    assert tiny_store.find(HASHES[0][:12]).hash == HASHES[0]
     with pytest.raises(InputError, match="no run with a hash that begins with 'xyz'"):
-        opened.find("xyz")
+        tiny_store.find("xyz")
     with pytest.raises(InputError, match="several runs"):
-        opened.find("")
+        tiny_store.find("")
 
 
-def test_measures_that_came_later_are_added_to_an_older_store(opened, monkeypatch):
-    opened.record(outcome(HASHES[0]))
-    opened.close()
+def test_measures_that_came_later_are_added_to_an_older_store(tiny_store, monkeypatch):
+    tiny_store.record(outcome(HASHES[0]))
+    tiny_store.close()
     monkeypatch.setattr(database, "STORED_TYPES", {**STORED_TYPES, "wetness": "REAL"})
-    with Store.open(opened.folder) as newer:
+    with Store.open(tiny_store.folder) as newer:
         assert newer.read("SELECT height_m, wetness FROM event WHERE event = 1") == [(10.0, None)]
 
 
@@ -249,16 +249,16 @@ def test_a_damaged_store_whose_error_is_no_text(tmp_path):
         Store.open(tmp_path)
 
 
-def test_a_store_of_another_form_is_refused(opened):
-    opened.read("PRAGMA user_version = 99")
+def test_a_store_of_another_form_is_refused(tiny_store):
+    tiny_store.read("PRAGMA user_version = 99")
     with pytest.raises(InputError, match="another version of snowshed"):
-        Store.open(opened.folder)
+        Store.open(tiny_store.folder)
 
 
 def test_a_store_that_cannot_be_written_can_be_read(tmp_path, monkeypatch):
-    with Store.create(tmp_path / "store") as opened:
-        opened.register("tiny", ["panel.friction"], RUNS)
-        opened.record(outcome(HASHES[0]))
+    with Store.create(tmp_path / "store") as tiny_store:
+        tiny_store.register("tiny", ["panel.friction"], RUNS)
+        tiny_store.record(outcome(HASHES[0]))
         monkeypatch.setattr(os, "access", lambda *where: False)
         with pytest.raises(InputError, match=r"left in the middle of a change"):
             Store.open(tmp_path / "store")
@@ -270,5 +270,5 @@ def test_a_store_that_cannot_be_written_can_be_read(tmp_path, monkeypatch):
     assert {file: file.stat().st_mtime_ns for file in (tmp_path / "store").iterdir()} == before
 
 
-def test_rows_say_which_version_computed_them(opened):
-    assert {run.version for run in opened.runs("tiny")} == {_core.version}
+def test_rows_say_which_version_computed_them(tiny_store):
+    assert {run.version for run in tiny_store.runs("tiny")} == {_core.version}

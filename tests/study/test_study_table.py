@@ -18,7 +18,7 @@ from snowshed.study import Factor, Study, export, read_table, to_dataset
 from snowshed.study.database import FILE, MEASURED_TYPES, TIMING
 from snowshed.study.store import Store
 
-computed = study_helpers.computed  # a fixture
+computed_folder = study_helpers.computed_folder  # a fixture
 
 
 def store_with(folder, study, *statuses):
@@ -39,21 +39,21 @@ def mixed(tmp_path):
     return store_with(tmp_path / "store", tiny_study(), "done", "failed", "pending")
 
 
-def test_one_row_per_run_and_event_in_the_order_of_the_study(computed):
-    table = read_table(computed)
+def test_one_row_per_run_and_event_in_the_order_of_the_study(computed_folder):
+    table = read_table(computed_folder)
     assert table["panel.friction"].tolist() == [0.1, 0.1, 0.2, 0.2, 0.3, 0.3]
     assert table.event.tolist() == [1, 2] * 3
     assert table["hash"].tolist() == [run.hash for run in tiny_study().runs() for _ in range(2)]
 
 
-def test_every_row_says_how_it_was_computed(computed):
-    table = read_table(computed)
+def test_every_row_says_how_it_was_computed(computed_folder):
+    table = read_table(computed_folder)
     assert set(EVENT_COLUMNS) - {"wall_s"} <= set(table.columns)
     assert not {"wall_s", *TIMING} & set(table.columns)
     settings = table.iloc[0][["seed", "dimension", "dx", "precision", "transfer", "flip_ratio"]]
     assert settings.tolist() == [1, 2, 0.02, "float", "flip", 0.99]
     assert {"version", "basis", "courant_factor", "particles_per_voxel", "pattern"} <= set(table)
-    timed = read_table(computed, timing=True)
+    timed = read_table(computed_folder, timing=True)
     assert (timed.wall_s > 0).all() and (timed.run_wall_s > 0).all()
     assert (timed.threads == 1).all() and (timed.particles > 0).all()
 

@@ -1,4 +1,4 @@
-"""The harness of injected faults: its files, its copy of the sources, its verdicts, its table."""
+"""Harness of injected faults: its files, its copy of the sources, its verdicts, its tables."""
 
 import signal
 import subprocess
@@ -204,7 +204,7 @@ def test_switches_that_overlap_are_refused():
 
 @pytest.fixture
 def workshop(tmp_path):
-    """A tree and an environment whose programs say what the test wants them to."""
+    """Build tree and environment whose programs print what a test has chosen."""
     shop = Workshop(tmp_path, tmp_path)
 
     def says(cpp="", python="", code=0):

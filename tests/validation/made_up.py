@@ -1,4 +1,4 @@
-"""A case with answers that are known beforehand, which can fail in every way."""
+"""Made-up case with known answers that can fail in every way."""
 
 import os
 import signal
@@ -15,7 +15,7 @@ MEGABYTES = 150
 
 
 def measure(settings):
-    """Err by 4.4 dx^2 (apic) or 24 dx^2 (pic); take 0.02/dx s, or 0.015/dx s."""
+    """Return errors of 4.4 dx^2 (apic) or 24 dx^2 (pic), and times of 0.02/dx s or 0.015/dx s."""
     mode, dx = settings.get("mode", "works"), settings.get("dx", 0.1)
     if mode == "raises":
         raise ValueError("no such\n snow")

@@ -1,4 +1,4 @@
-"""Made-up tables whose answers are known."""
+"""Analysis of made-up tables with known answers."""
 
 from dataclasses import replace
 from math import inf, isnan, nan
@@ -24,7 +24,7 @@ from snowshed.analysis.accuracy.solutions import (
 
 
 def table_of(*results, quantity="height"):
-    """A table with one measurement for each (settings, error, time)."""
+    """Return a table with one measurement for each (settings, error, time)."""
     return to_table(
         MeasuredSolution("made_up", settings, [Measured(quantity, error, 0.0, error)], wall_s=wall)
         for settings, error, wall in results
@@ -130,7 +130,7 @@ def test_the_quickest_is_accurate_enough_or_else_the_most_accurate():
 
 def test_cheapest_settings_for_each_accuracy():
     table = table_of(
-        ({"dx": 0.4}, 0.004, 1.0),  # by chance: the next error is larger
+        ({"dx": 0.4}, 0.004, 1.0),  # small by chance, because the next error is larger
         ({"dx": 0.2}, 0.04, 8.0),
         ({"dx": 0.1}, 0.015, 64.0),
     )
@@ -213,7 +213,7 @@ def test_every_series_must_converge_fast_enough():
     assert (criterion.kind, criterion.worst, criterion.count) == ("order", pytest.approx(1.0), 2)
     assert criterion.settings == {"transfer": "pic"}
     assert criterion.holds is False
-    # A criterion for the finest grid's error does not restrict the order to that grid.
+    # A criterion for the error on the finest grid does not restrict the order to that grid.
     applies_to = {"dx": 0.1, "transfer": "apic"}
     error, order = compare(table, [case_with(limit=0.02, limit_for=applies_to, **facts)])
     assert error.holds and order.holds

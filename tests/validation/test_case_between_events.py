@@ -1,4 +1,4 @@
-"""Carrying over against reseeding."""
+"""Stacks that are carried over, and reseeded stacks."""
 
 import numpy as np
 import pytest
@@ -58,7 +58,7 @@ def test_a_conversion_measures_the_stack_as_it_was_left(runs):
 
 
 def heap(chunk):
-    """A body 1 m long and 0.1 m high, and a row of particles beyond a gap of 0.5 m."""
+    """Return a body 1 m long and 0.1 m high, and a row of particles beyond a gap of 0.5 m."""
     x, z = np.meshgrid(np.linspace(0, 1, 101), np.linspace(0, 0.1, 11))
     x, z = np.append(x, 1.5 + 0.01 * np.arange(chunk)), np.append(z, np.zeros(chunk))
     positions, masses = np.column_stack([x, 0 * x, z]), np.ones(len(x))
@@ -75,7 +75,7 @@ def test_a_chunk_that_vanishes_shortens_the_stack_but_not_its_body():
 
 
 def test_space_is_counted_in_particles_of_the_slabs(reseeded, runs):
-    """A slab of 0.245 m x 0.02 m is seeded as densely as the stack."""
+    """A slab of 0.245 m x 0.02 m has as many particles per volume as the stack."""
     found = [run.conversions[-1].particles_after for run in runs]
     in_a_slab = [run.cost.particles - count for run, count in zip(runs, found)]
     assert np.std(in_a_slab) < 1

@@ -35,7 +35,7 @@ def test_the_plane_law_rises_through_the_changeover():
 
 
 def principal_stresses(p, q, dimension):
-    """Largest and smallest compression, for plane strain or triaxial compression."""
+    """Return the largest and smallest compression in plane strain or triaxial compression."""
     if dimension == 2:
         return p + q / np.sqrt(3), p - q / np.sqrt(3)
     return p + 2 * q / 3, p - q / 3
@@ -44,7 +44,7 @@ def principal_stresses(p, q, dimension):
 @pytest.mark.parametrize("dimension", [2, 3])
 @pytest.mark.parametrize("angle", [22.0, 30.0])
 def test_the_snow_ends_at_coulombs_friction_when_it_is_sheared(dimension, angle):
-    """In shear at constant volume, the core's return mapping gives sin phi."""
+    """The core's return mapping gives sin phi in shear at constant volume."""
     slope = granular_column.critical_state_slope(angle, dimension)
     law = CamClay(1e5, 0.3, slope, 0.0, collapse.HARDENING, dimension)
     p, q, ev = 300.0, 0.0, law.initial_plastic_strain(20.0)
@@ -101,7 +101,7 @@ def test_columns_come_to_rest_the_taller_the_farther_and_higher(deposits):
     heights = [deposit.height for deposit in deposits.values()]
     assert runouts == sorted(runouts)
     assert heights == sorted(heights)
-    assert deposits[0.5].height == pytest.approx(0.5, abs=0.03)  # its middle never moves
+    assert deposits[0.5].height == pytest.approx(0.5, abs=0.03)  # the middle never moves
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -113,7 +113,7 @@ def test_measure_compares_with_the_laws(dimension):
     assert runout.exact == granular_column.runout_law(1.0, dimension)
     for one in outcome.measured:
         assert one.error == pytest.approx(one.value / one.exact - 1)
-    # The run-out of the method at five cells to the radius; see the remarks.
+    # This is the run-out of the method with five cells per radius; see the remarks.
     assert runout.error == pytest.approx({2: -0.30, 3: -0.51}[dimension], abs=0.06)
     assert height.error == pytest.approx(-0.15, abs=0.04)
     assert outcome.updates == outcome.steps * outcome.particles

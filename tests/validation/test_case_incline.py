@@ -90,7 +90,7 @@ def test_a_thrown_slab_stops_where_it_should():
 
 
 def test_the_angle_is_found_between_those_that_were_tried(monkeypatch):
-    """With slabs that slide exactly by Coulomb's law, bisection is exact to its width."""
+    """Bisection is exact to its width if slabs slide exactly by Coulomb's law."""
 
     core = SimpleNamespace(particle_updates=6, total_steps=3, particle_count=2)
 

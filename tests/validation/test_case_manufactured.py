@@ -1,4 +1,4 @@
-"""Chosen motions: Newton's law by differences, forces applied in time, and coarse solutions."""
+"""Chosen motions: Newton's law by differences, times of forces, and coarse solutions."""
 
 import numpy as np
 import pytest
@@ -19,13 +19,13 @@ NEAR = 1e-4  # m, for differences in space
 
 
 def difference(function, at, step):
-    """The first derivative, from values up to two steps away."""
+    """Return the first derivative from values up to two steps away."""
     far = function(at - 2 * step) - function(at + 2 * step)
     return (far + 8 * (function(at + step) - function(at - step))) / (12 * step)
 
 
 def gradient(field, points):
-    """d field/dX of a field of vectors or tensors, the last index that of X."""
+    """Return d field/dX of vectors or tensors; the last index belongs to X."""
     parts = [
         difference(lambda x, axis=axis: field(points + x * np.eye(2)[axis]), 0.0, NEAR)
         for axis in range(2)
@@ -34,7 +34,7 @@ def gradient(field, points):
 
 
 def first_piola_kirchhoff(motion, points, time):
-    """P = tau F^-T of Hencky elasticity, from an eigen-decomposition of F F^T."""
+    """Return P = tau F^-T of Hencky elasticity by an eigendecomposition of F F^T."""
     stretch = np.eye(2) + gradient(lambda x: motion.displacement(x, time), points)
     values, vectors = np.linalg.eigh(stretch @ stretch.transpose(0, 2, 1))
     strains = np.log(values) / 2
@@ -93,7 +93,7 @@ def test_a_body_whose_motion_is_none_stays_where_it_is():
 
 
 def test_all_of_a_force_is_applied_although_steps_vary(monkeypatch):
-    """With a force that is constant in space and time, momentum is force times time."""
+    """Momentum is force times time if the force is constant in space and time."""
     monkeypatch.setattr(Vortex, "body_force", lambda self, points, time: 0 * points + [3.0, -1.0])
     body = ForcedBody(Vortex(0.5), {**SCHEME, **FLIP, "dx": 0.1})
     begun = body.drive.mean(body.drive.core.velocities())
@@ -123,7 +123,7 @@ def test_matrices(case):
 @pytest.mark.parametrize("start", [WAVES, VORTEX], ids=["waves", "vortex"])
 @pytest.mark.parametrize("transfer", [FLIP, APIC], ids=["flip", "apic"])
 def test_finer_cells_follow_better(start, transfer):
-    # Short steps: APIC's longest ones are coarse enough to hide some of the error of the cells.
+    # Steps are short, because APIC's longest steps would hide some of the error of the cells.
     settings = {**SCHEME, **start, **transfer, "particles_per_voxel": 9, "courant_factor": 0.6}
     errors = [manufactured.measure({**settings, "dx": 1 / n}).measured[0].error for n in (12, 18)]
     assert errors[1] < errors[0] / 1.5**1.6

@@ -1,4 +1,4 @@
-"""Material paths: the rate equations against closed forms, and the core against them."""
+"""Material paths: rate equations against closed forms, and the core against the rate equations."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from validation.material_paths.rate_equations import RateEquations, evenly
 
 from snowshed._core import CamClay
 
-CONSTANTS, STRENGTH = material_paths.calibrated()
+CONSTANTS, STRENGTH = material_paths.calibrated_snow()
 
 
 def equations(dimension=3, **changes):
@@ -148,7 +148,7 @@ def test_entries_measure_what_the_case_lists(case):
 
 
 def test_another_law_would_be_noticed(monkeypatch):
-    """A core with a slightly different slope is not within the limit, however small the steps."""
+    """A core with a slightly different slope exceeds the limit, even with small steps."""
     changed = CONSTANTS._replace(critical_state_slope=CONSTANTS.critical_state_slope * 1.0001)
     reference = StrainPath(-0.06, lateral=0.0).reference()
     monkeypatch.setattr(material_paths, "calibrated", lambda: (changed, STRENGTH))

@@ -1,4 +1,4 @@
-"""A slab thrown from a panel's edge: the rigid slab, made-up flights, and a coarse throw."""
+"""Slabs thrown from a panel's edge: the rigid slab, made-up flights, and a coarse throw."""
 
 import math
 
@@ -34,7 +34,7 @@ def test_long_slabs_are_held_up_longer_and_fly_further():
 
 
 def parabola(wind):
-    """A flight that `wind`, m/s2, pushes aside."""
+    """Return a flight with a sideways acceleration `wind`, m/s2."""
     times = np.linspace(0.0, 0.5, 251)
     pull = np.array([wind, 0.0, -9.81])
     return [
@@ -45,10 +45,10 @@ def parabola(wind):
 
 
 def test_deviation_from_the_parabola():
-    assert panel_edge.off_parabola(parabola(0.0)) < 1e-12
+    assert panel_edge.parabola_deviation(parabola(0.0)) < 1e-12
     flight = parabola(0.1)
     distance = np.linalg.norm(flight[-1].position - flight[0].position)
-    assert panel_edge.off_parabola(flight) == pytest.approx(0.1 * 0.5**2 / 2 / distance)
+    assert panel_edge.parabola_deviation(flight) == pytest.approx(0.1 * 0.5**2 / 2 / distance)
 
 
 def test_landing_is_where_the_drop_is_crossed():

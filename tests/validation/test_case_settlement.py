@@ -1,4 +1,4 @@
-"""Columns under their own weight: the references against integration, and coarse columns."""
+"""Columns under their own weight: references compared with integrals, and coarse columns."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ from validation.settlement.case import CASES, ELASTIC, ElasticColumn, YieldingCo
 
 WEIGHT = settlement.DENSITY * settlement.GRAVITY
 COLUMNS = {"elastic": ElasticColumn, "yielding": YieldingColumn}
-COARSE = {**settlement.REGULAR, "dx": 0.04}
+COARSE = {**settlement.REGULAR_SETTINGS, "dx": 0.04}
 
 
 def measured(outcome):
@@ -24,7 +24,7 @@ def test_the_elastic_column_is_in_equilibrium(dimension):
 
 @pytest.mark.parametrize("kind", COLUMNS)
 def test_settlement_is_the_integral_of_the_shortening(kind):
-    """Integrate down the column: each layer's strain follows from the pressure by the law."""
+    """Integration down the column, with each layer's strain by the law from its pressure."""
     column = COLUMNS[kind](2)
     slope = np.gradient(column.settlement(np.linspace(0.0, 0.4, 2001)), 0.4 / 2000)[20:-20]
     depth = np.linspace(0.0, 0.4, 2001)[20:-20]
@@ -45,13 +45,13 @@ def test_a_column_that_never_yields_is_the_elastic_one(monkeypatch):
 
 
 def test_the_yielding_column_is_in_equilibrium():
-    """Layer by layer from the top, with the law in rates and the load instead of the strain."""
+    """Integration down the column with the rate equations, driven by the load, not the strain."""
     column = YieldingColumn(2)
     law = ElasticColumn(2).law
     down = np.array([0.0, -1.0])
 
     def rates(_, state):
-        """How strain and settlement grow with depth; plastic if on the surface."""
+        """Return the rates of strain and settlement over depth; plastic if on the yield surface."""
         *material, x, _ = state
         material = np.array(material)
         flows = law.yield_function(material) >= -1e-6
@@ -65,15 +65,17 @@ def test_the_yielding_column_is_in_equilibrium():
     yields = np.interp(0.0, *_overshoot(law, down))
     start = law.initial_state(settlement.STRENGTH) + np.append(down * yields, 0.0)
     depth = law.stiffness[0, 0] * yields * np.exp(yields) / WEIGHT
-    sunk = float(ElasticColumn(2).settlement(np.array(depth)))
-    solution = solve_ivp(rates, (depth, 0.4), [*start, yields, sunk], rtol=1e-9, atol=1e-12)
+    settlement_at_yield = float(ElasticColumn(2).settlement(np.array(depth)))
+    solution = solve_ivp(
+        rates, (depth, 0.4), [*start, yields, settlement_at_yield], rtol=1e-9, atol=1e-12
+    )
     p, _ = law.invariants(solution.y[:3, -1])
     assert float(column.pressure(np.array(0.4))) == pytest.approx(float(p), rel=1e-4)
     assert float(column.settlement(np.array(0.4))) == pytest.approx(solution.y[-1, -1], rel=1e-4)
 
 
 def _overshoot(law, down):
-    """y along the elastic path, and the strain: to interpolate where it vanishes."""
+    """y along the elastic path, and the strain, for interpolation to y = 0."""
     x = np.linspace(0.001, 0.02, 20001)
     start = law.initial_state(settlement.STRENGTH)
     return [law.yield_function(start + np.append(down * one, 0.0)) for one in x], x

@@ -1,4 +1,4 @@
-"""Closed forms of the snow slide's cases, and errors that their measures could miss."""
+"""Closed forms of the snow slide's cases, and errors that their measures might miss."""
 
 import numpy as np
 import pytest

@@ -16,7 +16,7 @@ def measured(outcome):
 
 
 def test_the_expanded_disc_is_in_equilibrium():
-    """d sigma_rr/dr + (sigma_rr - sigma_tt)/r = -rho omega^2 r, by differences."""
+    """The closed form solves d sigma_rr/dr + (sigma_rr - sigma_tt)/r = -rho omega^2 r."""
     r = np.linspace(1e-3, RADIUS, 20001)
     u = spin.expansion(r)
     radial, around = np.gradient(u, r, edge_order=2), u / r

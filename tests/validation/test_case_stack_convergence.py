@@ -1,4 +1,4 @@
-"""The recorded stacks, and the case that compares with them."""
+"""Recorded stacks, and the case that compares new stacks with them."""
 
 import json
 
@@ -66,7 +66,7 @@ def test_the_reference_is_the_finest_grid_of_the_scheme(dimension, scheme, runs)
 
 
 def test_an_event_that_the_reference_has_not_has_no_exact_value():
-    """The finest grid in space has two events; a coarser grid is no reference for more events."""
+    """The finest grid in space has two events; coarser grids are no reference for more events."""
     there = recorded(3, scheme="objective")
     assert there.events == 2
     assert there.mean("height", 2) > 0 and np.isnan(there.mean("height", 3))
@@ -230,11 +230,11 @@ def test_stacks_of_the_default_scheme_are_within_their_limits():
 @pytest.mark.parametrize("full", [True, False])
 def test_the_limits_apply_to_the_scheme_of_the_recorded_runs(full):
     wanted = stack_convergence.AS_RECORDED.items()
-    listed = [
+    settings_list = [
         one
         for one in CASE.matrix(full)
         if all(one.get(key) in alternatives(value) for key, value in wanted)
     ]
-    assert len(listed) >= 4
-    assert not any("flip_ratio" in one or one.get("transfer") == "apic" for one in listed)
-    assert {scheme_of(one) for one in listed} == set(REFERENCES)
+    assert len(settings_list) >= 4
+    assert not any("flip_ratio" in one or one.get("transfer") == "apic" for one in settings_list)
+    assert {scheme_of(one) for one in settings_list} == set(REFERENCES)

@@ -21,7 +21,7 @@ def measured(outcome):
 
 
 def test_the_beams_frequency_is_that_of_its_energies():
-    """Rayleigh's quotient: elastic energy over kinetic energy of the mode."""
+    """Return Rayleigh's quotient, the elastic energy over the kinetic energy of the mode."""
     x = np.linspace(0, 1, 2001)
     w, psi = BEAM.shape(x)
     shear = 1e6 / 2.6 * 0.2 * 10 * (1 + 3 / 7) / (12 + 11 * 3 / 7)
@@ -59,7 +59,7 @@ def test_swing_of_a_vibration_with_another_on_top():
 
 
 def spline(basis, u):
-    """The quadratic or cubic B-spline, as a sum of truncated powers, and its support."""
+    """Return the quadratic or cubic B-spline, as a sum of truncated powers, and its support."""
     n = 2 if basis == "quadratic" else 3
     knots = np.arange(n + 2) - (n + 1) / 2
     signs = np.array([(-1) ** k * math.comb(n + 1, k) for k in range(n + 2)])
@@ -78,7 +78,7 @@ def test_smoothing_is_that_of_interpolating_a_wave(basis, transfer):
     k = 2 * np.pi / cells
     speeds = np.cos(k * places)
     affine = -k * np.sin(k * places)
-    # The grid's velocities of a wave that has passed the grid once before.
+    # These are the grid's velocities of a wave that has passed the grid once before.
     grid = weights.T @ speeds / count
     if transfer == APIC:
         scale = 4 if basis == "quadratic" else 3

@@ -1,4 +1,4 @@
-"""Results folders imported into the recorded stacks, and measurements from recorded stacks."""
+"""Import of results folders into the recorded stacks, and measurements from these stacks."""
 
 import json
 from dataclasses import astuple
@@ -22,7 +22,7 @@ GRID = Grid(2, 0.02, 1, events=2)
 
 @pytest.fixture
 def reference(monkeypatch):
-    """Let the reference of the scheme objective have one small grid."""
+    """Replace the grids of the scheme objective by one small grid."""
     settings = {"scheme": "objective", "sleep_speed": 0.02}
     reference = lab_records.Reference(settings, (GRID,))
     monkeypatch.setitem(lab_records.REFERENCES, "objective", reference)
@@ -30,7 +30,7 @@ def reference(monkeypatch):
 
 
 def test_a_folder_gives_the_entry_that_record_makes(reference, tmp_path):
-    """Two ways to one entry: the run in memory, and the particles that a run has stored."""
+    """A run in memory and the stored particles of the run give the same entry."""
     made = tmp_path / "made.json"
     lab_records.record(made, "objective")
     (wanted,) = lab_records.read_entries(made)
@@ -76,7 +76,7 @@ def test_an_unfinished_run_is_not_taken(reference, tmp_path):
 
 
 def test_the_package_brings_the_measurements_of_the_recorded_runs():
-    """They are not typed: they follow from lab_stack.json, except for the last digits of sums."""
+    """The packaged measurements follow from lab_stack.json, except for the last digits of sums."""
     packaged = [
         one
         for one in load_recorded()

@@ -145,7 +145,7 @@ def test_an_interrupt_ends_the_measurement_and_keeps_the_others(tmp_path):
     suite_run.send_signal(signal.SIGINT)
     _, errors = suite_run.communicate(timeout=120)
     assert errors.rstrip().endswith("KeyboardInterrupt")
-    assert time.perf_counter() - started < 10.0  # it would have taken 60 s
+    assert time.perf_counter() - started < 10.0  # the measurement would have taken 60 s
     assert len(MeasurementFile(path).read()) == 1
 
 

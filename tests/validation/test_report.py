@@ -24,7 +24,7 @@ PNG = b"\x89PNG\r\n\x1a\n"
 
 @pytest.fixture(scope="module")
 def report(tmp_path_factory):
-    """A folder with the report on a full made-up suite, one entry of which fails."""
+    """Return a folder with the report on a full made-up suite in which one entry fails."""
     folder = tmp_path_factory.mktemp("report")
     entries = [*made_up_case().matrix(True), {"dx": 0.1, "transfer": "flip"}]
     case = made_up_case(entries=entries)

@@ -1,4 +1,4 @@
-"""Runs, their balances and the verdict on them."""
+"""Runs of the stress suite, their balances, and the verdicts on them."""
 
 import math
 from typing import Any, cast
@@ -20,7 +20,7 @@ TERMS = ("kinetic", "gravitational", "elastic", "plastic", "friction", "sticking
 
 
 class Ledger:
-    """A simulation that consists of its energies and two particles."""
+    """Stand-in for a simulation, with energies and two particles."""
 
     def __init__(self) -> None:
         self.values = {f"{name}_j": 0.0 for name in (*TERMS, "transfer", "sleep", "damping")}
@@ -55,7 +55,7 @@ def test_balances_are_relative_to_what_came_in() -> None:
     assert errors["energy_error"] == pytest.approx(1 / 50)
     assert errors["energy_gain"] == 0
     assert errors["stored_excess"] == pytest.approx((15 - 50) / 50)
-    ledger.values.update(kinetic_j=40.0, elastic_j=12.0)  # 2 J more than came in
+    ledger.values.update(kinetic_j=40.0, elastic_j=12.0)  # 2 J more than the input
     balances.sample()
     errors = balances.energy_errors()
     assert errors["stored_excess"] == errors["final_excess"] == pytest.approx(2 / 50)
@@ -126,7 +126,7 @@ def test_bad_input_is_refused_without_measures() -> None:
 
 
 def test_free_fall_differs_from_the_balance_by_what_symplectic_euler_does() -> None:
-    """A block in free fall shows one error alone: it falls too far by g t dt/2."""
+    """A block in free fall has only one error: it falls too far by g t dt/2."""
     point = {**reference(), "kind": "throw", "speed": 0.1, "precision": "double"}
     scene = build(point, max_time=0.005)
     assert scene.events is not None

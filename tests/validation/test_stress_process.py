@@ -11,7 +11,7 @@ from validation.stress.space import reference
 
 
 def clumsy(run, report):
-    """Stand in for `process.compute`; `steps` says what goes wrong."""
+    """Stand in for `process.compute`; `steps` selects the failure."""
     if run.steps == 1:
         sys.stderr.write("first\nlast words\n")
         sys.stderr.flush()

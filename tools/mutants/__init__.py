@@ -1,1 +1,1 @@
-"""Injected faults, which test the tests. See docs/trust/injected-faults.md."""
+"""Injected faults, by which the tests are tested; see docs/trust/injected-faults.md."""

@@ -1,4 +1,4 @@
-"""Inject the faults one at a time and run tests until one fails: ``python -m tools.mutants``."""
+"""Inject faults one at a time, and run tests until one fails: ``python -m tools.mutants``."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tools.mutants.sources import SourceCopy
 from tools.mutants.trial import BuildError, Workshop
 
 ROOT = Path(__file__).parents[2]
-#: Pages with tables of the results.
+#: Pages that contain tables of the results.
 PAGES = {
     ROOT / "docs/trust/injected-faults.md": summary,
     ROOT / "docs/trust/list-of-faults.md": fault_list,
@@ -24,14 +24,14 @@ TARGETS = ("snowshed_tests", "_core", "snowshed-run")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Return 0 if every fault was caught or is known to survive, 1 if not, 2 on errors."""
+    """Return 0 if all faults were caught or are known to survive, 1 if not, 2 after an error."""
     options = _parser().parse_args(arguments)
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # restores the copy, as Ctrl-C does
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # restore the copy, as after Ctrl-C
     try:
         faults = read_faults()
         check_places(faults, ROOT)
         results = Results.read()
-        chosen = _chosen(faults, options, results)
+        chosen = _select_faults(faults, options, results)
         if options.list:
             print("\n".join(f"{fault.area}: {fault.name}: {fault.why}" for fault in chosen))
             return 0
@@ -60,7 +60,9 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _chosen(faults: Sequence[Fault], options: argparse.Namespace, results: Results) -> list[Fault]:
+def _select_faults(
+    faults: Sequence[Fault], options: argparse.Namespace, results: Results
+) -> list[Fault]:
     known = {fault.name for fault in faults} | {fault.area for fault in faults}
     for name in options.faults:
         if name not in known:
@@ -75,7 +77,7 @@ def _chosen(faults: Sequence[Fault], options: argparse.Namespace, results: Resul
 
 
 def _run(chosen: Sequence[Fault], faults: Sequence[Fault]) -> None:
-    """Try the faults, first those that need no compiler and those with a switch."""
+    """Try the faults; faults that need no compiler and faults with a switch come first."""
     copy = SourceCopy(ROOT, FOLDER / "source", faults)
     workshop = Workshop(FOLDER, FOLDER / "source")
     copy.update()
@@ -87,17 +89,17 @@ def _run(chosen: Sequence[Fault], faults: Sequence[Fault]) -> None:
     for number, fault in enumerate(ordered, 1):
         caught_by = _try(copy, workshop, fault)
         if fault.is_cpp and not fault.switch:
-            workshop.build(*TARGETS)  # the sound program again
+            workshop.build(*TARGETS)  # the program without faults
         if caught_by:
             _require_sound(workshop, caught_by, sound)
-        results = Results.read()  # again, because another run may have continued meanwhile
+        results = Results.read()  # another run may have written meanwhile
         results.enter(fault.name, caught_by)
         results.write(FILE, faults)
         print(f"{number}/{len(ordered)} {fault.name}: {caught_by or 'SURVIVES'}", flush=True)
 
 
 def _require_sound(workshop: Workshop, test: str, sound: set[str]) -> None:
-    """Raise BuildError if a test fails without any fault, because such a test proves nothing."""
+    """Raise BuildError if a test fails without a fault, because such a test shows nothing."""
     test = test.partition(" (")[0]
     if test not in sound and workshop.first_failure([test]):
         raise BuildError(f"{test} fails without any fault")

@@ -1,4 +1,4 @@
-"""Faults, and the TOML files that list them."""
+"""Faults, and the TOML files that contain them."""
 
 from __future__ import annotations
 
@@ -18,30 +18,30 @@ TEXTS = ("name", "file", "old", "new", "why")
 
 
 class FaultError(ValueError):
-    """A fault that cannot be injected, with the reason and the file."""
+    """Error for a fault that cannot be injected, with the reason and the file."""
 
 
 @dataclass(frozen=True)
 class Fault:
-    """One wrong line.
+    """Fault: a wrong line of source.
 
     Attributes
     ----------
     name, area
-        Name of the fault, and the part of the program that it is in.
+        Name of the fault, and the area of the program to which it belongs.
     file
-        The source that it changes, from the root of the project.
+        Changed source, relative to the root of the project.
     old, new
-        The text that occurs once in the source, and its replacement.
+        Text that occurs exactly once in the source, and its replacement.
     why
-        The wrong behaviour of the program.
+        Wrong behaviour of the program with the fault.
     tests
         Tests that should catch it: ``cpp:FILTER`` of GoogleTest, or a path for pytest.
     switch
-        Whether both texts are C++ expressions. Such faults are compiled together and one of them is
-        turned on when the tests start.
+        Whether both texts are C++ expressions. Such faults are compiled together, and one of them
+        is turned on when the tests start.
     survives
-        Reason why no test can catch it; empty if one should.
+        Reason why no test can catch the fault; empty if a test should catch it.
     """
 
     name: str
@@ -65,7 +65,7 @@ class Fault:
         Raises
         ------
         FaultError
-            If it does not occur, or more than once.
+            If the old text does not occur exactly once.
         """
         count = text.count(self.old)
         if count != 1:
@@ -76,12 +76,12 @@ class Fault:
 
 
 def read_faults(folder: Path = FOLDER) -> list[Fault]:
-    """Return the faults of all TOML files in a folder, by file and in their order there.
+    """Return the faults of all TOML files in a folder, sorted by file, in the order of each file.
 
     Raises
     ------
     FaultError
-        If a file is not as it must be, or two faults have the same name.
+        If a file has a wrong format, or two faults have the same name.
     """
     faults = [fault for path in sorted(folder.glob("*.toml")) for fault in _faults_of(path)]
     names = [fault.name for fault in faults]
@@ -138,7 +138,7 @@ def _fault(entry: Mapping[str, object], area: str, common: tuple[str, ...], wher
     if switch and not fault.is_cpp:
         raise FaultError(f"{where}: only faults in C++ have a switch")
     for text in (fault.old, fault.new) if switch else ():
-        if text[0] in "?:":  # it becomes an operand of another choice
+        if text[0] in "?:":  # the choice becomes an operand of another choice
             raise FaultError(f"{where}: {text!r} is no expression; a switch needs one")
     return fault
 

@@ -1,4 +1,4 @@
-"""Results of injected faults: the file that keeps them, and tables of pages in docs/trust."""
+"""Results of injected faults: their file, and their tables on pages in docs/trust."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ BEGIN, END = "<!-- faults: begin -->", "<!-- faults: end -->"
 
 @dataclass
 class Results:
-    """The test that caught each fault.
+    """Results: the test that caught each fault.
 
     Attributes
     ----------
     caught_by
-        The first test that failed, by the name of the fault; empty if none did.
+        First test that failed, by the name of the fault; empty if no test failed.
     date
-        Day on which each fault was tried.
+        Day on which each fault was tried, by name.
     """
 
     caught_by: dict[str, str] = field(default_factory=dict)
@@ -31,7 +31,7 @@ class Results:
 
     @classmethod
     def read(cls, path: Path = FILE) -> Results:
-        """Return the results in a file; none if there is no file."""
+        """Return the results in a file, or empty results if there is no file."""
         if not path.is_file():
             return cls()
         data = json.loads(path.read_text(encoding="utf-8"))["faults"]
@@ -41,14 +41,14 @@ class Results:
         )
 
     def write(self, path: Path, faults: Sequence[Fault]) -> None:
-        """Write the results of faults that still exist."""
+        """Write the results to a file, without faults that no longer exist."""
         names = [fault.name for fault in faults if fault.name in self.caught_by]
         data = {n: {"caught_by": self.caught_by[n], "date": self.date[n]} for n in names}
         text = json.dumps({"about": ABOUT, "faults": data}, indent=1)
         path.write_text(text + "\n", encoding="utf-8")
 
     def enter(self, name: str, caught_by: str) -> None:
-        """Enter the result of a fault."""
+        """Record the result of a fault."""
         self.caught_by[name] = caught_by
         self.date[name] = datetime.date.today().isoformat()
 
@@ -57,14 +57,14 @@ ABOUT = "Made by `make mutants`: the first test that failed with each fault; emp
 
 
 def summary(faults: Sequence[Fault], caught_by: Mapping[str, str]) -> str:
-    """Return the numbers of faults and of caught ones in each area, as Markdown.
+    """Return a Markdown table of the numbers of all and of caught faults in each area.
 
     Parameters
     ----------
     faults
         All faults.
     caught_by
-        The results; a fault without one is left out.
+        Results; faults without a result are left out.
     """
     tried = [fault for fault in faults if fault.name in caught_by]
     caught = [fault for fault in tried if caught_by[fault.name]]
@@ -82,7 +82,7 @@ def summary(faults: Sequence[Fault], caught_by: Mapping[str, str]) -> str:
 
 
 def fault_list(faults: Sequence[Fault], caught_by: Mapping[str, str]) -> str:
-    """Return every fault as Markdown, with the test that caught it; parameters as of `summary`."""
+    """Return a Markdown table of faults and the tests that caught them; parameters: `summary`."""
     lines = ["| area | fault | caught by |", "| --- | --- | --- |"]
     for fault in (fault for fault in faults if fault.name in caught_by):
         test = caught_by[fault.name]
@@ -92,7 +92,7 @@ def fault_list(faults: Sequence[Fault], caught_by: Mapping[str, str]) -> str:
 
 
 def with_table(page: str, text: str) -> str:
-    """Return a page with the table between its marks.
+    """Return a page with a table between its marks.
 
     Raises
     ------
@@ -107,7 +107,7 @@ def with_table(page: str, text: str) -> str:
 
 
 def _short(test: str) -> str:
-    """Return a test without its folder and parameters."""
+    """Return the name of a test without its folder and parameters."""
     if test.startswith("cpp:"):
         return test.removeprefix("cpp:")
     path, _, name = test.partition("::")

@@ -1,6 +1,6 @@
-"""A copy of the project's sources, in which faults are injected.
+"""Copy of the project's sources, in which faults are injected.
 
-The project's own files are never written. A run that is stopped at any time leaves them unchanged.
+The files of the project itself are never written; they stay unchanged even if a run is stopped.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from pathlib import Path
 
 from tools.mutants.faults import Fault, FaultError
 
-#: Text that every C++ source of the copy includes. The environment gives the number of the fault
-#: that is on; without a number no fault is on.
+#: Header of every C++ source of the copy. An environment variable gives the number of the fault
+#: that is on; without the variable no fault is on.
 SWITCH_HEADER = """#pragma once
 #include <cstdlib>
 inline int snowshed_fault_from_environment() {
@@ -29,22 +29,22 @@ inline const int snowshed_fault = snowshed_fault_from_environment();
 def with_faults(
     text: str, switched: Sequence[tuple[int, Fault]], fixed: Fault | None = None
 ) -> str:
-    """Return a source with switched faults, which are off, and perhaps one fault without a switch.
+    """Return a source with faults that have a switch, and with at most one fault that has none.
 
     Parameters
     ----------
     text
-        The source.
+        Text of the source.
     switched
-        Faults of this source that have a switch, with their numbers from 1. Those that overlap
-        `fixed` are left out.
+        Faults of this source with a switch, by numbers from 1. All switches are off. Faults that
+        overlap `fixed` are left out.
     fixed
-        A fault whose new text replaces the old one.
+        Fault whose new text replaces the old one.
 
     Raises
     ------
     FaultError
-        If two faults overlap without being in the same place.
+        If two faults overlap and are not in the same place.
     """
     spans: dict[tuple[int, int], list[tuple[int, Fault]]] = {}
     taken = fixed.place(text) if fixed else (0, 0)
@@ -73,16 +73,16 @@ def _switch(group: Sequence[tuple[int, Fault]]) -> str:
 
 
 class SourceCopy:
-    """The copy.
+    """Copy of the project's sources.
 
     Parameters
     ----------
     root
-        The project.
+        Root of the project.
     folder
-        Where the copy is made.
+        Folder of the copy.
     faults
-        All faults; those with a switch are in the copy from the beginning.
+        All faults; faults with a switch are in the copy from the beginning.
     """
 
     def __init__(self, root: Path, folder: Path, faults: Sequence[Fault]) -> None:
@@ -95,12 +95,12 @@ class SourceCopy:
             self._switched.setdefault(fault.file, []).append((number, fault))
 
     def update(self, files: Sequence[str] | None = None) -> None:
-        """Bring the copy up to date with the project; unchanged files keep their times.
+        """Update the copy from the project; unchanged files keep their times.
 
         Parameters
         ----------
         files
-            Files to copy, from the root; by default all that Git knows or would add.
+            Files to copy, relative to the root; by default all files that Git knows or would add.
         """
         wanted = set(self.project_files() if files is None else files)
         for name in wanted:
@@ -114,7 +114,7 @@ class SourceCopy:
                 path.unlink()
 
     def project_files(self) -> list[str]:
-        """Return the project's files, from its root."""
+        """Return the files of the project, relative to its root."""
         command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
         listed = subprocess.run(command, cwd=self.root, check=True, capture_output=True).stdout
         names = [name for name in listed.decode().split("\0") if name]
@@ -122,7 +122,7 @@ class SourceCopy:
 
     @contextmanager
     def inject(self, fault: Fault) -> Iterator[None]:
-        """Inject a fault without a switch, and remove it at the end, also after an error."""
+        """Inject a fault without a switch, and remove it at the end, even after an error."""
         try:
             self._write(fault.file, fault)
             yield

@@ -1,4 +1,4 @@
-"""Building the copy, and running tests on it until the first one fails."""
+"""Builds of the copy, and runs of tests on it until the first one fails."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ from pathlib import Path
 
 from tools.mutants.sources import SWITCH_HEADER
 
-TIME_LIMIT = 900  # s; tests that take longer hang
+TIME_LIMIT = 900  # s; tests that take longer count as hanging
 CPP_FAILED = re.compile(r"^\[  FAILED  \] ([\w/]+\.[\w/]+)", re.M)
 PYTHON_FAILED = re.compile(r"^(?:FAILED|ERROR) (\S+)", re.M)
 
 
 class BuildError(RuntimeError):
-    """The copy does not compile."""
+    """Error if the copy does not compile, or if its tests cannot show a fault."""
 
 
 class Workshop:
-    """The build tree of the copy, and a Python environment that imports from it.
+    """Build tree of the copy, and a Python environment that imports from it.
 
     Parameters
     ----------
     folder
-        Holds everything.
+        Folder of the build tree and the environment.
     source
-        The copy of the project.
+        Copy of the project.
     """
 
     def __init__(self, folder: Path, source: Path) -> None:
@@ -37,7 +37,7 @@ class Workshop:
         self.tree, self.venv = folder / "tree", folder / "venv"
 
     def prepare(self) -> None:
-        """Configure the build, and make the environment."""
+        """Configure the build, and create the environment."""
         self.folder.mkdir(parents=True, exist_ok=True)
         header = self.folder / "fault_switch.hpp"
         if not header.is_file() or header.read_text() != SWITCH_HEADER:
@@ -46,7 +46,7 @@ class Workshop:
         options = {
             "CMAKE_BUILD_TYPE": "Release",
             "CMAKE_CXX_FLAGS": f"-include {header}",
-            "SNOWSHED_KERNEL_VARIANTS": "baseline",  # all come from the same templates
+            "SNOWSHED_KERNEL_VARIANTS": "baseline",  # all of them come from the same templates
             "SNOWSHED_BUILD_TESTS": "ON",
             "SNOWSHED_BUILD_PYTHON": "ON",
             "SNOWSHED_WITH_OPENVDB": "OFF",
@@ -102,7 +102,7 @@ class Workshop:
         return f"{test} (exit code {code})" if code else ""
 
     def _try(self, words: Sequence[object], number: int) -> tuple[int | None, str]:
-        """Return the exit code, None after too long a time, and what was printed."""
+        """Return the exit code (None after the time limit) and the output of a command."""
         environment = {**os.environ, "SNOWSHED_FAULT": str(number), "OMP_WAIT_POLICY": "passive"}
         environment.update(PYTHONDONTWRITEBYTECODE="1", GTEST_BRIEF="1")
         environment["PATH"] = f"{self.venv / 'bin'}{os.pathsep}{os.environ['PATH']}"
@@ -120,10 +120,10 @@ class Workshop:
         return ended.returncode, ended.stdout
 
     def _make_environment(self) -> None:
-        """Make an environment that finds the copy's snowshed, and everything else like this Python.
+        """Create an environment with the copy's snowshed and all other packages of this Python.
 
         Python ignores path files in the packages of another environment, so it does not find the
-        installed snowshed there.
+        snowshed that is installed there.
         """
         python = self.venv / "bin/python"
         if not python.exists():

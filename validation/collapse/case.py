@@ -28,9 +28,9 @@ from validation.framework.drive import apply_settings, relative
 RADIUS = 0.1  # m; half the width of a plane column
 DENSITY = 210.0  # kg/m3
 GRAVITY = 9.81  # m/s2
-#: Young's modulus over the weight of the column: elastic strains stay below one percent.
+#: Young's modulus over the column's pressure on the ground: elastic strains stay below 1 %.
 STIFFNESS = 300.0
-#: Initial preconsolidation over the weight of the column: strength is gone at once.
+#: Initial preconsolidation pressure over the same pressure: the snow loses its strength at once.
 PRECONSOLIDATION = 0.02
 #: Hardening factor: p0 follows the pressure within volume changes of about pressure / (xi K).
 HARDENING = 10.0
@@ -43,7 +43,7 @@ CASE_SETTINGS = frozenset({"aspect", "friction_angle"})
 
 @dataclass(frozen=True)
 class Deposit:
-    """The deposit of a column; run-out and height in units of the column's radius."""
+    """Deposit of a column; run-out and height are relative to the column's radius."""
 
     runout: float
     height: float
@@ -55,7 +55,7 @@ class Deposit:
 
 
 def column_scene(settings: CaseSettings, aspect: float) -> Scene:
-    """Return the scene: the column on rough ground, released at once.
+    """Return a scene with the column on rough ground, released at once.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ def collapse(settings: CaseSettings, aspect: float) -> Deposit:
 
 
 def measure(settings: CaseSettings) -> Outcome:
-    """Measure one column, or the exponent of the tall ones."""
+    """Measure the deposit of one column, or the exponent of the run-out of tall columns."""
     dimension = int(settings["dimension"])
     if settings["aspect"] == "tall":
         return _measure_exponent(settings, TALL_ASPECTS[dimension])
@@ -152,7 +152,7 @@ def _outcome(deposits: Sequence[Deposit], measured: Sequence[Measured]) -> Outco
 
 
 def matrix(full: bool) -> list[CaseSettings]:
-    """Return the settings to solve with."""
+    """Return columns of several heights; if full, also grids, dampings, glass and round columns."""
     plane: CaseSettings = {"dimension": 2, "dx": 0.01, "friction_angle": SAND, "transfer": "flip"}
     space: CaseSettings = {**plane, "dimension": 3, "dx": 1 / 60}
     if not full:
@@ -208,54 +208,55 @@ DESCRIPTION = """
 A column of loose snow, a times as high as its radius (in the plane: as half its width), stands on
 rough ground and is released at once. Sand, rice and sugar leave nearly the same deposit, which
 depends on a alone. In the plane the run-out (r∞ - r0) / r0 is 1.2 a for a < 1.8 and 1.9 a^(2/3) for
-a > 2.8; for round columns 1.24 a for a < 1.7 and 1.6 a^(1/2) above. The height h∞ / r0 is that of
-the column as long as its middle does not sink; for taller columns it is a^(2/5) in the plane and
-0.88 a^(1/6) for round columns. Glass beads, more slippery (22 degrees), run out 1.8 a in the plane
-below a = 3. The experiments scatter by 10 to 20 % about their own laws. The error is the departure
-from the law. The measurement "tall" fits the exponent of the run-out to a = 3, 5, 7, 10 in the
-plane and 2, 3, 4 in space; the laws say 2/3 and 1/2.
+a > 2.8; for round columns 1.24 a for a < 1.7 and 1.6 a^(1/2) above. The height h∞ / r0 equals a as
+long as the middle of the column does not sink; for taller columns it is a^(2/5) in the plane and
+0.88 a^(1/6) for round columns. Glass beads have less friction (22 degrees); below a = 3 their
+run-out is 1.8 a in the plane. The experiments scatter by 10 to 20 % about these laws. The error is
+the deviation from the law. The exponent of the run-out ("tall") is fitted to a = 3, 5, 7, 10 in the
+plane and to 2, 3, 4 in space; by the laws it is 2/3 and 1/2.
 
-Three settings make snow act as sand: no cohesion (beta = 0); an initial preconsolidation pressure
-of 2 % of the column's weight, so that it has no strength of its own; and a hardening factor of 10,
-with which p0 follows the pressure within volume changes of a thousandth. Sheared snow is then at
-its critical state q = M p at once, flows at constant volume, carries no tension, and parts freely.
-M is that of Coulomb friction of 30 degrees (sand): sqrt(3) sin(phi) in the plane, where the match
-is exact, and 6 sin(phi) / (3 - sin(phi)), the match in triaxial compression, in space. Neither of
-the two constants matters for the deposit: preconsolidation from 0.2 to 20 % and hardening factors
-from 1 to 100 change the run-out by less than 1 %. The analogy ends there: the friction of sand
-grows with the rate of shear, sand dilates before it flows and loses energy where grains collide.
-This snow does neither, and has no grain size.
+Three settings make snow behave like sand: no cohesion (beta = 0); an initial preconsolidation
+pressure of 2 % of the column's weight, so that it has no strength of its own; and a hardening
+factor of 10, with which p0 follows the pressure within volume changes of a thousandth. Sheared snow
+then reaches its critical state q = M p at once, flows at constant volume, and carries no tension. M
+is that of Coulomb friction of 30 degrees (sand): in the plane it is sqrt(3) sin(phi), which is
+exact; in space it is 6 sin(phi) / (3 - sin(phi)), which is exact in triaxial compression. The
+deposit hardly depends on the other two settings: preconsolidation from 0.2 to 20 % and hardening
+factors from 1 to 100 change the run-out by less than 1 %. Other properties of sand are missing: its
+friction grows with the rate of shear, it dilates before it flows, it loses energy where grains
+collide, and it has a grain size.
 """
 
 REMARKS = """
-Heights agree with the laws within 18 %; most are 10 to 16 % low, and they hardly depend on grid or
-scheme. The heights are therefore the reliable result of this case.
+Heights agree with the laws within 18 %. Most are 10 to 16 % too low, and they hardly depend on the
+grid or the scheme. The heights are therefore the reliable result of this case.
 
 The run-out is less certain, because the front decides it. A deposit thins out towards its edge.
-Where it is thinner than about a cell, it cannot slide, because the ground holds the nodes below it;
-the front stops two to four cells short. At ten cells to the radius the default scheme is 12 to 20 %
-below the law in the plane, 40 % for the lowest column, and at twenty cells it meets the law (a =
-1.5). This agreement is not convergence: with less numerical damping the front creeps on as the grid
-is refined, APIC to 35 % beyond the law. Other continuum models in the plane do the same (Lagrée et
-al. 2.2 a; S. Dunatunga and K. Kamrin, J. Fluid Mech. 779 (2015) 483, 2.3 a). The experiments have
-side walls, and a front that cannot be thinner than a grain. The linear regime also reaches to
-higher columns than in the experiments, so the exponent of tall ones comes out too large.
+Where it is thinner than about a cell, it cannot slide, because the ground holds the nodes below it.
+The front therefore stops two to four cells too early. With ten cells per radius the run-out of the
+default scheme is 12 to 20 % below the law in the plane, and 40 % below it for the lowest column.
+With twenty cells it agrees with the law (a = 1.5). This agreement is not convergence: with less
+numerical damping the run-out grows further as the grid is refined, with APIC to 35 % above the law.
+Other continuum models in the plane do the same (Lagrée et al. 2.2 a; S. Dunatunga and K. Kamrin, J.
+Fluid Mech. 779 (2015) 483, 2.3 a). The experiments have side walls, and their front cannot be
+thinner than a grain. The linear regime also extends to taller columns than in the experiments, so
+the exponent of tall columns is too large.
 
-In space a deposit of the same volume is thinner, a fifth of the radius in the mean, so at six cells
-to the radius the run-out is only half the law's. With 16 cells, APIC and M = 0.866 it was 86 % of
-the law (a = 1; measured once, not part of the suite). In addition, M matched in triaxial
-compression makes snow in plane shear as strong as sand of 44 degrees; M = 0.866, matched in plane
-shear, runs out further and leaves the middle too low.
+In space a deposit of the same volume is thinner: its mean thickness is a fifth of the radius. With
+six cells per radius the run-out is therefore only half of the law. With 16 cells, APIC and M =
+0.866 it was 86 % of the law (a = 1; measured once, not part of the suite). In addition, the M of
+triaxial compression makes snow in plane shear as strong as sand of 44 degrees. With M = 0.866,
+which is exact in plane shear, the run-out is longer and the middle too low.
 
-FLIP damps per step. The share of PIC, 1 - flip_ratio, is taken in every step, regardless of its
-length, so smaller steps, and stiffer snow, which needs them, damp more: a third of the time step
-shortens the run-out by 17 %. If flip_ratio is raised to 0.9967 as well, so that the share of PIC
-per second stays the same, the run-out changes by less than 2 %. The solution does not converge in
-the time step alone. APIC loses some energy in every step as well, with the same effect on the
-run-out.
+FLIP damps per step. The share of PIC, 1 - flip_ratio, is taken in every step, whatever its length.
+Smaller steps therefore damp more, and so does stiffer snow, which needs them: a third of the time
+step shortens the run-out by 17 %. If flip_ratio is raised to 0.9967 as well, so that the share of
+PIC per second stays the same, the run-out changes by less than 2 %. Smaller time steps alone
+therefore do not bring convergence. APIC, too, loses some energy in every step, with the same effect
+on the run-out.
 
-Snow that comes to rest may sleep without harm: with a sleep_speed of 5 or 20 mm/s the run-out and
-the height change by less than a thousandth (a = 1.5). All other columns never sleep.
+Sleep hardly changes the results: with a sleep_speed of 5 or 20 mm/s the run-out and the height
+change by less than a thousandth (a = 1.5). All other columns never sleep.
 """
 
 CASE = Case(

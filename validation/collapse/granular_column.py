@@ -12,7 +12,7 @@ SECTORS = 24  # directions in which the front of a round deposit is measured
 
 
 def runout_law(aspect: float, dimension: int) -> float:
-    """Return (r_inf - r_0) / r_0 of a collapsed column of grains.
+    """Return the run-out (r_inf - r_0) / r_0 of a collapsed column of grains.
 
     Plane (Lube et al. 2005): 1.2 a for a < 1.8, 1.9 a^(2/3) for a > 2.8; between these limits
     powers of a are interpolated. Round (Lube et al. 2004): 1.24 a for a < 1.7, 1.6 a^(1/2) above.
@@ -33,10 +33,11 @@ def runout_law(aspect: float, dimension: int) -> float:
 
 
 def height_law(aspect: float, dimension: int) -> float:
-    """Return h_inf / r_0 of a collapsed column of grains.
+    """Return the final height h_inf / r_0 of a collapsed column of grains.
 
-    It is the column's initial height as long as its middle does not sink. For taller columns it is
-    a^(2/5) in the plane (Lube et al. 2005) and 0.88 a^(1/6) if they are round (Lube et al. 2004).
+    The height stays the initial one as long as the column's middle does not sink. Taller columns
+    have a^(2/5) in the plane (Lube et al. 2005) and 0.88 a^(1/6) if they are round (Lube et al.
+    2004).
 
     Examples
     --------
@@ -48,7 +49,7 @@ def height_law(aspect: float, dimension: int) -> float:
 
 
 def glass_runout_law(aspect: float) -> float:
-    """Return (L_inf - L_0) / L_0 of a plane column of glass beads below a = 3.
+    """Return the run-out (L_inf - L_0) / L_0 of a plane column of glass beads, for a below 3.
 
     Lajeunesse et al. (2005), with the constant quoted by Lagrée et al. (2011).
 
@@ -61,7 +62,7 @@ def glass_runout_law(aspect: float) -> float:
 
 
 def critical_state_slope(friction_angle: float, dimension: int) -> float:
-    """Return the M for which the critical state is Coulomb's with an angle in degrees.
+    """Return the M of a critical state with Coulomb's friction angle, degrees.
 
     In the plane, q = sqrt(3) (s1 - s3) / 2 and p = (s1 + s3) / 2, so Coulomb's
     (s1 - s3) = (s1 + s3) sin phi is q = sqrt(3) sin(phi) p. In space

@@ -1,4 +1,4 @@
-"""The slowest bending vibration of a clamped beam, by Timoshenko's theory and by Euler's."""
+"""Slowest bending vibration of a clamped beam, by Timoshenko's and by Euler's theory."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from snowshed.base.arrays import Floats
 
 @dataclass(frozen=True)
 class Cantilever:
-    """A beam of rectangular section, clamped at x = 0 and free at its length, in plane strain.
+    """Beam of rectangular section in plane strain, clamped at x = 0 and free at its other end.
 
     Quantities are per metre of width. In plane strain, E/(1 - nu^2) replaces Young's modulus, and
     nu' = nu/(1 - nu) replaces Poisson's ratio. Timoshenko's theory has four states along the beam:
@@ -110,7 +110,7 @@ class Cantilever:
         )
 
     def _misfit(self, frequency: float) -> float:
-        """Return the determinant that vanishes where M(L) = Q(L) = 0 has a solution."""
+        """Return a determinant, which is zero at eigenfrequencies: M(L) = Q(L) = 0 is possible."""
         from scipy.linalg import expm
 
         end = expm(self._rates(frequency) * self.length)[2:, 2:]

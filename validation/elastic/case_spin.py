@@ -91,7 +91,7 @@ class Spinning:
 
     @staticmethod
     def _moment_of_inertia_in_cell(settings: CaseSettings) -> float:
-        """Return the moment of inertia of an affine field over mass: dx^2/4 or dx^2/3."""
+        """Return the moment of inertia of an affine velocity field per mass: dx^2/4 or dx^2/3."""
         return float(settings["dx"]) ** 2 / (4 if settings["basis"] == "quadratic" else 3)
 
     @property
@@ -129,11 +129,11 @@ class Spinning:
 
 
 def per_turn(ratio: float, time: float) -> float:
-    """Return the relative change per turn from the ratio to the initial value after a time (s).
+    """Return the relative change per turn, from the ratio to the initial value after a time (s).
 
     Examples
     --------
-    If half is left after two turns, each turn has removed 29 %.
+    If half is left after two turns, each turn removed 29 %.
 
     >>> round(per_turn(0.5, 2 * TURN), 2)
     -0.29
@@ -168,25 +168,27 @@ def measure(settings: CaseSettings) -> Outcome:
 def matrix(full: bool) -> list[CaseSettings]:
     """Return transfers in 2D and 3D; if full, also resolutions, precisions and other variations."""
     sizes = (0.2, 0.1, 0.05) if full else (0.1,)
-    listed: list[CaseSettings] = [
+    settings_list: list[CaseSettings] = [
         {**DISC, "dx": dx, **transfer} for transfer in TRANSFERS for dx in sizes
     ]
-    listed += [{**DISC, **APIC, "precision": "float"}]
-    listed += [{**DISC, **APIC, "dx": dx, "begins": "equilibrium"} for dx in sizes]
-    listed += [{**CYLINDER, **APIC}, {**CYLINDER, **FLIP}]
+    settings_list += [{**DISC, **APIC, "precision": "float"}]
+    settings_list += [{**DISC, **APIC, "dx": dx, "begins": "equilibrium"} for dx in sizes]
+    settings_list += [{**CYLINDER, **APIC}, {**CYLINDER, **FLIP}]
     if not full:
-        return [{**settings, "turns": 1} for settings in listed]
+        return [{**settings, "turns": 1} for settings in settings_list]
     floats = [transfer for transfer in TRANSFERS if transfer != APIC]
-    listed += [{**DISC, **transfer, "precision": "float"} for transfer in floats]
-    listed += [{**DISC, **FLIP, "dx": dx, "begins": "equilibrium"} for dx in sizes]
-    listed += [{**DISC, **transfer, "basis": "cubic"} for transfer in (FLIP, APIC)]
-    listed += [{**DISC, **APIC, "begins": "equilibrium", "basis": "cubic"}]
+    settings_list += [{**DISC, **transfer, "precision": "float"} for transfer in floats]
+    settings_list += [{**DISC, **FLIP, "dx": dx, "begins": "equilibrium"} for dx in sizes]
+    settings_list += [{**DISC, **transfer, "basis": "cubic"} for transfer in (FLIP, APIC)]
+    settings_list += [{**DISC, **APIC, "begins": "equilibrium", "basis": "cubic"}]
     seedings: list[CaseSettings] = [{"particles_per_voxel": 4}, {"pattern": "poisson", "seed": 1}]
-    listed += [{**DISC, **transfer, **seeding} for seeding in seedings for transfer in (FLIP, APIC)]
-    listed += [{**DISC, **APIC, "begins": "equilibrium", "particles_per_voxel": 4}]
-    listed += [{**CYLINDER, **transfer} for transfer in TRANSFERS[1:3]]
-    listed += [{**CYLINDER, **APIC, "precision": "float"}]
-    return [*listed, *({**CYLINDER, **transfer, "dx": 0.1} for transfer in (FLIP, APIC))]
+    settings_list += [
+        {**DISC, **transfer, **seeding} for seeding in seedings for transfer in (FLIP, APIC)
+    ]
+    settings_list += [{**DISC, **APIC, "begins": "equilibrium", "particles_per_voxel": 4}]
+    settings_list += [{**CYLINDER, **transfer} for transfer in TRANSFERS[1:3]]
+    settings_list += [{**CYLINDER, **APIC, "precision": "float"}]
+    return [*settings_list, *({**CYLINDER, **transfer, "dx": 0.1} for transfer in (FLIP, APIC))]
 
 
 CASE = Case(
@@ -198,11 +200,11 @@ CASE = Case(
     ),
     description="""
     An elastic disc (2D) of 1 m radius, or a cylinder half as high (3D), spins without gravity; its
-    rim moves at a fifth of the speed of waves in a rod. From an undeformed start its radius
-    oscillates about the centrifugal equilibrium; for a start in equilibrium, this oscillation is
-    damped during a first turn by radial forces, which do not change the angular momentum. Angular
-    momentum, with that of the affine fields of APIC, and energy should not change. The mean
-    expansion of the body over time, half a percent of the radius, is compared with the equilibrium.
+    rim moves at a fifth of the speed of waves in a rod. If it starts undeformed, its radius
+    oscillates about the centrifugal equilibrium. If it starts in equilibrium, radial forces damp
+    this oscillation during a first turn; they do not change the angular momentum. Angular momentum,
+    with that of the affine fields of APIC, and energy should not change. The mean expansion of the
+    body over time, half a percent of the radius, is compared with the equilibrium.
     """,
     quantities=(
         Quantity(
@@ -236,12 +238,13 @@ CASE = Case(
     measure=measure,
     remarks="""
     APIC conserves angular momentum to rounding, also in single precision (about 1e-7 per turn).
-    FLIP does not. Particles that take their velocities from the grid lose the rotation within a
-    cell. A step of PIC loses the share (dx/R)² of a disc's angular momentum, which the affine
-    fields of APIC keep. A step of FLIP with ratio a loses (1 - a)(dx/R)². A disc ten cells in
-    radius takes a thousand steps per turn, so PIC stops it within a fraction of a turn. FLIP with
-    0.95 loses 40 % per turn, with 0.99 11 % (5 % at twenty cells: first order in dx, because there
-    are more steps). Snowballs of a few cells rotate far too slowly with the default.
+    FLIP does not conserve it, because particles that take their velocities from the grid lose the
+    rotation within a cell. A step of PIC loses the share (dx/R)² of a disc's angular momentum,
+    which the affine fields of APIC keep. A step of FLIP with ratio a loses (1 - a)(dx/R)². A disc
+    ten cells in radius takes a thousand steps per turn, so PIC stops it within a fraction of a
+    turn. FLIP with 0.95 loses 40 % per turn, with 0.99 11 % (5 % at twenty cells: first order in
+    dx, because there are more steps). Snowballs of a few cells rotate far too slowly with the
+    default.
 
     Pure FLIP loses only the rotation that interpolated changes of velocity do not resolve: 2.6 %
     per turn at five cells, 0.4 % at ten, 0.05 % at twenty. The cylinder behaves like the disc.
@@ -249,9 +252,9 @@ CASE = Case(
     The energy loss follows the square of the momentum. APIC loses less than 0.1 % per turn at ten
     cells, through the radial oscillation; a disc in equilibrium loses 0.003 %.
 
-    The expansion is 2 % too small at ten cells and 0.7 % at twenty (cubic splines: 3 % at ten).
-    The closed form holds for small strains, and assumes that the disc does not slow down as it
-    expands, although it does by a percent. With 4 particles per cell the expansion is 4 % larger,
-    with random seeding 15 %, because unevenly filled cells are softer.
+    The expansion is 2 % too small at ten cells and 0.7 % at twenty (cubic splines: 3 % at ten). The
+    closed form holds for small strains, and assumes that the disc does not slow down as it expands,
+    although it does by a percent. With 4 particles per cell the expansion is 4 % larger, and with
+    random seeding 15 % larger, because unevenly filled cells are softer.
     """,
 )

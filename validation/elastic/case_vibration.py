@@ -21,7 +21,7 @@ from validation.framework.drive import TimedEventDriver, relative
 
 YOUNGS_MODULUS, DENSITY = 1e6, 210.0  # Pa, kg/m3
 LENGTH = 1.0  # m, of the bar; of the cantilever unless the settings say otherwise
-#: Settings of the cases themselves: distance of a grid node from the body's end, in cells; length.
+#: Settings of the cases themselves: distance of the body's end from a node in cells, and length.
 CASE_SETTINGS = frozenset({"grid_offset", "length"})
 DEFAULTS: CaseSettings = {
     "grid_offset": 0.0,
@@ -30,7 +30,7 @@ DEFAULTS: CaseSettings = {
     "pattern": "regular",
     "particles_per_voxel": 4,
 }
-#: Variants of other settings.
+#: Settings that differ from the defaults, one at a time.
 VARIANTS: Sequence[CaseSettings] = (
     {"basis": "cubic"},
     {"precision": "float"},
@@ -41,7 +41,7 @@ VARIANTS: Sequence[CaseSettings] = (
 
 
 class Vibrating:
-    """A body that vibrates in an eigenmode.
+    """Body that vibrates in an eigenmode.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ class Vibrating:
     frequency
         Frequency of the mode, Hz.
     height
-        Factor of `mode` at the largest displacement.
+        Amplitude of the vibration, as a factor of `mode`.
     """
 
     def __init__(
@@ -64,7 +64,7 @@ class Vibrating:
         drive.core.add_velocity(from_plane(2 * math.pi * frequency * height * mode))
 
     def swing(self, periods: float, steps: int) -> Swing:
-        """Let the body vibrate, and return the vibration fitted to a sample every `steps`."""
+        """Let the body vibrate, and return the vibration fitted to samples every `steps` steps."""
         times, values = [], []
         while self.drive.core.time_s < periods / self._frequency:
             self.drive.step(steps)
@@ -80,7 +80,7 @@ class Vibrating:
 
 # --- the bar ----------------------------------------------------------------------------------
 
-#: Height of the bar, in cells; for Poisson's ratio 0 it does not matter.
+#: Height of the bar, in cells; it has no effect because Poisson's ratio is 0.
 BAR_CELLS = 4
 #: Largest strain, and number of periods in which the bar vibrates.
 BAR_STRAIN, BAR_PERIODS = 1e-3, 6
@@ -89,7 +89,7 @@ BAR_DEFAULTS: CaseSettings = {**DEFAULTS, "dx": 0.05}
 
 
 def bar_scene(settings: CaseSettings) -> Scene:
-    """Return a bar along x that nothing holds."""
+    """Return a free bar along x."""
     dx = float(settings["dx"])
     corner = np.full(2, float(settings["grid_offset"]) * dx)
     size = np.array([LENGTH, BAR_CELLS * dx])
@@ -98,7 +98,7 @@ def bar_scene(settings: CaseSettings) -> Scene:
 
 
 def measure_bar(settings: CaseSettings) -> Outcome:
-    """Let the bar vibrate along its length; its ends move in opposite directions."""
+    """Let the bar vibrate along its length, and return the errors of frequency and loss."""
     drive = TimedEventDriver(bar_scene(settings))
     wavenumber = math.pi / LENGTH
     along = in_plane(drive.core.positions())[:, 0]
@@ -124,15 +124,15 @@ def measure_bar(settings: CaseSettings) -> Outcome:
 
 
 def bar_matrix(full: bool) -> list[CaseSettings]:
-    """Return transfers and resolutions, and if full other variations."""
+    """Return transfers and resolutions; if full, also other variations."""
     sizes = (0.1, 0.05, 0.025, 0.0125) if full else (0.1, 0.05)
-    listed: list[CaseSettings] = [
+    settings_list: list[CaseSettings] = [
         {**BAR_DEFAULTS, "dx": dx, **transfer} for transfer in TRANSFERS for dx in sizes
     ]
     if full:
-        listed += [{**BAR_DEFAULTS, "transfer": "apic", **variant} for variant in VARIANTS]
-        listed += [{**BAR_DEFAULTS, **TRANSFERS[0], **variant} for variant in VARIANTS]
-    return listed
+        settings_list += [{**BAR_DEFAULTS, "transfer": "apic", **variant} for variant in VARIANTS]
+        settings_list += [{**BAR_DEFAULTS, **TRANSFERS[0], **variant} for variant in VARIANTS]
+    return settings_list
 
 
 ELASTIC_BAR = Case(
@@ -143,11 +143,10 @@ ELASTIC_BAR = Case(
         "validation.elastic.smoothing)"
     ),
     description="""
-    A bar 1 m long, four cells high, of Poisson's ratio 0, so that its height does not matter,
-    floats freely and vibrates in its slowest mode, v = cos(π x/L), with strains up to 0.1 %. A
-    damped sine is fitted to six periods of its displacement in that mode. It should lose no
-    amplitude; the actual loss is compared with the loss that smoothing between particles and grid
-    explains.
+    A free bar, 1 m long and four cells high, vibrates in its slowest mode, v = cos(π x/L), with
+    strains up to 0.1 %. Poisson's ratio is 0, so that the height has no effect. A damped sine is
+    fitted to six periods of its displacement in that mode. The bar should lose no amplitude. The
+    actual loss is compared with the loss by smoothing between particles and grid.
     """,
     quantities=(
         Quantity(
@@ -176,9 +175,9 @@ ELASTIC_BAR = Case(
     The loss agrees with the theory to a hundredth of a percent of the amplitude at 20 cells. Pure
     FLIP loses 0.2 % per period there and APIC 0.07 %; both losses fall with at least the third
     power of dx. A share of PIC damps in every step, however short. A FLIP ratio a loses (1 - a)(k
-    dx)² T/(8 dt) per period T, that is 0.4 % with 0.99, 1.3 % with 0.95 and 21 % with PIC. This
-    loss halves with the cells, but doubles if only the step is halved. Losses below 5e-5 per period
-    are not resolved by the fit.
+    dx)² T/(8 dt) per period T, that is 0.4 % with 0.99, 1.3 % with 0.95 and 21 % with PIC. Half the
+    size of cells halves this loss, but half the step alone doubles it. The fit does not resolve
+    losses below 5e-5 per period.
     """,
 )
 
@@ -214,7 +213,7 @@ def bending_mode(beam: Cantilever, points: Floats) -> Floats:
 
 
 def measure_cantilever(settings: CaseSettings) -> Outcome:
-    """Let the beam bend up and down."""
+    """Let the beam bend up and down, and return the errors of frequency and loss."""
     drive = TimedEventDriver(cantilever_scene(settings))
     face = float(settings["grid_offset"]) * float(settings["dx"])
     length = float(settings["length"])
@@ -231,16 +230,16 @@ def measure_cantilever(settings: CaseSettings) -> Outcome:
 
 
 def cantilever_matrix(full: bool) -> list[CaseSettings]:
-    """Return transfers and resolutions, and if full other variations."""
+    """Return transfers and resolutions; if full, also other variations."""
     sizes = (0.05, 0.025, 0.0125) if full else (0.05,)
-    listed: list[CaseSettings] = [
+    settings_list: list[CaseSettings] = [
         {**CANTILEVER_DEFAULTS, "dx": dx, **transfer} for transfer in TRANSFERS for dx in sizes
     ]
     apic: CaseSettings = {**CANTILEVER_DEFAULTS, "transfer": "apic"}
     if not full:
-        return [*listed, {**CANTILEVER_DEFAULTS, **TRANSFERS[0]}, apic]
-    listed += [{**apic, **variant} for variant in VARIANTS]
-    return [*listed, {**apic, "length": 2 * LENGTH}]
+        return [*settings_list, {**CANTILEVER_DEFAULTS, **TRANSFERS[0]}, apic]
+    settings_list += [{**apic, **variant} for variant in VARIANTS]
+    return [*settings_list, {**apic, "length": 2 * LENGTH}]
 
 
 CANTILEVER = Case(
@@ -254,7 +253,7 @@ CANTILEVER = Case(
     A beam 1 m long and 20 cm high (four to sixteen cells) sticks in a clamp and vibrates in its
     slowest mode in plane strain (Poisson's ratio 0.3). Its end is deflected by 0.2 % of its length.
     A damped sine is fitted to one period and a half of its displacement in that mode. Euler's
-    slender beam would vibrate faster than Timoshenko's by 3.3 %, at twice the length by 0.9 %.
+    slender beam would vibrate 3.3 % faster than Timoshenko's, and 0.9 % faster at twice the length.
     """,
     quantities=(
         Quantity(
@@ -277,8 +276,8 @@ CANTILEVER = Case(
     A period of bending takes many steps (1600 at four cells, 6500 at sixteen), and each section
     rotates. Both increase the loss. Pure FLIP loses 2.7, 0.4 and 0.05 % of the amplitude per period
     at four, eight and sixteen cells, APIC 0.7, 0.1 and 0.02 %. FLIP with 0.99, the default, loses
-    8, 3 and 1.3 %, with 0.95 27, 12 and 6 %, and PIC so much that it hardly vibrates (100, 91 and
-    67 %).
+    8, 3 and 1.3 %, and with 0.95 it loses 27, 12 and 6 %. With PIC the beam hardly vibrates (losses
+    of 100, 91 and 67 %).
     """,
 )
 

@@ -1,16 +1,16 @@
-"""Damping of small vibrations by the transfers between particles and grid, in theory.
+"""Theory of the damping of small vibrations by the transfers between particles and grid.
 
 On a grid full of particles a wave exp(i k x) loses the factor s = (sin(k h/2)/(k h/2))^m in every
-interpolation with a spline, m = 3 for the quadratic one and 4 for the cubic one. Let V be the
-amplitude of the grid's velocity before forces, q that of the displacement, and Omega the frequency
-that the grid would have without smoothing. A step is
+interpolation with a spline (m = 3 for quadratic, 4 for cubic splines). Let V be the amplitude of
+the grid's velocity before forces, q the amplitude of the displacement, and Omega the frequency of
+the grid without smoothing. A step is
 
     w = V - dt Omega^2 q,  q <- q + dt w,  V <- g V - f dt Omega^2 q.
 
 FLIP with the ratio a returns the change of velocity, smoothed twice, and keeps the share a of the
-unresolved rest: f = s^2, g = 1 - (1 - a)(1 - s^2). With APIC all of w goes to the particles and
-back, with the slope within each cell: f = g = s^2 + (ds/dk)^2/D, D = h^2/4 or h^2/3. The amplitude
-falls by the root of the step's determinant,
+unresolved rest: f = s^2, g = 1 - (1 - a)(1 - s^2). APIC passes all of w to the particles and back,
+with the slope within each cell: f = g = s^2 + (ds/dk)^2/D, D = h^2/4 or h^2/3. The amplitude falls
+by the root of the step's determinant,
 
     g - dt^2 Omega^2 (g - f),  Omega^2 = omega^2/f,
 

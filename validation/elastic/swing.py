@@ -12,7 +12,7 @@ from snowshed.base.arrays import Floats
 
 @dataclass(frozen=True)
 class Swing:
-    """A vibration A exp(-decay t) sin(2 pi frequency t + phase).
+    """Damped vibration A exp(-decay t) sin(2 pi frequency t + phase).
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class Swing:
 
     @classmethod
     def fit(cls, times: Floats, values: Floats, frequency: float) -> Swing:
-        """Return the vibration nearest to a record, by least squares.
+        """Return the vibration that fits a record best, by least squares.
 
         Parameters
         ----------
@@ -55,7 +55,7 @@ class Swing:
         def swing(t: Floats, height: float, decay: float, turns: float, phase: float) -> Floats:
             return np.asarray(height * np.exp(-decay * t) * np.sin(2 * np.pi * turns * t + phase))
 
-        # With a period and an amplitude of one, the four unknowns are of the same size.
+        # In units of period and amplitude, the four unknowns are of similar size.
         period, height = 1 / frequency, float(np.abs(values).max())
         start = (1.0, 0.0, 1.0, 0.0)
         parameters, _ = curve_fit(swing, times / period, values / height, p0=start)

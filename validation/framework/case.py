@@ -13,7 +13,7 @@ from typing import Optional, Union
 from snowshed.analysis.accuracy.measurements import CaseSettings, Measured, Value
 from snowshed.base.formatting import number, percent
 
-#: Values that settings must have, by name; None: not given; a tuple: any of its values.
+#: Values that settings must have, by name; None: must not be given; a tuple: any of its values.
 SettingsFilter = Mapping[str, Union[Value, tuple[Optional[Value], ...], None]]
 
 
@@ -32,7 +32,7 @@ def alternatives(
 
 @dataclass(frozen=True)
 class Quantity:
-    """A measured quantity, and its criteria.
+    """Measured quantity and its criteria.
 
     Parameters
     ----------
@@ -41,16 +41,17 @@ class Quantity:
     title:
         Name in texts, with the unit if it has one.
     limit:
-        Largest error allowed; `None`: any.
+        Largest allowed error; None: any error is allowed.
     limit_for:
-        The settings to which the limit applies: every name must have the value given here; None:
-        the setting must not be given.
+        Settings to which the limit applies: each must have the value given here. With None, the
+        setting must not be given.
     order_in:
-        The setting whose power law the error follows (``"dx"``, ``"courant_factor"``), if any.
+        Setting with which the error follows a power law (``"dx"``, ``"courant_factor"``), if any.
     min_order:
         The smallest order of convergence allowed.
     relative:
-        Whether the error is relative to the exact value (shown in %) or in the quantity's unit.
+        Whether the error is relative to the exact value (shown in %); otherwise it has the
+        quantity's unit.
     """
 
     name: str
@@ -62,16 +63,16 @@ class Quantity:
     relative: bool = True
 
     def error_text(self, error: Optional[float]) -> str:
-        """Return an error in percent, or in the quantity's unit."""
+        """Return the text of an error, in percent or in the quantity's unit."""
         return percent(error) if self.relative else number(error)
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """The results of one entry of the matrix.
+    """Results of one entry of the matrix.
 
-    ``wall_s`` is the time of the solution alone (without seeding, imports or evaluation);
-    ``updates`` counts particles times steps (for a material path: its increments).
+    ``wall_s`` is the time of the solution alone, without seeding, imports and evaluation.
+    ``updates`` is the number of particles times steps, or of increments for a material path.
     """
 
     measured: Sequence[Measured]
@@ -83,22 +84,23 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Case:
-    """A problem with a known answer.
+    """Problem with a known answer.
 
     Parameters
     ----------
     name, title:
         Key and heading.
     source:
-        Where the answer comes from: closed form, equation, paper.
+        Source of the answer: closed form, equation, paper.
     description:
         A paragraph for the report: the problem, the answer, the definition of the error.
     quantities:
         All quantities that `measure` returns.
     matrix:
-        ``matrix(full)`` lists the settings to solve with; the quick list takes seconds in all.
+        ``matrix(full)`` returns the settings to solve with. All solutions of the quick list take
+        seconds.
     measure:
-        Solves once. The result must depend on the settings alone.
+        Function that solves the problem once. The result must depend on the settings alone.
     remarks:
         Weaknesses of the method in this case, and their causes; the report prints them with the
         numbers.

@@ -1,4 +1,4 @@
-"""All cases: those of every module of `validation` whose name begins with ``case``."""
+"""All cases, from the modules of `validation` whose names begin with ``case``."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def cases_of(module: str) -> list[Case]:
 
 
 def load_cases(names: Sequence[str] = ()) -> list[Case]:
-    """Return all cases, or those with these names, in the order of their modules.
+    """Return all cases, or the cases with these names, in the order of their modules.
 
     Parameters
     ----------

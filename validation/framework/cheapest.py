@@ -30,14 +30,14 @@ WANTED_ACCURACIES = (0.10, 0.05, 0.02, 0.01)
 
 @dataclass(frozen=True)
 class Cheapest:
-    """The quickest settings for a wanted accuracy; the most accurate ones if none reach it.
+    """Quickest settings for a wanted accuracy, or the most accurate settings if none reach it.
 
     Attributes
     ----------
     problem
         The settings that define the problem.
     error
-        Error that no finer solution exceeds (`assured_errors`).
+        Error, which no finer solution exceeds (`assured_errors`).
     """
 
     case: str
@@ -65,10 +65,12 @@ def pareto_front(costs: Sequence[float], errors: Sequence[float]) -> Booleans:
     return front
 
 
-def by_problem(case: Case, listed: Iterable[Solution]) -> list[tuple[CaseSettings, list[Solution]]]:
-    """Return the problems among solutions, each with all of its solutions."""
+def by_problem(
+    case: Case, candidates: Iterable[Solution]
+) -> list[tuple[CaseSettings, list[Solution]]]:
+    """Return the problems of some solutions, each with all of its solutions."""
     groups: dict[Hashable, tuple[CaseSettings, list[Solution]]] = {}
-    for solution in listed:
+    for solution in candidates:
         problem = problem_of(case, solution.settings)
         groups.setdefault(settings_key(problem), (problem, []))[1].append(solution)
     return list(groups.values())

@@ -53,8 +53,8 @@ def validate(
 ) -> int:
     """Solve problems with known answers, and report the errors against run time.
 
-    Writes validation.html, tables and figures. The exit code is 1 if an error is larger, or an
-    order of convergence smaller, than allowed, or if anything failed.
+    Writes validation.html, tables and figures. The exit code is 1 if an error is too large, if an
+    order of convergence is too small, or if anything failed.
 
     \b
     Example:
@@ -67,7 +67,7 @@ def validate(
 
     cases = load_cases(names)
     if recorded is not None:
-        load_recorded(recorded)  # a damaged file must be reported before hours have passed
+        load_recorded(recorded)  # a damaged file must be reported before hours of computing
     stress = not names if stress is None else stress
     open_folder = ValidationFolder.reopen if resume else ValidationFolder.create
     results = open_folder(folder)

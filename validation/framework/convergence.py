@@ -1,4 +1,4 @@
-"""Orders of convergence: how errors fall with the size of cells, steps or increments."""
+"""Orders of convergence, by which errors fall with the size of cells, steps or increments."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from math import nan
 import numpy as np
 
 from snowshed.analysis.accuracy.measurements import CaseSettings
-from snowshed.analysis.accuracy.solutions import Solution, alike
+from snowshed.analysis.accuracy.solutions import Solution, convergence_series
 from snowshed.base.arrays import Floats
 
 
 @dataclass(frozen=True)
 class Convergence:
-    """The fall of an error with a setting, all others equal.
+    """Fall of an error with one setting while all others are equal.
 
     Attributes
     ----------
@@ -26,7 +26,7 @@ class Convergence:
     order
         Slope of the least-squares line through their logarithms; NaN if it is not defined.
     pairwise
-        Slope between neighbours, one fewer than the sizes.
+        Slopes between neighbours; there is one fewer than sizes.
     """
 
     settings: CaseSettings
@@ -68,7 +68,7 @@ def pairwise_orders(sizes: Floats, errors: Floats) -> Floats:
 def convergences(solutions: Sequence[Solution], order_in: str) -> list[Convergence]:
     """Return the fall of the error with a setting (``"dx"``), for each choice of the others."""
     series = []
-    for group in alike(solutions, order_in):
+    for group in convergence_series(solutions, order_in):
         if len(group) > 1:
             sizes = np.array([float(solution.settings[order_in]) for solution in group])
             errors = np.array([abs(solution.error) for solution in group])

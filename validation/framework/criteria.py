@@ -18,14 +18,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Criterion:
-    """A criterion for a quantity, and the worst result.
+    """Criterion for a quantity, and its worst result.
 
     Attributes
     ----------
     kind
-        ``"error"`` (the largest allowed) or ``"order"`` of convergence (the smallest allowed).
+        ``"error"`` (limited above) or ``"order"`` of convergence (limited below).
     demanded, worst
-        The limit, and the worst measured value (NaN if a measurement failed; None without any).
+        The limit, and the worst measured value (NaN if a measurement failed, None if there is no
+        value).
     settings
         Settings of the worst value.
     count
@@ -42,20 +43,20 @@ class Criterion:
 
     @property
     def applies_to(self) -> SettingsFilter:
-        """Settings to which the criterion applies; an order of convergence applies to all sizes."""
+        """Settings to which the criterion applies; for an order, without the size that varies."""
         order_in = self.quantity.order_in if self.kind == "order" else None
         return {name: value for name, value in self.quantity.limit_for.items() if name != order_in}
 
     @property
     def holds(self) -> Optional[bool]:
-        """True if the criterion holds; None if nothing that it applies to was measured."""
+        """Whether the criterion holds; None if no measurement concerns it."""
         if self.worst is None:
             return None
         return self.worst >= self.demanded if self.kind == "order" else self.worst <= self.demanded
 
 
 def compare(table: pd.DataFrame, cases: Iterable[Case]) -> list[Criterion]:
-    """Compare the measurements with every criterion of the cases."""
+    """Return every criterion of the cases, compared with the measurements."""
     criteria = []
     for case in cases:
         for quantity in case.quantities:
@@ -68,7 +69,7 @@ def compare(table: pd.DataFrame, cases: Iterable[Case]) -> list[Criterion]:
 
 
 def _error_criterion(case: str, quantity: Quantity, limit: float, rows: pd.DataFrame) -> Criterion:
-    """Return the criterion that every measurement is within the limit; failed ones are not."""
+    """Return the criterion for errors: every measurement is within the limit, and none failed."""
     measured = [row for row in records(rows) if _matches(row.settings, quantity.limit_for)]
     if not measured:
         return Criterion(case, quantity, "error", limit, None, {}, 0)
@@ -79,7 +80,7 @@ def _error_criterion(case: str, quantity: Quantity, limit: float, rows: pd.DataF
 
 
 def _order_criterion(case: str, quantity: Quantity, limit: float, rows: pd.DataFrame) -> Criterion:
-    """Return the criterion that every series converges fast enough; with a failure it does not."""
+    """Return the criterion for orders: every series converges fast enough, and none failed."""
     order_in = quantity.order_in or ""
     required = {name: value for name, value in quantity.limit_for.items() if name != order_in}
     orders = [

@@ -1,4 +1,4 @@
-"""The output of ``python -m validation``: the progress display, and which criteria hold."""
+"""Output of ``python -m validation``: the progress display, and the results of the criteria."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ STYLES = {"holds": "none", "does not hold": "bold red", "not measured": "dim"}
 
 
 def validation_bar(*, quiet: bool) -> AbstractContextManager[Optional[Reporter]]:
-    """Show one progress display on stderr, which vanishes at the end."""
+    """Show a progress display on stderr, which is cleared at the end."""
     return progress_bar(quiet=quiet, width=24, transient=True)
 
 

@@ -1,4 +1,4 @@
-"""A solver that a case drives step by step, and times."""
+"""Solver that a case runs step by step and times."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from snowshed.scene.components import Seeding, Snow
 from snowshed.scene.scene import Scene
 from validation.framework.case import Outcome
 
-#: The sections in which a setting's name is looked for; other names stand at the scene's top.
+#: Sections of a scene that hold settings; all other settings are at the top of the scene.
 SECTIONS: Mapping[str, type[Record]] = {"numerics": MpmSettings, "seeding": Seeding, "snow": Snow}
 
 
@@ -25,20 +25,20 @@ def apply_settings(
     *,
     sleeping: bool = False,
 ) -> Scene:
-    """Set a scene's parameters from a case's settings, and one thread.
+    """Set a scene's parameters from a case's settings, and one thread; return the scene.
 
     Most cases measure small motions, so snow never sleeps unless the settings say so.
 
     Parameters
     ----------
     scene
-        Changed, and returned.
+        Scene to change.
     settings
-        Names without their section, and values.
+        Values by names without their section.
     case_settings
-        Names of settings that belong to the case, not to the scene; left out.
+        Names of settings that belong to the case and not to the scene; they are left out.
     sleeping
-        Whether snow at rest sleeps as it does by default.
+        Whether snow at rest may sleep, as by default.
 
     Raises
     ------
@@ -62,13 +62,13 @@ def apply_settings(
 
 def _path(name: str) -> str:
     for section, record in SECTIONS.items():
-        if name in record.keys():  # noqa: SIM118 (a class method, not a mapping's)
+        if name in record.keys():  # noqa: SIM118 (a class method, not that of a mapping)
             return f"{section}.{name}"
     return name
 
 
 class TimedEventDriver(drive.EventDriver):
-    """The first event of a scene, run to the given times; only its steps count as run time.
+    """First event of a scene, which is run to given times; only its steps count as run time.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ class TimedEventDriver(drive.EventDriver):
             super().step(count)
 
     def damp(self, exponent: float) -> None:
-        """Let the velocities of all particles fall by the factor ``exp(-exponent)``."""
+        """Multiply the velocities of all particles by ``exp(-exponent)``."""
         with self._timed():
             super().damp(exponent)
 

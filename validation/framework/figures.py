@@ -30,28 +30,28 @@ if TYPE_CHECKING:
     from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
-#: The style of each value of a setting, by the setting's name.
+#: Styles of a setting's values, by the name of the setting.
 StylesOfValues = Mapping[str, Mapping[Optional[Value], Any]]
 
-#: The settings that define a problem, and its solutions.
+#: Settings that define a problem, and its solutions.
 Problem = Tuple[CaseSettings, Sequence[Solution]]
 
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 DASHES = ("-", (0, (5, 2)), (0, (1, 1.4)), (0, (6, 1.5, 1, 1.5)), (0, (9, 3)))
-#: Settings that get colours; others get markers and dashes.
+#: Settings with colours; others have markers and dashes.
 COLOURED_SETTINGS = ("transfer", "law", "between", "dimension", "events", "basis", "precision")
-#: Of two points on a Pareto front closer than this share only one gets a letter.
+#: Smallest relative distance at which two points on a Pareto front both get a letter.
 MIN_POINT_DISTANCE = 0.1
-#: Problems of a quantity that get a Pareto front, at most.
+#: Largest number of problems of a quantity with a Pareto front.
 MAX_FRONTS = 3
-#: Times too short to be measured lie here, s.
+#: Shown time of solutions that are too short to be measured, s.
 MIN_TIME = 1e-6
-#: Errors of exact answers are zero; on a logarithmic axis they lie here.
+#: Shown error of exact answers, whose zero a logarithmic axis cannot show.
 MIN_SHOWN_ERROR = 1e-17
 
 
 class KeyLine(NamedTuple):
-    """Text beside a diagram about a point; without a letter, a heading of the following texts."""
+    """Text beside a diagram about a point; a text without a letter is a heading."""
 
     letter: str
     cost: str
@@ -60,12 +60,12 @@ class KeyLine(NamedTuple):
 
 @dataclass(frozen=True)
 class LineStyles:
-    """Styles that tell settings apart: one by colour, one by marker, one by dashes.
+    """Styles that distinguish settings: one by colour, one by marker, one by dashes.
 
     Attributes
     ----------
     colours, markers, dashes
-        For a setting's name the style of each of its values; empty where no setting is left.
+        Styles of a setting's values, by the name of the setting; empty if no setting is left.
     """
 
     colours: StylesOfValues
@@ -84,11 +84,11 @@ class LineStyles:
         Parameters
         ----------
         choices
-            All choices of settings, so that a value looks the same in every figure of a case.
+            All choices of settings; a value looks the same in every figure of the case.
         drawn
-            Choices that are drawn; styles show the settings in which they differ.
+            Choices that are drawn; styles show the settings in which these choices differ.
         along
-            Settings that the lines distinguish. Without any, dashes have no meaning.
+            Settings that distinguish lines. Without such settings, dashes have no meaning.
         """
         names = [name for name in varying(drawn) if name not in along]
         names.sort(
@@ -126,12 +126,12 @@ class LineStyles:
 def convergence_figure(
     panels: Sequence[tuple[Quantity, Sequence[Convergence]]], choices: Sequence[CaseSettings]
 ) -> Figure:
-    """Draw errors against the setting they fall with, both axes logarithmic.
+    """Draw errors against the setting with which they fall, both on logarithmic axes.
 
     Parameters
     ----------
     panels
-        Quantities, and how their errors converge.
+        Quantities, and the convergence of their errors.
     choices
         All choices of settings of the case.
     """
@@ -146,13 +146,13 @@ def convergence_figure(
 def work_precision_figure(
     panels: Sequence[tuple[Quantity, Sequence[Problem]]], choices: Sequence[CaseSettings]
 ) -> Figure:
-    """Draw errors against the time of the solution, with Pareto fronts and their points' names.
+    """Draw errors against the time of the solution, and Pareto fronts with letters at their points.
 
     Parameters
     ----------
     panels
-        Quantities, each with the problems that were solved. At most `MAX_FRONTS` problems get a
-        front: those with the most solutions.
+        Quantities, each with its solved problems. Only the `MAX_FRONTS` problems with the most
+        solutions get a front.
     choices
         All choices of settings of the case.
     """
@@ -226,7 +226,7 @@ def _draw_convergence(
 
 
 def _draw_slope(axes: Axes, series: Sequence[Convergence], least: Optional[float]) -> None:
-    """Draw a line with the demanded slope, or else with the nearest whole number."""
+    """Draw a line with the demanded slope, or else with the nearest integer slope."""
     orders = [convergence.order for convergence in series if np.isfinite(convergence.order)]
     order = least or max(1.0, round(float(np.median(orders)))) if orders else 0.0
     if not order:
@@ -261,7 +261,7 @@ def _draw_work_precision(
 
 
 def _with_fronts(problems: Sequence[Problem]) -> list[Problem]:
-    """Return the problems with the most solutions; a single solution makes no front."""
+    """Return the problems with the most solutions, without problems that have a single one."""
     several = [problem for problem in problems if len(problem[1]) > 1]
     return sorted(several, key=lambda problem: -len(problem[1]))[:MAX_FRONTS]
 
@@ -278,7 +278,7 @@ def _draw_points(
 def _draw_front(
     axes: Axes, quantity: Quantity, solutions: Sequence[Solution], letters: Iterator[str]
 ) -> list[KeyLine]:
-    """Draw the Pareto front of one problem, and name the points on it."""
+    """Draw the Pareto front of one problem, and label its points with letters."""
     times, errors = (
         [_time(solution) for solution in solutions],
         [_size(solution) for solution in solutions],
@@ -312,8 +312,8 @@ def worth_naming(
 ) -> list[int]:
     """Return the points of a Pareto front that differ clearly from each other.
 
-    Points are left out if they cost nearly as much as a more accurate one, or if they are hardly
-    more accurate than a cheaper one.
+    A point is left out if a more accurate one costs hardly more, or if a cheaper one is hardly less
+    accurate.
 
     Parameters
     ----------
@@ -337,7 +337,7 @@ def worth_naming(
 
 
 def _lines(solutions: Sequence[Solution], order_in: Optional[str]) -> list[list[int]]:
-    """Return the indices of solutions that a line joins: they differ in `order_in` only."""
+    """Return the groups of solutions that differ in `order_in` alone; a line joins each group."""
     if order_in is None:
         return [[i] for i in range(len(solutions))]
     groups: dict[Hashable, list[int]] = {}
@@ -360,7 +360,7 @@ def _name_point(axes: Axes, letter: str, time: float, error: float) -> None:
 
 
 def _write_key(axes: Axes, lines: Sequence[KeyLine]) -> None:
-    """List the points on the Pareto fronts."""
+    """Write a list of the points on the Pareto fronts."""
     axes.axis("off")
     if not lines:
         return
@@ -381,14 +381,14 @@ def _errors_on(axes: Axes, quantity: Quantity) -> None:
     axes.set_ylabel("error, relative" if quantity.relative else "error")
     low, high = _widened(*axes.get_ylim())
     axes.set_ylim(low, high)
-    in_percent = quantity.relative and low > formatting.SMALL
+    in_percent = quantity.relative and low > formatting.MIN_PERCENT_SHARE
     _label(axes.yaxis, formatting.percent if in_percent else formatting.number)
     if quantity.limit is not None:
         axes.axhline(quantity.limit, color=BODY, linewidth=1.0, linestyle=(0, (6, 3)), zorder=1)
 
 
 def _label(axis: Axis, words: Callable[[float], str]) -> None:
-    """Label the decades; if there are few, also two and five times each decade."""
+    """Label the decades, and twice and five times each decade if there are few decades."""
     low, high = axis.get_view_interval()
     steps = (1.0,) if high > 200 * low else (1.0, 2.0, 5.0)
     axis.set_major_locator(LogLocator(subs=steps, numticks=9))
@@ -401,7 +401,7 @@ def _title(quantity: Quantity) -> str:
 
 
 def _widened(low: float, high: float) -> tuple[float, float]:
-    """Return limits of a logarithmic axis that span a decade and a half, so that it has labels."""
+    """Return limits of a logarithmic axis that span at least 1.5 decades, enough for its labels."""
     factor = max(1.0, np.sqrt(30.0 * low / high))
     return low / factor, high * factor
 

@@ -1,4 +1,4 @@
-"""The folder of a validation while its cases are measured.
+"""Folder of a validation while its cases are measured.
 
 ==================== ========================================================================
 measurements.jsonl   every measurement, written as soon as it is made
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class ValidationFolder:
-    """The folder of a validation; use `create` or `reopen`.
+    """Folder of a validation; `create` and `reopen` return one.
 
     Examples
     --------
@@ -44,7 +44,7 @@ class ValidationFolder:
 
     @classmethod
     def create(cls, path: Path) -> ValidationFolder:
-        """Make a folder; raises InputError if it holds anything."""
+        """Make a new folder and return it; raise InputError if the folder is not empty."""
         check_empty(path)
         path.mkdir(parents=True, exist_ok=True)
         folder = cls(path)
@@ -53,7 +53,7 @@ class ValidationFolder:
 
     @classmethod
     def reopen(cls, path: Path) -> ValidationFolder:
-        """Open the folder of an earlier validation; raises InputError if it is not one."""
+        """Return the folder of an earlier validation; raise InputError if there is none."""
         folder = cls(path)
         remove_leftovers(path)
         if not folder.measurements.path.is_file():
@@ -61,13 +61,13 @@ class ValidationFolder:
         return folder
 
     def keep_stress(self, runs: pd.DataFrame, *, full: bool, seed: int) -> None:
-        """Keep the runs of a stress suite."""
+        """Write the runs of a stress suite."""
         records = json.loads(runs.to_json(orient="records", double_precision=15))
         stored = {**_identity(full, seed), "digest": _digest(records), "runs": records}
         write_text(self._stress, json.dumps(stored) + "\n")
 
     def kept_stress(self, *, full: bool, seed: int) -> Optional[pd.DataFrame]:
-        """Return the runs of this stress suite, if they are there.
+        """Return the stored runs of this stress suite, or None without stored runs.
 
         Raises
         ------
@@ -89,7 +89,7 @@ class ValidationFolder:
 
 
 def _digest(records: list[dict[str, Any]]) -> str:
-    """Return the checksum of runs with any columns, by which damage is found."""
+    """Return the checksum of runs, which reveals damage."""
     return hashlib.sha256(json.dumps(records, sort_keys=True).encode()).hexdigest()
 
 

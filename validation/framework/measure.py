@@ -1,7 +1,7 @@
 """Measuring every case over its matrix, one measurement after another.
 
-Measurements never run at once, because times are measured. The result of a failed measurement
-states the reason.
+Measurements never run at the same time, because run times are measured. The result of a failed
+measurement holds the reason of the failure.
 """
 
 from __future__ import annotations
@@ -37,12 +37,12 @@ class Task(NamedTuple):
 
     @property
     def key(self) -> str:
-        """The key of its measurement."""
+        """Key of the measurement that this task makes."""
         return measurement_key(self.case.name, self.settings)
 
 
 def tasks_of(cases: Iterable[Case], *, full: bool) -> list[Task]:
-    """Return the entries of the cases' matrices, each only once."""
+    """Return the entries of the cases' matrices without duplicates."""
     tasks = [Task(case, settings) for case in cases for settings in case.matrix(full)]
     return list({task.key: task for task in tasks}.values())
 
@@ -62,13 +62,13 @@ def measure_cases(
     cases
         Cases to measure.
     file
-        File of the measurements. Those of this version that did not fail are not made again.
+        File of the measurements. Measurements of this version that did not fail are not repeated.
     full
-        Whether to take the full matrices or the quick ones.
+        Whether to measure the full matrices; otherwise the quick ones.
     progress
         Called before every measurement.
     durations
-        Durations of earlier measurements, by key, s, for the estimate of the time left.
+        Durations of earlier measurements (s) by key, for the estimate of the remaining time.
 
     Returns
     -------
@@ -101,16 +101,16 @@ def measure_cases(
 
 
 class Estimate:
-    """Estimated duration of tasks: that of earlier runs, scaled by the present speed.
+    """Estimated duration of tasks: the duration of earlier runs, scaled by the present speed.
 
-    A task without an earlier run counts as the mean of its case, or of all.
+    A task without an earlier run gets the mean of its case, or the mean of all tasks.
 
     Parameters
     ----------
     tasks
         All tasks, in order.
     durations
-        Durations of earlier tasks, by key, s.
+        Durations of earlier tasks (s) by key.
     """
 
     def __init__(self, tasks: Sequence[Task], durations: Mapping[str, float]) -> None:
@@ -119,7 +119,7 @@ class Estimate:
         self._started = time.monotonic()
 
     def after(self, done: int) -> tuple[float, Optional[float]]:
-        """Return the elapsed share of the time after a number of tasks, and the time left, s."""
+        """Return the elapsed share of the time after `done` tasks, and the remaining time, s."""
         over, ahead = math.fsum(self._expected[:done]), math.fsum(self._expected[done:])
         if over > 0.0:
             pace = (time.monotonic() - self._started) / over
@@ -165,11 +165,13 @@ def _measurement(task: Task, answer: Answer) -> MeasuredSolution:
 
 
 def _breach(case: Case, outcome: Optional[Outcome]) -> str:
-    """Return the way in which an outcome breaks its case's contract; empty if it does not."""
+    """Return how an outcome breaks the contract of its case; empty if it does not."""
     returned = [measured.quantity for measured in outcome.measured] if outcome else []
-    listed = [quantity.name for quantity in case.quantities]
+    quantity_names = [quantity.name for quantity in case.quantities]
     if not returned:
         return "measure returned no quantity"
-    if wrong := [name for name in returned if name not in listed or returned.count(name) > 1]:
+    if wrong := [
+        name for name in returned if name not in quantity_names or returned.count(name) > 1
+    ]:
         return f"measure returned {wrong[0]!r}, which the case does not list, or twice"
     return ""

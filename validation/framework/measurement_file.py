@@ -1,7 +1,7 @@
-"""Measurements as lines of a file that grows.
+"""File of measurements, to which lines are appended.
 
-Every measurement is written as soon as it is made, so an interrupted suite loses and repeats
-nothing.
+Every measurement is written as soon as it is made, so an interrupted suite neither loses nor
+repeats a measurement.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from snowshed.io.json_file import parse_object
 
 
 class MeasurementFile:
-    """Measurements as JSON lines; a line that was cut off by a crash is dropped.
+    """Measurements as JSON lines; a last line that a crash has cut off is ignored.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ class MeasurementFile:
         Raises
         ------
         InputError
-            If a complete line is no measurement; the error names file and line.
+            If a complete line is not a measurement; the error names file and line.
         """
         lines = self._content().split(b"\n")[:-1]
         locations = [f"{self.path}:{number}" for number in range(1, len(lines) + 1)]
@@ -52,7 +52,7 @@ class MeasurementFile:
         ]
 
     def append(self, measurement: MeasuredSolution) -> None:
-        """Add a measurement; it is on disk when this returns."""
+        """Append a measurement to the file on disk."""
         line = json.dumps(measurement.to_json(), allow_nan=False) + "\n"
         try:
             with self.path.open("ab") as file:

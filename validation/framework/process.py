@@ -1,7 +1,7 @@
-"""Makes every measurement in a fork of a process that has computed nothing.
+"""Every measurement is made in a fork of a process that has not computed anything yet.
 
-No measurement may depend on the memory or the caches of another. A new process of Python for each
-would take longer than most measurements.
+No measurement may depend on the memory or the caches of another. To start Python for each
+measurement would take longer than most measurements.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from validation.framework.case import Outcome
 
 Measure = Callable[[CaseSettings], Outcome]
 
-WAIT_S = 3600.0  # between two checks of a measurement, whose time has no limit
+WAIT_S = 3600.0  # s between two checks of a measurement, which has no time limit
 
 
 class Request(NamedTuple):
@@ -33,7 +33,7 @@ class Request(NamedTuple):
 
 @dataclass(frozen=True)
 class Answer:
-    """The result of a measurement: an outcome, or else the reason why there is none."""
+    """Result of a measurement: an outcome, or the reason why there is none."""
 
     outcome: Optional[Outcome]
     failure: str = ""
@@ -47,7 +47,7 @@ def measuring_pool() -> Pool[Request, Answer]:
 
 
 def measure_once(pool: Pool[Request, Answer], measure: Measure, settings: CaseSettings) -> Answer:
-    """Measure once in `measuring_pool()`, and return the outcome or what went wrong.
+    """Measure once in a `measuring_pool()`, and return the outcome or the error.
 
     Raises
     ------
@@ -89,7 +89,7 @@ def answer(request: Request, report: Callable[[float], None]) -> Answer:
 
 
 def _reason(error: Exception) -> str:
-    """Return the error and, if it is known, the line that raised it."""
+    """Return the text of an error with the line that raised it, if it is known."""
     message = f"{type(error).__name__}: {' '.join(str(error).split())}"
     frames = traceback.extract_tb(error.__traceback__)
     if error.__traceback__ is None or not frames:

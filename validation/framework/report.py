@@ -1,4 +1,4 @@
-"""The report: ``validation.html``, which needs no other file, its figures and its tables.
+"""Report of a validation: ``validation.html``, which needs no other file, figures and tables.
 
 ==================== ========================================================================
 validation.html      the report
@@ -49,7 +49,7 @@ class Stress:
 
     @property
     def failed(self) -> int:
-        """Number of runs whose end is not allowed."""
+        """Number of runs with the outcome "failed"."""
         return int((self.runs["outcome"] == "failed").sum())
 
 
@@ -62,7 +62,7 @@ class Validation:
     cases, measurements
         The cases, and all of their measurements.
     full
-        Whether the matrices were the full ones.
+        Whether the full matrices were measured.
     stress
         The stress suite's results, if it ran.
     """
@@ -73,7 +73,7 @@ class Validation:
     stress: Optional[Stress] = None
 
     def facts(self) -> dict[str, str]:
-        """Return the origin of the results."""
+        """Return the suite, version, machine, date, number and duration of the measurements."""
         failed = sum(1 for measurement in self.measurements if measurement.failure)
         return {
             "suite": "full" if self.full else "quick",
@@ -108,7 +108,7 @@ def write_report(validation: Validation, folder: Path) -> list[Criterion]:
 
 
 def problems(validation: Validation, criteria: Sequence[Criterion]) -> list[str]:
-    """Return every failure, a line each."""
+    """Return a line for every failure."""
     titles = {case.name: case.title for case in validation.cases}
     lines = [
         f"{titles[criterion.case]}, {criterion.quantity.title}: "
@@ -186,7 +186,7 @@ def _orders(validation: Validation, table: pd.DataFrame) -> list[dict[str, Any]]
 
 
 def _plain(value: Any) -> Any:
-    """Return data as JSON has it."""
+    """Return data with the types of JSON; numbers that are not finite become None."""
     if isinstance(value, Mapping):
         return {str(name): _plain(inner) for name, inner in value.items()}
     if isinstance(value, (str, bool, int)) or value is None:

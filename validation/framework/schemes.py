@@ -1,7 +1,7 @@
-"""Settings of the method, which decide how a problem is solved; all others define the problem.
+"""Settings of the method, by which a problem is solved; all other settings define the problem.
 
-Only solutions of the same problem are compared with each other, because an easier problem is no
-better scheme.
+Only solutions of the same problem are compared with each other, because a smaller error of an
+easier problem does not show a better scheme.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from snowshed.analysis.accuracy.measurements import CaseSettings
-from snowshed.analysis.accuracy.solutions import SAMPLING
+from snowshed.analysis.accuracy.solutions import SEEDING_SETTINGS
 from snowshed.scene.accuracy_settings import ACCURACY
 from validation.framework.case import Case
 
@@ -25,18 +25,18 @@ def problem_of(case: Case, settings: CaseSettings) -> CaseSettings:
     {'friction': 0.3}
     """
     sizes = {quantity.order_in for quantity in case.quantities}
-    solution_settings = {*ACCURACY, *SAMPLING, *sizes}
+    solution_settings = {*ACCURACY, *SEEDING_SETTINGS, *sizes}
     return {name: value for name, value in settings.items() if name not in solution_settings}
 
 
 def varying(settings: Iterable[CaseSettings]) -> list[str]:
-    """Return the names of the settings in which several choices differ, in order of appearance.
+    """Return the names of settings in which some choices differ, in order of appearance.
 
     Examples
     --------
     >>> varying([{"dx": 0.1, "basis": "cubic"}, {"dx": 0.2, "basis": "cubic"}])
     ['dx']
     """
-    listed = list(settings)
-    names = dict.fromkeys(name for settings in listed for name in settings)
-    return [name for name in names if len({settings.get(name) for settings in listed}) > 1]
+    settings_list = list(settings)
+    names = dict.fromkeys(name for settings in settings_list for name in settings)
+    return [name for name in names if len({settings.get(name) for settings in settings_list}) > 1]

@@ -1,4 +1,4 @@
-"""The report's section on each case: tables of texts, and figures."""
+"""Sections of the report, one for each case, with tables of texts and figures."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ COSTS: Mapping[str, Callable[[MeasuredSolution], str]] = {
     "10⁶ updates/s": lambda measurement: formatting.number(measurement.updates_per_s / 1e6),
     "memory, MB": lambda measurement: formatting.number(measurement.peak_memory_mb),
 }
-#: Stands for the text of the cell to the left.
+#: Mark in a cell that repeats the text of the cell to the left.
 SAME_AS_LEFT = "←"
 CONVERGENCE = "Dashed: the slope of the order named. Red line, if any: the largest allowed error."
 WORK_PRECISION = (
@@ -44,14 +44,14 @@ WORK_PRECISION = (
 
 @dataclass(frozen=True)
 class Section:
-    """The report's section on a case.
+    """Section of the report on a case.
 
     Attributes
     ----------
     common
-        The settings that all measurements share.
+        Settings that all measurements share.
     results, orders, extremes
-        Every measurement; orders of convergence; the smallest and largest errors.
+        Tables of all measurements, of orders of convergence, and of smallest and largest errors.
     """
 
     case: Case
@@ -65,7 +65,7 @@ class Section:
 
 
 def section(case: Case, measurements: Sequence[MeasuredSolution], table: pd.DataFrame) -> Section:
-    """Return the section on a case.
+    """Return the section of the report on a case.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def section(case: Case, measurements: Sequence[MeasuredSolution], table: pd.Data
     measurements
         Measurements of this case.
     table
-        The same as a table.
+        The same measurements as a table.
     """
     solution_lists = {
         quantity.name: solutions(rows_of(table, case.name, quantity.name))
@@ -100,7 +100,7 @@ def section(case: Case, measurements: Sequence[MeasuredSolution], table: pd.Data
 
 
 def results_grid(case: Case, measurements: Sequence[MeasuredSolution]) -> HtmlTable:
-    """Return all measurements of a case: the settings that vary, every quantity, the cost."""
+    """Return a table of all measurements: settings that vary, quantities, and costs."""
     solved = [measurement for measurement in measurements if not measurement.failure]
     names = varying([measurement.settings for measurement in measurements])
     given = {m.quantity for measurement in solved for m in measurement.measured}
@@ -128,14 +128,14 @@ def results_grid(case: Case, measurements: Sequence[MeasuredSolution]) -> HtmlTa
 
 
 def orders_grid(case: Case, series: Mapping[str, Sequence[Convergence]]) -> HtmlTable:
-    """Return the observed orders of convergence."""
+    """Return a table of the observed orders of convergence."""
     titles = {quantity.name: quantity.title for quantity in case.quantities}
     settings_in = {quantity.name: quantity.order_in or "" for quantity in case.quantities}
     rows = [
         [
             titles[name],
             setting_labels.settings_label(
-                convergence.settings, varying([other.settings for other in listed])
+                convergence.settings, varying([other.settings for other in group])
             )
             or "all",
             settings_in[name].replace("_", " "),
@@ -143,28 +143,28 @@ def orders_grid(case: Case, series: Mapping[str, Sequence[Convergence]]) -> Html
             ", ".join(_order(slope) for slope in convergence.pairwise),
             _order(convergence.order),
         ]
-        for name, listed in series.items()
-        for convergence in listed
+        for name, group in series.items()
+        for convergence in group
     ]
     head = ("quantity", "settings", "in", "from … to", "between neighbours", "order")
     return HtmlTable(head, rows, "lllllr")
 
 
 def extremes_grid(case: Case, solution_lists: Mapping[str, Sequence[Solution]]) -> HtmlTable:
-    """Return the smallest, the median and the largest error of every quantity, with settings."""
+    """Return a table of smallest, median and largest errors of all quantities, with settings."""
     rows = []
     for quantity in case.quantities:
-        listed = sorted(solution_lists[quantity.name], key=lambda solution: abs(solution.error))
-        if not listed:
+        by_error = sorted(solution_lists[quantity.name], key=lambda solution: abs(solution.error))
+        if not by_error:
             continue
-        names = varying([solution.settings for solution in listed])
-        middle = float(np.median([abs(solution.error) for solution in listed]))
+        names = varying([solution.settings for solution in by_error])
+        middle = float(np.median([abs(solution.error) for solution in by_error]))
         ends = [
             (
                 quantity.error_text(abs(solution.error)),
                 setting_labels.settings_label(solution.settings, names),
             )
-            for solution in (listed[0], listed[-1])
+            for solution in (by_error[0], by_error[-1])
         ]
         median = quantity.error_text(middle)
         rows.append([quantity.title, *ends[0], median, *ends[1]])
@@ -173,7 +173,7 @@ def extremes_grid(case: Case, solution_lists: Mapping[str, Sequence[Solution]]) 
 
 
 def criteria_grid(criteria: Sequence[Criterion], cases: Sequence[Case]) -> HtmlTable:
-    """Return the criteria and their results; those that do not hold come first."""
+    """Return a table of the criteria and their results; criteria that do not hold come first."""
     titles = {case.name: case.title for case in cases}
     rank = {False: 0, True: 1, None: 2}
     rows = [
@@ -224,7 +224,7 @@ def worst_error(criterion: Criterion) -> str:
 def cheapest_grid(
     answers: Sequence[Cheapest], cases: Sequence[Case], measurements: Sequence[MeasuredSolution]
 ) -> HtmlTable:
-    """Return the quickest settings for every wanted accuracy, a row for each problem."""
+    """Return a table of the quickest settings for each accuracy, with a row for each problem."""
     wanted = sorted({answer.wanted for answer in answers}, reverse=True)
     head = ("case", "quantity", "problem", *(formatting.percent(share) for share in wanted))
     rows = [row for case in cases for row in _cheapest_rows(case, answers, measurements)]
@@ -232,7 +232,7 @@ def cheapest_grid(
 
 
 def frame_grid(frame: pd.DataFrame) -> HtmlTable:
-    """Return a table of numbers and words as one of texts."""
+    """Return a table of numbers and words as a table of texts."""
     from pandas.api.types import is_numeric_dtype
 
     rows = [[_text(value) for value in row] for row in frame.itertuples(index=False)]
@@ -242,7 +242,7 @@ def frame_grid(frame: pd.DataFrame) -> HtmlTable:
 
 @dataclass(frozen=True)
 class _Columns:
-    """The columns of one quantity: its value, its exact value where that varies, its error."""
+    """Columns of one quantity: its value, its exact value if that varies, and its error."""
 
     quantity: Quantity
     heading: str
@@ -280,12 +280,10 @@ def _pictures(
     solution_lists: Mapping[str, Sequence[Solution]],
     series: Mapping[str, Sequence[Convergence]],
 ) -> list[Picture]:
-    choices = [solution.settings for listed in solution_lists.values() for solution in listed]
+    choices = [solution.settings for group in solution_lists.values() for solution in group]
     quantities = {quantity.name: quantity for quantity in case.quantities}
-    converging = [(quantities[name], listed) for name, listed in series.items() if listed]
-    solved = [
-        (quantities[name], by_problem(case, listed)) for name, listed in solution_lists.items()
-    ]
+    converging = [(quantities[name], group) for name, group in series.items() if group]
+    solved = [(quantities[name], by_problem(case, group)) for name, group in solution_lists.items()]
     solved = [
         (quantity, problems) for quantity, problems in solved if _compared(quantity, problems)
     ]
@@ -302,9 +300,9 @@ def _pictures(
 def _compared(
     quantity: Quantity, problems: Sequence[tuple[CaseSettings, Sequence[Solution]]]
 ) -> bool:
-    """Return whether errors show which solution is better.
+    """Return whether errors of the quantity show which solution is better.
 
-    There must be several solutions of one problem, and a measure of a small error.
+    For this, a problem needs several solutions, and the quantity a scale for its error.
     """
     measured_by = quantity.relative or quantity.order_in or quantity.limit is not None
     return bool(measured_by) and any(len(group) > 1 for _, group in problems)
@@ -318,7 +316,7 @@ def _picture(figure: Figure, case: Case, title: str, caption: str) -> Picture:
 def _cheapest_rows(
     case: Case, answers: Sequence[Cheapest], measurements: Sequence[MeasuredSolution]
 ) -> list[list[str]]:
-    """Return a row for each quantity and problem of a case; its title stands in the first."""
+    """Return a row for each quantity and problem of a case, with the case's title in the first."""
     groups: dict[Hashable, list[Cheapest]] = {}
     for answer in answers:
         if answer.case == case.name:
@@ -385,5 +383,5 @@ def _order(slope: float) -> str:
 
 
 def _paragraphs(text: str) -> list[str]:
-    """Return the paragraphs of a text, each in one line."""
+    """Return the paragraphs of a text, each as one line."""
     return [" ".join(part.split()) for part in re.split(r"\n\s*\n", text) if part.strip()]

@@ -26,27 +26,27 @@ DEFAULTS: CaseSettings = {
     "shear_strength": STRENGTH,
     "friction": 0.0,
 }
-#: Springs in a row, at both plates and in the bond; compliance of each, m/Pa: (2 r)²/(E r).
+#: Springs in a row (at both plates and in the bond); each has the compliance (2 r)²/(E r), m/Pa.
 SPRINGS, COMPLIANCE = 3, 4 * (VOXEL / 2) / MODULUS
 
 
 def stage_of(test: str, speed: float) -> LoadingStage:
-    """Return the stage that loads the bond until it breaks, or only elastically."""
-    to_break = STRENGTH * SPRINGS * COMPLIANCE / (SAMPLE_HEIGHT * VOXEL)
+    """Return the stage that loads the bond, until it breaks or only elastically."""
+    breaking_strain = STRENGTH * SPRINGS * COMPLIANCE / (SAMPLE_HEIGHT * VOXEL)
     if test == "pull":
-        return LoadingStage(kind="stretch", speed=speed, strain=1.3 * to_break)
+        return LoadingStage(kind="stretch", speed=speed, strain=1.3 * breaking_strain)
     if test == "shear":
-        return LoadingStage(kind="shear", speed=speed, strain=1.3 * to_break / RATIO)
-    return LoadingStage(kind="compress", speed=speed, strain=to_break)
+        return LoadingStage(kind="shear", speed=speed, strain=1.3 * breaking_strain / RATIO)
+    return LoadingStage(kind="compress", speed=speed, strain=breaking_strain)
 
 
 def measure(settings: CaseSettings) -> Outcome:
-    """Load two blocks that fill the box, frozen to the plates."""
+    """Load two blocks that fill the box and are frozen to the plates; return the errors."""
     test = str(settings["test"])
     labels = np.ones((SAMPLE_HEIGHT, BLOCK_WIDTH, BLOCK_WIDTH), dtype=np.int64)
     labels[SAMPLE_HEIGHT // 2 :] = 2
     settings = {**settings, "bonded_plates": True}
-    if test == "shear":  # it tilts no further than its springs let it, and breaks in shear alone
+    if test == "shear":  # the blocks tilt elastically alone, and the bond breaks in shear alone
         settings["tensile_strength"] = 1e3 * STRENGTH
     stages = [stage_of(test, float(settings["speed"]))]
     drive = grains_drive(labels, VOXEL, stages, settings, CASE_SETTINGS)
@@ -65,17 +65,17 @@ def measure(settings: CaseSettings) -> Outcome:
 
 
 def matrix(full: bool) -> list[CaseSettings]:
-    """Return tests over speeds, steps and scaled inertia."""
-    listed: list[CaseSettings] = []
+    """Return loadings at several speeds, Courant factors and density scalings."""
+    settings_list: list[CaseSettings] = []
     for test in ("pull", "shear", "press"):
         base: CaseSettings = {**DEFAULTS, "test": test}
         speeds = (0.1, 0.03, 0.01, 0.005, 0.002) if full else (0.02, 0.005)
-        listed += [{**base, "speed": speed} for speed in speeds]
+        settings_list += [{**base, "speed": speed} for speed in speeds]
         factors = (1.0, 0.6, 0.15) if full else (0.6,)
-        listed += [{**base, "courant_factor": factor} for factor in factors]
+        settings_list += [{**base, "courant_factor": factor} for factor in factors]
         scalings = (4.0, 16.0, 100.0) if full else (16.0,)
-        listed += [{**base, "density_scaling": scaling} for scaling in scalings]
-    return listed
+        settings_list += [{**base, "density_scaling": scaling} for scaling in scalings]
+    return settings_list
 
 
 CASE = Case(
@@ -84,9 +84,10 @@ CASE = Case(
     source="springs in a row, and strength times area, in closed form",
     description="""
     Two blocks of 5 x 5 x 3 voxels fill the box and are frozen to each other and to both plates. The
-    top plate moves until the bond breaks, or presses. The bond bears strength times area, and three
-    layers of springs of stiffness E r give the modulus. The largest stress and the slope of the
-    stress are compared, and the energy residual at the end relative to the work of the plate.
+    top plate moves until the bond breaks, or it presses. The bond bears its strength times its
+    area, and the modulus follows from three layers of springs with the stiffness E r. The largest
+    stress and the slope of the stress are compared with these values. The energy residual at the
+    end is relative to the work of the plate.
     """,
     quantities=(
         Quantity("strength", "strength, Pa", limit=0.02, limit_for={"speed": 0.005}),
@@ -96,8 +97,8 @@ CASE = Case(
     matrix=matrix,
     measure=measure,
     remarks="""
-    The stress is instantaneous, so it oscillates with the waves that the plate's start sends
-    through the blocks. The amplitude is proportional to the speed and to the root of the scaled
-    density.
+    The stress is not averaged in time. It therefore oscillates with the waves that the start of the
+    plate sends through the blocks. The amplitude is proportional to the speed and to the root of
+    the scaled density.
     """,
 )

@@ -1,4 +1,4 @@
-"""Loading tests at the extremes of samples, stages and settings: sound, or refused."""
+"""Loading tests at the extremes of samples, stages and settings: finite results, or an error."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ DEFAULTS: CaseSettings = {
     "density_scaling": 1.0,
     "bonded_plates": True,
 }
-#: Variations of the snow, one at a time.
+#: Settings that differ from the defaults.
 EXTREMES: tuple[CaseSettings, ...] = (
     {"elastic_modulus": 1.0},
     {"elastic_modulus": 1e12},
@@ -78,7 +78,7 @@ EXTREMES: tuple[CaseSettings, ...] = (
 
 
 def measure(settings: CaseSettings) -> Outcome:
-    """Take some steps, and count numbers that are not finite."""
+    """Take some steps, and count the numbers that are not finite."""
     kind, strain = str(settings["kind"]), float(settings["strain"])
     stage = LoadingStage(kind=kind, speed=float(settings["speed"]), strain=strain)  # type: ignore[arg-type]
     drive = grains_drive(SAMPLES[str(settings["sample"])], VOXEL, [stage], settings, CASE_SETTINGS)
@@ -89,26 +89,26 @@ def measure(settings: CaseSettings) -> Outcome:
         stopped = 1.0
     energies = [value for name, value in drive.core.energy().items() if name.endswith("_j")]
     spheres = drive.core.grains_spheres()[0]
-    unsound = float(
+    not_finite = float(
         np.count_nonzero(~np.isfinite(spheres)) + sum(not math.isfinite(e) for e in energies)
     )
     return drive.outcome(
         [
-            Measured("unsound", unsound, 0.0, unsound),
+            Measured("unsound", not_finite, 0.0, not_finite),
             Measured("stopped", stopped, 0.0, stopped),
         ]
     )
 
 
 def matrix(full: bool) -> list[CaseSettings]:
-    """Return samples with kinds of stages, and settings at their extremes."""
+    """Return every kind of stage for every sample, and settings at their extremes."""
     base: CaseSettings = {**DEFAULTS, "steps_to_take": 5000 if full else STEPS}
-    listed: list[CaseSettings] = [
+    settings_list: list[CaseSettings] = [
         {**base, "sample": sample, "kind": kind, **({"speed": 50.0} if full else {})}
         for sample in SAMPLES
         for kind in KINDS
     ]
-    return listed + [{**base, **extreme} for extreme in EXTREMES]
+    return settings_list + [{**base, **extreme} for extreme in EXTREMES]
 
 
 CASE = Case(
@@ -116,11 +116,12 @@ CASE = Case(
     title="Grains at the extremes",
     source="all numbers are finite",
     description="""
-    Snow, a single voxel, a block, two balls that touch nothing, grains of one voxel and a layer of
-    one voxel are compressed, stretched, sheared, pressed from all sides and penetrated; and snow is
-    compressed with stiffness, strength, friction, density, damping, time step, speed and scaled
-    inertia at the extremes of their allowed ranges; some of it by nine tenths of its height. All
-    coordinates and energies must be finite. A test may stop with an error that names its cause.
+    Six samples are compressed, stretched, sheared, pressed from all sides and penetrated: snow, a
+    single voxel, a block, two balls that touch nothing, grains of one voxel and a layer of one
+    voxel. In addition, snow is compressed with stiffness, strength, friction, density, damping,
+    time step, speed and scaled inertia at the extremes of their allowed ranges, in some tests by
+    nine tenths of its height. All coordinates and energies must be finite. A test may stop with an
+    error that names its cause.
     """,
     quantities=(
         Quantity("unsound", "numbers that are not finite", limit=0.0, relative=False),
@@ -130,7 +131,7 @@ CASE = Case(
     measure=measure,
     remarks="""
     Spheres that are pressed past each other's centres are pushed apart on the far side, because the
-    contact law depends on the distance alone. Such a test continues with meaningless values. The
+    contact law depends on the distance alone. The results of such a test have no meaning. The
     stress shows this, because it is then far above the strength of ice.
     """,
 )

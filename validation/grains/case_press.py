@@ -1,4 +1,4 @@
-"""Synthetic snow that is compressed: the effect of numerical settings on its stress."""
+"""Compression of synthetic snow: the effect of numerical settings on the stress."""
 
 from __future__ import annotations
 
@@ -32,38 +32,40 @@ REFERENCE = 2250477.8267052164
 
 
 def measure(settings: CaseSettings) -> Outcome:
-    """Compress a cube by 5 %."""
+    """Compress a cube by 5 %, and return the errors of stress and balances."""
     across, voxels = int(settings["across"]), int(settings["voxels"])
     labels = snow_labels(across, voxels, int(settings["seed"]))
     stages = [LoadingStage(kind="compress", speed=float(settings["speed"]), strain=STRAIN)]
     drive = grains_drive(labels, GRAIN / voxels, stages, settings, CASE_SETTINGS)
     curve = load_all(drive, stages, across * GRAIN)
     stress, missing = mean_stress(curve, STRAIN - 0.01, STRAIN), residual(curve)
-    between = abs(
+    bottom_share = abs(
         float(curve["bottom_stress_pa"][-30:].mean()) / curve["top_stress_pa"][-30:].mean()
     )
     return drive.outcome(
         [
             relative("stress", stress, REFERENCE),
             Measured("residual", missing, 0.0, missing),
-            relative("bottom", float(between), 1.0),
+            relative("bottom", bottom_share, 1.0),
         ]
     )
 
 
 def matrix(full: bool) -> list[CaseSettings]:
-    """Return time steps, scaled inertia with speed, sizes of spheres and volumes."""
+    """Return density scalings, speeds, Courant factors, voxels per cell and sizes of the sample."""
     if not full:
         fast: CaseSettings = {**DEFAULTS, "density_scaling": 100.0}
         return [fast, {**fast, "courant_factor": 0.6}, {**fast, "voxels": 4}]
     fast = {**DEFAULTS, "density_scaling": 100.0}
-    listed: list[CaseSettings] = [{**DEFAULTS, "density_scaling": s} for s in SCALINGS]
-    listed += [{**DEFAULTS, "speed": speed} for speed in (0.3, 1.0)]
-    listed += [{**fast, "courant_factor": factor} for factor in (0.05, 0.1, 0.6, 1.0)]
-    listed += [{**fast, "voxels": voxels} for voxels in (3, 4, 6, 8)]
-    listed += [{**fast, "across": across, "seed": s} for across in (3, 4, 6) for s in (1, 2, 3)]
+    settings_list: list[CaseSettings] = [{**DEFAULTS, "density_scaling": s} for s in SCALINGS]
+    settings_list += [{**DEFAULTS, "speed": speed} for speed in (0.3, 1.0)]
+    settings_list += [{**fast, "courant_factor": factor} for factor in (0.05, 0.1, 0.6, 1.0)]
+    settings_list += [{**fast, "voxels": voxels} for voxels in (3, 4, 6, 8)]
+    settings_list += [
+        {**fast, "across": across, "seed": s} for across in (3, 4, 6) for s in (1, 2, 3)
+    ]
     slow: CaseSettings = {**DEFAULTS, "speed": 0.02}
-    return [*listed, slow]
+    return [*settings_list, slow]
 
 
 CASE = Case(
@@ -72,12 +74,12 @@ CASE = Case(
     source="itself, with the slowest plate and without scaled density; the balance of energy",
     description="""
     Synthetic snow, a random field of waves that is cut at a level and into cells, is compressed by
-    5 % between plates and smooth walls. The mean stress from 4 to 5 % is compared for
-    several time steps, scaled densities, speeds, sphere sizes (of the same snow) and volumes, each
-    with three samples. There is no exact answer. The reference is the snow of 27 cells on 5 voxels
-    per cell, loaded at 0.02 m/s without scaled density; for volumes the error is mostly the scatter
-    between samples. The energy balance and the balance of the forces on the two plates at rest have
-    exact answers.
+    5 % between plates and smooth walls. The mean stress from 4 to 5 % is compared for several time
+    steps, scaled densities, speeds, sphere sizes (of the same snow) and volumes (with three samples
+    each). There is no exact answer. The reference is snow of 27 cells with 5 voxels per cell,
+    loaded at 0.02 m/s without scaled density. For volumes the error is mostly the scatter between
+    samples. The energy balance and, at rest, the balance of the forces on the two plates have exact
+    answers.
     """,
     quantities=(
         Quantity("stress", "mean stress from 4 to 5 % strain, Pa"),
@@ -87,8 +89,7 @@ CASE = Case(
     matrix=matrix,
     measure=measure,
     remarks="""
-    Without gravity the equations contain the scaled density s and the speed v only as s v².
-    Doubling the speed therefore has the same error as four times the density, and saves the same
-    time.
+    Without gravity the equations contain the scaled density s and the speed v only as s v². Twice
+    the speed therefore has the same error as four times the density, and saves the same time.
     """,
 )

@@ -1,4 +1,4 @@
-"""Snow of grains for the cases: one microstructure on voxels of any size, and its loading tests."""
+"""Snow of grains for the cases: one microstructure for voxels of any size, and loading tests."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from validation.framework.drive import TimedEventDriver
 
 GRAIN = 3e-4  # m, edge of the cells that cut the ice into grains
 WAVES, WAVELENGTH = 80, 1.4  # number in the random field; wavelength over GRAIN
-THRESHOLD = 0.45  # standard deviations of the field above which there is ice
+THRESHOLD = 0.45  # level of the field above which there is ice, in standard deviations
 
 
 def snow_labels(across: int, voxels: int, seed: int = 1) -> Integers:
-    """Return synthetic snow: a random field of waves, cut at a level and into cells.
+    """Return the labels of synthetic snow: a random field of waves, cut at a level and into cells.
 
-    Field and cells are functions of space, so the snow is the same on voxels of any size.
+    Field and cells are functions of space, so the snow is the same for voxels of any size.
 
     Parameters
     ----------
     across
         Cells along each edge.
     voxels
-        Along the edge of a cell.
+        Voxels along the edge of a cell.
     seed
         Seed of the field and the cells.
 
@@ -68,12 +68,12 @@ def grains_drive(
     case_settings: Collection[str] = (),
     cone_radius: float = GRAIN,
 ) -> TimedEventDriver:
-    """Return a loading test that is ready to go, with its energy balance and without gravity.
+    """Return a loading test before its first step, with an energy balance and without gravity.
 
     Parameters
     ----------
     settings
-        Parameters of `GrainsSettings`; one thread computes.
+        Parameters of `GrainsSettings`; the test uses one thread.
     case_settings
         Names of settings that belong to the case, not to the method.
     cone_radius
@@ -95,7 +95,7 @@ def grains_drive(
 def load_all(
     drive: TimedEventDriver, stages: Sequence[LoadingStage], height: float
 ) -> LoadingCurve:
-    """Take steps until all stages must have ended; return the measured curve.
+    """Take steps until the planned end of all stages, and return the measured curve.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def load_all(
 
 
 def residual(curve: LoadingCurve) -> float:
-    """Return the energy that is missing at the end over the largest work that was done."""
+    """Return the energy that is missing at the end, relative to the largest work."""
     return float(abs(curve["residual_j"][-1]) / np.abs(curve["boundary_work_j"]).max())
 
 

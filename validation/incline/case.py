@@ -1,4 +1,4 @@
-"""A slab on an incline with Coulomb friction, and the angle at which it begins to slide."""
+"""Slab on an incline with Coulomb friction, and the angle at which it begins to slide."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from validation.framework.drive import TimedEventDriver, absolute, apply_setting
 
 TILT = 40.0  # degrees
 THICKNESS, WIDTH = 0.05, 0.1  # m; the width in 3D only
-#: Settings of a slab that are no parameters of the scene.
+#: Settings of the case that are not parameters of the scene.
 CASE_SETTINGS = frozenset({"friction", "condition", "length", "speed"})
 
 DEFAULTS: CaseSettings = {
@@ -36,7 +36,7 @@ METHODS: Sequence[CaseSettings] = (
     {"seed": 2},
     {"seed": 3},
 )
-#: Variations of a slab that is thrown and stops.
+#: Variations of the slab that is thrown and stops.
 STOPS: Sequence[CaseSettings] = (
     {"friction": 0.9},
     {"dx": 0.02},
@@ -61,7 +61,7 @@ def slab_scene(settings: CaseSettings, tilt: float) -> Scene:
 
 
 class Sliding:
-    """A slab on its way down; its mean motion along the slope."""
+    """A sliding slab, and its mean motion along the slope."""
 
     def __init__(self, settings: CaseSettings, tilt: float) -> None:
         self.drive = TimedEventDriver(slab_scene(settings, tilt))
@@ -69,12 +69,12 @@ class Sliding:
 
     @property
     def speed(self) -> float:
-        """Speed of the centre of mass, m/s."""
+        """Speed of the centre of mass along the slope, m/s."""
         return float(self.drive.mean(self.drive.core.velocities()) @ self.incline.along)
 
     @property
     def place(self) -> float:
-        """Place of the centre of mass, m."""
+        """Position of the centre of mass along the slope, m."""
         return float(self.drive.mean(self.drive.core.positions()) @ self.incline.along)
 
     def acceleration(self, begin: float, end: float) -> float:
@@ -87,14 +87,14 @@ class Sliding:
 
 # --- sliding and stopping ---------------------------------------------------------------------
 
-#: The time over which acceleration is averaged, s; before it, contact sets in.
+#: Period over which acceleration is averaged, s; contact develops before it.
 WINDOW = (0.1, 0.3)
 #: Time from which the speed of a thrown slab after stopping is measured, s.
 CONTACT_TIME = 0.05
 
 
 def measure_slab(settings: CaseSettings) -> Outcome:
-    """Measure a slab that slides; if friction holds it, measure how it stops and stays."""
+    """Measure the sliding of a slab, or its stopping and creep if friction holds it."""
     friction = float(settings["friction"])
     sliding = Sliding(settings, TILT)
     exact = sliding.incline.coulomb(friction)
@@ -107,13 +107,13 @@ def _slide(sliding: Sliding, friction: float) -> Iterator[Measured]:
     acceleration = sliding.acceleration(*WINDOW)
     yield relative("acceleration", acceleration, exact)
     if friction > 0:
-        missing = sliding.incline.coulomb(0.0) - acceleration
-        pressed = GRAVITY * math.cos(math.radians(TILT))
-        yield relative("effective_friction", missing / pressed, friction)
+        friction_force = sliding.incline.coulomb(0.0) - acceleration
+        normal_force = GRAVITY * math.cos(math.radians(TILT))
+        yield relative("effective_friction", friction_force / normal_force, friction)
 
 
 def _stop(sliding: Sliding, deceleration: float, settings: CaseSettings) -> Iterator[Measured]:
-    """Yield the stopping distance and the creep; contact develops before they are measured."""
+    """Yield the stopping distance and the creep, measured after contact has developed."""
     sliding.drive.run_to(CONTACT_TIME)
     speed, place = sliding.speed, sliding.place
     sliding.drive.run_to(CONTACT_TIME + 1.2 * max(speed, 0.0) / deceleration + 0.1)
@@ -129,17 +129,21 @@ def slab_matrix(full: bool) -> list[CaseSettings]:
     trap: CaseSettings = {**DEFAULTS, "length": 2.0, "speed": 0.0}
     short: CaseSettings = {**trap, "length": 0.25}
     thrown: CaseSettings = {**short, "model": "elastic", "friction": 1.2, "speed": 1.0}
-    listed: list[CaseSettings] = [{**trap, "dx": 0.02, "friction": mu} for mu in slides]
-    listed += [{**trap, "friction": mu} for mu in (slides if full else (0.6,))]
-    listed += [thrown, {**short, "friction": 0.9}]
+    settings_list: list[CaseSettings] = [{**trap, "dx": 0.02, "friction": mu} for mu in slides]
+    settings_list += [{**trap, "friction": mu} for mu in (slides if full else (0.6,))]
+    settings_list += [thrown, {**short, "friction": 0.9}]
     if full:
-        listed += [{**trap, **method, "friction": mu} for method in METHODS for mu in slides[2:]]
-        listed += [{**short, "dx": dx, "friction": mu} for dx in (0.01, 0.005) for mu in slides]
-        listed += [{**short, "dimension": 3, "friction": mu} for mu in (0.3, 0.6)]
-        listed += [{**short, "speed": speed, "friction": 0.6} for speed in (1.0, 3.0, 10.0)]
-        listed += [{**short, "friction": 1.2}, {**short, "dx": 0.005, "friction": 0.9}]
-        listed += [{**thrown, **stop} for stop in STOPS]
-    return listed
+        settings_list += [
+            {**trap, **method, "friction": mu} for method in METHODS for mu in slides[2:]
+        ]
+        settings_list += [
+            {**short, "dx": dx, "friction": mu} for dx in (0.01, 0.005) for mu in slides
+        ]
+        settings_list += [{**short, "dimension": 3, "friction": mu} for mu in (0.3, 0.6)]
+        settings_list += [{**short, "speed": speed, "friction": 0.6} for speed in (1.0, 3.0, 10.0)]
+        settings_list += [{**short, "friction": 1.2}, {**short, "dx": 0.005, "friction": 0.9}]
+        settings_list += [{**thrown, **stop} for stop in STOPS]
+    return settings_list
 
 
 SLAB = Case(
@@ -147,14 +151,14 @@ SLAB = Case(
     title="Slab on an incline with Coulomb friction",
     source="Coulomb's law for a block: acceleration g (sin φ - μ cos φ); stopping in v²/(2 a)",
     description="""
-    A slab 5 cm thick on a plane of 40 degrees, 2 m long unless another length is given. With a
-    friction below tan 40° = 0.84 it slides: its mean acceleration from 0.1 to 0.3 s is compared
-    with Coulomb's, and gives the friction that acted. With a higher friction it must stay in place,
-    or, if thrown at 1 m/s, stop after the right distance.
+    A slab 5 cm thick on a plane of 40 degrees, 2 m long unless another length is given. If the
+    friction is below tan 40° = 0.84, it slides. Its mean acceleration from 0.1 to 0.3 s is compared
+    with Coulomb's law, and gives the effective friction. With a higher friction it must stay in
+    place; if thrown at 1 m/s, it must stop after the right distance.
 
-    This slab is a hard test. It vibrates through its thickness as it slides, and the usual rule,
-    which takes friction from the inward part of each step's normal impulse, holds it at μ = 0.6
-    already.
+    This slab is a hard test. It vibrates through its thickness as it slides. With the usual rule,
+    which takes friction from the inward part of each step's normal impulse, it stays in place even
+    at μ = 0.6.
     """,
     quantities=(
         Quantity(
@@ -173,31 +177,31 @@ SLAB = Case(
     measure=measure_slab,
     remarks="""
     Near the limit the acceleration is a small difference between two large numbers: at μ = 0.8 an
-    error of 0.04 % in friction causes an error of 1 % in acceleration. Seedings differ by that
-    much.
+    error of 0.04 % in friction causes an error of 1 % in acceleration. Seedings differ by this
+    amount.
 
     Fast slabs meet too little friction. Friction follows the normal force with a delay of 40
-    elastic time steps, 2.4 ms at dx 1 cm, and impulses still stored at nodes are lost once the slab
-    has left them. A slab 25 cm long loses 0.1 % of its friction at 1 m/s, 0.5 % at 3 m/s and 4 % at
-    10 m/s; twice that at dx 2 cm, and less the longer the slab is. Snow on a panel 2 m long, tilted
-    by 40 degrees, does not exceed 5 m/s.
+    elastic time steps, 2.4 ms at dx 1 cm, and impulses that are still stored at nodes are lost when
+    the slab has left them. A slab 25 cm long loses 0.1 % of its friction at 1 m/s, 0.5 % at 3 m/s
+    and 4 % at 10 m/s. At dx 2 cm it loses twice as much, and longer slabs lose less. Snow on a
+    panel 2 m long, tilted by 40 degrees, does not exceed 5 m/s.
 
-    Where the plane is rougher than snow is inside (μ = 1.2 against M = 0.5), thrown snow does not
-    stop as a block. At dx 1 cm it goes 2 % too far; at 5 mm its lowest layer breaks up and stays
-    behind, and the rest slides on over it. The limit therefore applies to an elastic slab.
+    If the plane has more friction than the snow itself (μ = 1.2 against M = 0.5), thrown snow does
+    not stop as a block. At dx 1 cm it goes 2 % too far; at 5 mm its lowest layer breaks up and
+    stays behind, and the rest slides on over it. The limit therefore applies to an elastic slab.
     """,
 )
 
 # --- the stopping angle -----------------------------------------------------------------------
 
-#: Half the range of tilts that is searched, and the width at which the search ends, degrees.
+#: Half the range of searched tilts, and the width at which the search ends, degrees.
 SEARCHED_TILTS, ANGLE_TOLERANCE = 4.0, 0.02
-#: A slab slides if its speed grows by more than this, m/s2: a ten-thousandth of g.
+#: Smallest acceleration of a slab that counts as sliding, m/s2: a ten-thousandth of g.
 MIN_GROWTH = 1e-4 * GRAVITY
 
 
 def measure_angle(settings: CaseSettings) -> Outcome:
-    """Find by bisection the tilt at which a slab begins to slide."""
+    """Return the tilt at which a slab begins to slide, found by bisection."""
     exact = math.degrees(math.atan(float(settings["friction"])))
     holds, slides = exact - SEARCHED_TILTS, exact + SEARCHED_TILTS
     wall_s, updates, steps, particles = 0.0, 0, 0, 0
@@ -233,9 +237,9 @@ ANGLE = Case(
     title="Tilt at which a slab begins to slide",
     source="Coulomb's law: a block slides where tan φ > μ",
     description="""
-    A slab 25 cm long and 5 cm thick is laid on planes of different tilts. It slides if its speed
-    still grows between 0.1 and 0.3 s, by more than a ten-thousandth of g. Bisection brings the tilt
-    at which that begins to 0.02 degrees. A quarter of a degree is about 1 % of friction.
+    A slab 25 cm long and 5 cm thick is laid on planes of different tilts. It slides if its mean
+    acceleration between 0.1 and 0.3 s exceeds a ten-thousandth of g. Bisection finds the smallest
+    such tilt to 0.02 degrees. A quarter of a degree corresponds to about 1 % of friction.
     """,
     quantities=(
         Quantity("angle", "tilt, degrees", limit=0.25, limit_for={"dx": 0.01}, relative=False),
@@ -243,12 +247,12 @@ ANGLE = Case(
     matrix=angle_matrix,
     measure=measure_angle,
     remarks="""
-    The answer is right to the width of the search as long as the slab is no thicker than five
-    cells. At ten cells (dx 5 mm) it slides half a degree too early: in that half degree it never
-    stops, but creeps at 1 to 3 cm/s. The delay of friction, 40 elastic time steps, is then shorter
-    than the slowest vibration through the slab's thickness (4 thickness/c); the two feed each other
-    and the slab keeps shaking. With a delay twice as long it stops. Seedings at μ = 0.9 differ by a
-    tenth of a degree.
+    The angle is right to the width of the search if the slab is at most five cells thick. With ten
+    cells (dx 5 mm) it slides half a degree too early. Within this half degree it never stops, but
+    creeps at 1 to 3 cm/s. The delay of friction, 40 elastic time steps, is then shorter than the
+    slowest vibration through the slab's thickness (4 thickness/c). Delay and vibration amplify each
+    other, and the slab keeps shaking. With twice the delay it stops. Seedings at μ = 0.9 differ by
+    a tenth of a degree.
     """,
 )
 

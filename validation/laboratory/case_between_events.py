@@ -1,4 +1,4 @@
-"""The transition between events: particles carried over, against the stack reseeded as a solid."""
+"""Transition between events: stacks that are carried over, and stacks reseeded as a solid."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from validation.laboratory.lab_stack import (
     run_seedings,
 )
 
-#: Seeds begin here, so that none is one of the reference's.
+#: First seed, above all seeds of the reference.
 FIRST_SEED = 101
 
 BASE: CaseSettings = {
-    **NO_SLEEP,  # as the recorded stacks are
+    **NO_SLEEP,  # as in the recorded runs
     "dimension": 2,
     "dx": 0.01,
     "events": 5,
@@ -32,7 +32,7 @@ BASE: CaseSettings = {
 
 
 def matrix(full: bool) -> list[CaseSettings]:
-    """Return the settings to solve with."""
+    """Return grids with both treatments; if full, more grids and events, and one grid in space."""
     if full:
         grids: list[CaseSettings] = [{**BASE, "dx": dx} for dx in (0.02, 0.01, 0.005)]
         grids.append({**BASE, "dimension": 3, "dx": 0.02})
@@ -42,7 +42,7 @@ def matrix(full: bool) -> list[CaseSettings]:
 
 
 def measure(settings: CaseSettings) -> Outcome:
-    """Run every seeding; compare stacks before and after conversions, and with the noise."""
+    """Run every seeding; compare stacks before and after conversions, and with recorded stacks."""
     runs = run_seedings(settings)
     measured = [_mass(runs)]
     conversions = _conversions(runs)
@@ -69,15 +69,15 @@ def _conversions(runs: Sequence[LabRun]) -> list[Conversion]:
 
 
 def _largest(name: str, changes: Iterable[float]) -> Measured:
-    """Return the largest change, which should be zero."""
+    """Return the largest change as a measured value whose exact value is zero."""
     return absolute(name, max(changes, key=abs), 0.0)
 
 
 def _space(runs: Sequence[LabRun]) -> float:
-    """Return the volume of stacks after their last conversion over that of their snow.
+    """Return the mean volume of stacks after their last conversion, over the volume of their snow.
 
-    A solid is seeded as densely as a slab. The more of it was void, the less mass is left for each
-    particle.
+    A solid is seeded as densely as a slab. The larger its former voids, the smaller the mass of
+    each particle.
     """
     last = [(run.particle_mass, run.conversions[-1]) for run in runs]
     return float(
@@ -88,7 +88,7 @@ def _space(runs: Sequence[LabRun]) -> float:
 
 
 def _mass(runs: Sequence[LabRun]) -> Measured:
-    """Return the mass with the largest error, of all at conversions and at the end."""
+    """Return the mass with the largest error, among those after conversions and at the end."""
     pairs = [(run.mass, run.brought_mass) for run in runs]
     pairs += [(conversion.mass_after, conversion.mass_before) for conversion in _conversions(runs)]
     value, exact = max(pairs, key=lambda pair: abs(pair[0] / pair[1] - 1))
@@ -106,42 +106,43 @@ DESCRIPTION = """
 Between two slabs the stack is either kept as it is (carry), or converted to a solid and reseeded at
 rest (reseed, as in the thesis). Both must conserve mass to round-off.
 
-For reseeding, the stack just before and just after each conversion is compared: height and length
-by the rule that leaves out the outermost 3 % of the mass, those of the largest connected body
-alone, the outline (root mean square of its shift in height), and the part of the snow that lies
-outside the largest body. The largest change in any conversion is shown, lengths in grid cells. The
-space that the stack fills after the last conversion is compared with the volume of its snow at the
-initial density: the excess over 1 is void that has become snow. Only the height of the largest body
-has a limit: half a cell, because the solid is made of cubes of a cell's size. Lengths have none,
-because they depend on single grains, see "Where the method is poor".
+For reseeding, the stack just before and just after each conversion is compared: its height and
+length by the rule that leaves out the outermost 3 % of the mass; height and length of the largest
+connected body; the outline (root mean square of its change in height); and the share of the snow
+outside the largest body. The largest change in any conversion is shown; lengths are in grid cells.
+The volume of the stack after the last conversion is compared with the volume of its snow at the
+initial density. The excess over 1 consists of voids that have become snow. Only the height of the
+largest body has a limit: half a cell, because the solid is made of cubes of a cell's size. Lengths
+have no limit, because they depend on single grains (see "Where the method is poor").
 
-The last stacks, means over the seedings, are compared with the mean of the recorded runs on the
-same grid, whose snow was carried over: relative to that mean, and in standard deviations between
-single recorded runs. None of these stacks sleep. Carried stacks have other seeds than the recorded
-ones, so their departure is noise: the mean of four departs by half a deviation on average.
+The mean of the last stacks over the seedings is compared with the mean of the recorded runs on the
+same grid, whose snow was carried over. The deviation is relative to that mean, and in standard
+deviations between single recorded runs. None of these stacks sleep. Carried stacks have other seeds
+than the recorded ones, so their deviation is noise: the mean of four stacks deviates by half a
+standard deviation on average.
 """
 
 REMARKS = """
 A conversion hardly moves the stack's surface: heights stay within a quarter of a cell, outlines
 within one cell. It changes the interior. Gaps between layers, hollows under folds and loose debris
-become part of the solid, which is then filled evenly. The mass stays, so before the fifth slab the
-stack fills 2.3, 1.8 and 1.5 times the volume of its snow at dx 0.02, 0.01 and 0.005 m in the plane,
-and 2.5 times at 0.02 m in space: at 0.01 m it is as if made of foam of 120 kg/m3 that is as strong
-as snow of 210 kg/m3. Nothing can close these voids any more, and the bonds are whole again, so
+become part of the solid, which is then filled evenly. The mass stays the same. Before the fifth
+slab the stack fills 2.3, 1.8 and 1.5 times the volume of its snow at dx 0.02, 0.01 and 0.005 m in
+the plane, and 2.5 times at 0.02 m in space. At 0.01 m it behaves like foam of 120 kg/m3 that is as
+strong as snow of 210 kg/m3. These voids can no longer close, and all bonds are whole again, so
 reseeded stacks become higher: by 90 % at dx 0.02 m, 30 % at 0.01 m and 8 % at 0.005 m in the plane,
-and 92 % at 0.02 m in space, which is 6, 1.9, 1.0 and 16 standard deviations. The coarser the grid,
-the larger the voids.
+and by 92 % at 0.02 m in space, that is by 6, 1.9, 1.0 and 16 standard deviations. Coarser grids
+have larger voids.
 
 Separate grains, too small for the grid, become balls about half a cell in radius in the solid. The
 ends of the snow therefore stay in place, but the mass there changes slightly: the measured length,
 which leaves out 3 % of the mass, changes by up to three cells in one conversion. The largest body
-changes more. Where a thin trail of grains joins two parts, a conversion may interrupt the trail,
-and one of the parts no longer counts; or it fills a gap and joins two bodies. The body became
-longer by up to 8.5 cells at dx 0.01 m. Up to 6 % of the snow joined or left the largest body in
-this way in the plane, 2 % in space.
+changes more. If a thin trail of grains joins two parts, a conversion may interrupt the trail, so
+that one of the parts no longer counts. A conversion may also fill a gap and so join two bodies. The
+body became longer by up to 8.5 cells at dx 0.01 m. Up to 6 % of the snow joined or left the largest
+body in this way in the plane, 2 % in space.
 
-Stacks that are carried over show none of these effects. Reseed only to compare with reseeded
-results.
+Stacks that are carried over show none of these effects. Use reseeding only for comparisons with
+reseeded results.
 """
 
 CASE = Case(

@@ -1,4 +1,4 @@
-"""The stack itself: how height and length depend on grid, scheme, seeding and dimension."""
+"""Height and length of the stack, in dependence on grid, scheme, seeding and dimension."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from validation.framework.drive import relative
 from validation.laboratory.lab_records import noise, recorded
 from validation.laboratory.lab_stack import COMPARED, StackRun, outcome_of, run_seedings
 
-#: 3D over 2D stack height where height and width are comparable (thesis, 5.1.1).
+#: Ratio of stack heights in 3D and 2D if height and width are similar (thesis, 5.1.1).
 RULE_OF_THUMB = 2 / 3
 
 BASE: CaseSettings = {"dimension": 2, "dx": 0.01, "transfer": "flip", "events": 5, "seedings": 4}
 
-#: Grids of the plane, with the seeds of the recorded runs.
+#: Grids in the plane, with the seeds of the recorded runs.
 GRIDS: Sequence[CaseSettings] = (
     {"dx": 0.02, "seedings": 12},
     {"dx": 0.01, "seedings": 12},
     {"dx": 0.005, "seedings": 6},
 )
-#: The same in space, on the affordable grids.
+#: Affordable grids in space, with the seeds of the recorded runs.
 GRIDS_3D: Sequence[CaseSettings] = (
     {"dimension": 3, "dx": 0.02, "seedings": 8},
     {"dimension": 3, "dx": 0.01, "seedings": 1},
@@ -40,7 +40,7 @@ OBJECTIVE_GRIDS: Sequence[CaseSettings] = (
     {**OBJECTIVE, "dimension": 3, "dx": 0.01, "seedings": 4},
 )
 
-#: Variants of the default scheme, on the grid that the laboratory's stacks use.
+#: Variants of the default scheme, on the grid of the laboratory's stacks.
 SCHEMES: Sequence[CaseSettings] = (
     {"transfer": "apic"},
     {"flip_ratio": 0.95},
@@ -55,7 +55,7 @@ SCHEMES: Sequence[CaseSettings] = (
     {"courant_factor": 0.3, "transfer": "apic"},
 )
 
-#: Settings of the recorded runs of each scheme; a setting that is None is not given.
+#: Settings of the recorded runs of each scheme; None: the setting must not be given.
 AS_RECORDED: SettingsFilter = {
     "transfer": ("flip", None),
     "flip_ratio": None,
@@ -64,12 +64,12 @@ AS_RECORDED: SettingsFilter = {
     "particles_per_voxel": None,
     "courant_factor": None,
 }
-#: Standard deviations between seedings by which a mean of stacks may differ from the recorded one.
+#: Largest difference between the means of new and recorded stacks, in standard deviations.
 MAX_NOISE = 3.0
 
-#: Speeds below which snow may sleep, m/s; 0: never.
+#: Speeds below which snow may sleep, m/s; 0: snow never sleeps.
 SLEEP_SPEEDS = (0.0, 0.002, 0.005, 0.02)
-#: Stacks that are made with each of them.
+#: Stacks that are made with each of these speeds.
 SLEEPERS: Sequence[CaseSettings] = (
     {"seedings": 12},
     {"seedings": 12, "transfer": "apic"},
@@ -79,7 +79,7 @@ SLEEPERS: Sequence[CaseSettings] = (
 
 
 def matrix(full: bool) -> list[CaseSettings]:
-    """Return the settings to solve with."""
+    """Return grids and schemes; if full, more of them, and several speeds of sleep."""
     if not full:
         quick = {**BASE, "events": 2, "seedings": 2}
         return [
@@ -158,34 +158,33 @@ def _spread(name: str, runs: Sequence[StackRun]) -> Measured:
 
 DESCRIPTION = """
 The laboratory scene (preset lab-50, panel friction 0.3): one to five slabs, 2 cm thick, slide off a
-panel at 50 degrees onto each other. Height and length of the stack are measured after the last one,
-twice: by the rule that leaves out the outermost 3 % of the mass, and for the largest connected body
-alone.
+panel at 50 degrees onto each other. Height and length of the stack are measured after the last
+slab, once by the rule that leaves out the outermost 3 % of the mass, and once for the largest
+connected body.
 
 There is no exact answer. Each scheme has a reference of its own, the mean of recorded runs on the
-finest grid. For the scheme thesis it is dx 0.0025 m with four seedings in the plane and 0.005 m
-with one in space. These runs were made with the default settings, except that sleep was off. For
-the scheme objective it is dx 0.0025 m with eight seedings in the plane and, after one and two
-slabs, 0.005 m with four in space. Its snow slept as it does by default. Both were made once and are
-kept in lab_stack.json, together with runs on coarser grids. The error is that of a single run: the
-root mean square, over the random seedings, of its relative departure from the reference. The spread
-is the standard deviation between the seedings over their mean. The departure from the recorded runs
-on the same grid compares the mean of the seedings with that of the recorded ones, in standard
-deviations between single recorded runs: it says whether a scheme, or sleep, changes the stack by
-more than another seeding does. The time is the mean of one run.
+finest grid. The grid of the scheme thesis is dx 0.0025 m with four seedings in the plane, and 0.005
+m with one seeding in space. These runs were made with the default settings, except that sleep was
+off. The grid of the scheme objective is dx 0.0025 m with eight seedings in the plane, and 0.005 m
+with four seedings in space (one and two slabs). Its snow could sleep, as by default. Both were made
+once and are kept in lab_stack.json, together with runs on coarser grids. The error is that of a
+single run: the root mean square, over the random seedings, of its relative deviation from the
+reference. The spread is the standard deviation between the seedings, relative to their mean. The
+deviation from the recorded runs on the same grid compares the mean of the seedings with the mean of
+the recorded ones, in standard deviations between single recorded runs. It shows whether a scheme,
+or sleep, changes the stack by more than another seeding does. The time is the mean of one run.
 """
 
 REMARKS = """
-The height of a stack is not converged on any grid that is affordable. After one, two, three, four
-and five slabs it is 0.048, 0.070, 0.109, 0.141, 0.136 m at dx 0.01 m, 0.039, 0.063, 0.087, 0.112,
-0.134 m at 0.005 m and 0.030, 0.057, 0.077, 0.091, 0.106 m at 0.0025 m (2D, means of 12, 6 and 4
-seedings). It still falls by 10 to 22 % from 0.005 to 0.0025 m, so the reference itself errs by
-about as much again, and the fall is too irregular to be extrapolated. At dx 0.01 m, two cells to
-the slab, heights are 22 to 58 % too large. Pictures of the particles show the cause: every layer of
-snow rests on the ground or on other snow with a gap of one to one and a half cells, and folds of
-the slab bridge hollows. On finer grids these folds break and fill the hollows. At dx 0.02 m, one
-cell to the slab, heights are 43 to 97 % too large, and the error does not even fall steadily from
-there.
+The height of a stack does not converge on any affordable grid. After one, two, three, four and five
+slabs it is 0.048, 0.070, 0.109, 0.141, 0.136 m at dx 0.01 m, 0.039, 0.063, 0.087, 0.112, 0.134 m at
+0.005 m and 0.030, 0.057, 0.077, 0.091, 0.106 m at 0.0025 m (2D, means of 12, 6 and 4 seedings). It
+still falls by 10 to 22 % from 0.005 to 0.0025 m, so the error of the reference itself is about as
+large, and the fall is too irregular to be extrapolated. At dx 0.01 m, two cells to the slab,
+heights are 22 to 58 % too large. Pictures of the particles show the cause: every layer of snow
+rests on the ground or on other snow with a gap of one to one and a half cells, and folds of the
+slab bridge hollows. On finer grids these folds break and fill the hollows. At dx 0.02 m, one cell
+to the slab, heights are 43 to 97 % too large. From there the error does not even fall steadily.
 
 Lengths depend less on the grid: 0.217, 0.292, 0.329, 0.361, 0.424 m at dx 0.01 m and 0.258, 0.322,
 0.345, 0.369, 0.397 m at 0.0025 m, a difference of 2 to 16 % that is largest after the first slab.
@@ -203,13 +202,13 @@ change. APIC is less sensitive: 0.14 and 0.44 m, and with a third of the step 0.
 Stacks can be compared only at equal flip_ratio and equal time step.
 
 Random seeding moves the height by 2 to 5 % and the length by 2 to 11 % (one standard deviation, 2D)
-after one to four slabs. After the fifth, when a 2D pile may or may not give way, it is 8 to 16 % in
-height and 3 to 8 % in length. In space piles give way more evenly: 0.5 to 4 % in height and about 1
-% in length at dx 0.01 m. A difference of less than two standard deviations between two single runs
-means nothing. Neither precision nor basis nor the number of particles per voxel changes the stack
-by more than the noise.
+after one to four slabs. After the fifth slab, under which a 2D pile may or may not give way, it
+moves the height by 8 to 16 % and the length by 3 to 8 %. In space piles give way more evenly: 0.5
+to 4 % in height and about 1 % in length at dx 0.01 m. A difference of less than two standard
+deviations between two single runs means nothing. Neither precision nor basis nor the number of
+particles per voxel changes the stack by more than the noise.
 
-Snow that is slower than sleep_speed may sleep, that is, leave the time steps. The savings and the
+Snow that is slower than sleep_speed may sleep: time steps then leave it out. The savings and the
 changes depend on this speed. The same seeds with sleep and without were compared, five slabs in the
 plane at dx 0.01 m (12 seeds). At 2 mm/s sleep saved 30 % of the time, at 5 mm/s 38 % and at 20
 mm/s, the default, 56 %. Up to 5 mm/s mean height and length changed by 0.6 % at most. At 20 mm/s
@@ -217,23 +216,24 @@ the height grew by 5 % and the length fell by 3 %, a third and two fifths of a s
 between seedings. APIC's snow creeps more: 11 % and 7 % at 20 mm/s (0.7 and 1 standard deviations),
 4 % and 2 % at 5 mm/s; a first stack stays the same to 0.5 %. In space at dx 0.01 m one stack became
 1.5 % lower and 0.9 % shorter and took half of the time. At dx 0.02 m, one cell to the slab, stacks
-in space became 8 % higher and 3 % shorter at 20 mm/s, which is more than another seeding does; at 5
-mm/s they did not change, but only 8 % of the time was saved.
+in space became 8 % higher and 3 % shorter at 20 mm/s, which is more than the effect of another
+seeding. At 5 mm/s they did not change, but only 8 % of the time was saved.
 
 3D stacks at dx 0.01 m are as high as 2D ones after up to three slabs (ratio 1.03, 1.02, 1.03), then
-0.88 and 0.74. The rule of thumb of two thirds is met when a pile is about as high as it is wide,
-and therefore gives way sideways.
+0.88 and 0.74. The rule of thumb of two thirds holds for piles that are about as high as wide, and
+therefore give way sideways.
 
-The scheme objective is nearer to its finest grid than thesis is to its own, but not converged
-either. Its heights after one to five slabs in the plane are 0.045, 0.068, 0.082, 0.089, 0.092 m at
-dx 0.02 m, 0.051, 0.061, 0.071, 0.081, 0.098 m at 0.01 m, 0.043, 0.057, 0.074, 0.092, 0.109 m at
-0.005 m and 0.038, 0.055, 0.078, 0.102, 0.115 m at 0.0025 m (means of 12, 12, 12 and 8 seedings). At
-dx 0.01 m the first height is 35 % too large, and the later ones are wrong by +11, -10, -20 and -15
-%; with thesis it is +57 % and then +23, +42, +54 and +28 %. At 0.005 m it is +15 % and then +4, -6,
--10 and -5 %, with thesis +27 % and then +11, +13, +23 and +27 %. The first height still falls by 13
-% from 0.005 to 0.0025 m, so its limit is lower than the reference. The later ones differ from the
-reference by less than two standard errors of the difference, because those of the reference alone
-are 2 to 6 % of its means. Lengths differ by at most 11 % at 0.01 m and 7 % at 0.005 m.
+Heights of the scheme objective are nearer to those of its finest grid than with thesis, but they do
+not converge either. Its heights after one to five slabs in the plane are 0.045, 0.068, 0.082,
+0.089, 0.092 m at dx 0.02 m, 0.051, 0.061, 0.071, 0.081, 0.098 m at 0.01 m, 0.043, 0.057, 0.074,
+0.092, 0.109 m at 0.005 m and 0.038, 0.055, 0.078, 0.102, 0.115 m at 0.0025 m (means of 12, 12, 12
+and 8 seedings). At dx 0.01 m the first height is 35 % too large, and the later ones are wrong by
++11, -10, -20 and -15 %; with thesis it is +57 % and then +23, +42, +54 and +28 %. At 0.005 m it is
++15 % and then +4, -6, -10 and -5 %, with thesis +27 % and then +11, +13, +23 and +27 %. The first
+height still falls by 13 % from 0.005 to 0.0025 m, so its limit is lower than the reference. The
+later ones differ from the reference by less than two standard errors of the difference, because the
+standard errors of the reference alone are 2 to 6 % of its means. Lengths differ by at most 11 % at
+0.01 m and 7 % at 0.005 m.
 
 Stacks of the scheme objective scatter more: on the finest grid by 12, 4, 15, 16 and 15 % in height
 and 1, 2, 11, 11 and 13 % in length (one standard deviation), with thesis by 2 to 9 % in both. At dx
@@ -248,8 +248,8 @@ thesis. The error of the first stack changes its sign between these grids, so it
 0.01 m is no evidence of accuracy. Single runs scatter by 1 % in height at 0.01 m. The error after
 three and more slabs is unknown.
 
-Chunks that roll metres away count for the length by the 3 % rule. So do grains that are more than
-two or three cells from their neighbours and no longer feel them (numerical fracture). The largest
+The length by the 3 % rule includes chunks that roll metres away, and grains that are more than two
+or three cells from their neighbours and no longer act on them (numerical fracture). The largest
 body contains neither.
 """
 

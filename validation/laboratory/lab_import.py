@@ -1,9 +1,9 @@
-"""Imports results folders of the laboratory into the recorded stacks.
+"""Import results folders of the laboratory into the recorded stacks.
 
 ``python -m validation.laboratory.lab_import --machine NAME --date DAY FOLDER...`` reads runs that
 other programs made, such as ``snowshed-run`` on a larger machine, and writes them into
-``lab_stack.json``. A folder is accepted only if its scene is that of `record`, so that `record`
-makes the same run again. Stacks are measured from the stored particles.
+``lab_stack.json``. A folder is accepted only if `record` would make the same scene, so that the run
+can be repeated. Stacks are measured from the stored particles.
 """
 
 from __future__ import annotations
@@ -39,19 +39,19 @@ SETTINGS = ("dimension", "dx", "seed", "events", "scheme", "sleep_speed")
 
 
 def imported(folder: Path, machine: str, date: str) -> dict[str, Any]:
-    """Return the entry of a results folder.
+    """Return the entry of a results folder for the recorded stacks.
 
     Parameters
     ----------
     folder
         The results of one run.
     machine, date
-        Where and when it was made.
+        Machine and date of the run.
 
     Raises
     ------
     InputError
-        If the run is not finished, or is none of `REFERENCES`.
+        If the run is not finished or does not belong to `REFERENCES`.
     """
     results = RunFolder(folder)
     facts = results.read_run()
@@ -102,11 +102,11 @@ def _measured(particles: EventParticles) -> StackMeasure:
 def _costs(
     events: Iterable[Mapping[str, Any]], particles: Iterable[int], updates: int, *, alone: bool
 ) -> list[Cost]:
-    """Return the cost up to the end of each event; only the sum of the updates is stored."""
-    listed = list(events)
-    steps = accumulate(int(event["steps"]) for event in listed)
-    times = accumulate(float(event["wall_s"]) if alone else 0.0 for event in listed)
-    costs = [Cost(*cost) for cost in zip(times, [0] * len(listed), steps, particles)]
+    """Return the cost up to the end of each event; updates are known only for the whole run."""
+    event_rows = list(events)
+    steps = accumulate(int(event["steps"]) for event in event_rows)
+    times = accumulate(float(event["wall_s"]) if alone else 0.0 for event in event_rows)
+    costs = [Cost(*cost) for cost in zip(times, [0] * len(event_rows), steps, particles)]
     last = costs[-1]
     return [*costs[:-1], Cost(last.wall_s, updates, last.steps, last.particles)]
 

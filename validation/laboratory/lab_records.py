@@ -1,9 +1,8 @@
 """Recorded stacks of the laboratory: the references of the stack's convergence.
 
-Stacks have no exact answer. They are compared with the mean over seedings on the finest grid that
-was affordable with the same scheme. Those runs take hours. They were made once and are stored in
-``lab_stack.json``, beside this module, each with its settings, version and date. `record` makes
-them.
+Stacks have no exact answer. They are compared with the mean over seedings on the finest affordable
+grid with the same scheme. The runs on these grids take hours. `record` made them once; they are
+stored in ``lab_stack.json``, beside this module, each with its settings, version and date.
 """
 
 from __future__ import annotations
@@ -32,7 +31,7 @@ FILE = Path(__file__).with_name("lab_stack.json")
 #: Events of a recorded run that does not name their number.
 EVENTS = 5
 
-#: The only setting of the reference of `FIRST_SCHEME` that is no default: no snow sleeps.
+#: The only setting of `FIRST_SCHEME`'s reference that is not a default: no snow sleeps.
 NO_SLEEP: CaseSettings = {"sleep_speed": 0.0}
 
 
@@ -48,14 +47,14 @@ class Grid:
 
 @dataclass(frozen=True)
 class Reference:
-    """The recorded runs of a scheme.
+    """Recorded runs of a scheme.
 
     Attributes
     ----------
     settings
-        Settings of all of them, for `lab_scene`.
+        Settings of all runs, for `lab_scene`.
     grids
-        The grids; the finest of each dimension is the reference.
+        Grids of the runs; the finest grid of each dimension is the reference.
     """
 
     settings: CaseSettings
@@ -75,7 +74,7 @@ REFERENCES: Mapping[str, Reference] = {
             Grid(3, 0.005, 1),
         ),
     ),
-    # Its snow sleeps as it does by default.
+    # Snow sleeps as by default.
     "objective": Reference(
         {"scheme": "objective", "sleep_speed": 0.02},
         (
@@ -100,9 +99,9 @@ class RecordedRun:
     measures
         Each of `COMPARED` after each event, m.
     costs
-        Cost up to the end of each event; empty where it was not recorded.
+        Cost up to the end of each event; empty if it was not recorded.
     machine, version, date
-        Where and when the run was made; the machine is empty where it was not recorded.
+        Origin of the run; the machine is empty if it was not recorded.
     """
 
     measures: Mapping[str, Sequence[float]]
@@ -122,7 +121,7 @@ class RecordedRun:
         Raises
         ------
         LookupError
-            If it was not recorded.
+            If the cost was not recorded.
         """
         if not self.costs:
             raise LookupError("the cost of this run was not recorded")
@@ -144,14 +143,14 @@ class RecordedRun:
 
 @dataclass(frozen=True)
 class RecordedStacks:
-    """Recorded stacks of one scheme, dimension and dx; every series has a value for each event.
+    """Recorded stacks of one scheme, dimension and dx, with values for each event.
 
     Attributes
     ----------
     dx
         Size of the grid cells, m.
     runs
-        For each of `COMPARED`, (seedings, events) in m.
+        Values of each of `COMPARED`, shape (seedings, events), m.
     """
 
     dx: float
@@ -172,34 +171,34 @@ class RecordedStacks:
 
 
 def noise(name: str, runs: Sequence[StackRun], settings: CaseSettings) -> Measured:
-    """Compare the mean of the last stacks with the recorded ones of its scheme on the same grid.
+    """Compare the mean of the last stacks with the recorded mean of its scheme on the same grid.
 
     Parameters
     ----------
     name
         One of `COMPARED`.
     runs
-        Runs with the settings, each with another seed.
+        Runs with these settings and different seeds.
     settings
         For `lab_scene`.
 
     Returns
     -------
     Measured
-        The quantity ``<name>_noise``: the departure in standard deviations between the recorded
+        The quantity ``<name>_noise``: the deviation in standard deviations between the recorded
         seedings.
     """
     reference = recorded(int(settings["dimension"]), float(settings["dx"]), scheme_of(settings))
     last = [run.series(name) for run in runs]
     event, value = len(last[0]), float(np.mean([series[-1] for series in last]))
-    departure = (value - reference.mean(name, event)) / reference.spread(name, event)
-    return absolute(f"{name}_noise", departure, 0.0)
+    deviation = (value - reference.mean(name, event)) / reference.spread(name, event)
+    return absolute(f"{name}_noise", deviation, 0.0)
 
 
 def recorded(
     dimension: int, dx: Optional[float] = None, scheme: str = FIRST_SCHEME
 ) -> RecordedStacks:
-    """Return the recorded stacks of a scheme on a grid, or on the finest one of that dimension.
+    """Return the recorded stacks of a scheme on a grid, by default on the finest of the dimension.
 
     Raises
     ------
@@ -220,7 +219,7 @@ def recorded(
 
 
 def recorded_runs(dimension: int, dx: float, scheme: str) -> list[RecordedRun]:
-    """Return the recorded runs of a scheme on a grid, by rising seed.
+    """Return the recorded runs of a scheme on a grid, sorted by seed.
 
     Raises
     ------
@@ -243,7 +242,7 @@ def recorded_runs(dimension: int, dx: float, scheme: str) -> list[RecordedRun]:
 def _entries(
     dimension: int, dx: Optional[float], scheme: str
 ) -> tuple[float, list[dict[str, Any]]]:
-    """Return the size of the cells, m, and the entries of the file on that grid."""
+    """Return the size of the cells (m), and the entries of the file with this size."""
     runs = [run for run in _read() if run["dimension"] == dimension and scheme_of(run) == scheme]
     wanted = min((run["dx"] for run in runs), default=nan) if dx is None else dx
     chosen = [run for run in runs if np.isclose(run["dx"], wanted)]
@@ -261,7 +260,7 @@ def _read() -> list[dict[str, Any]]:
 
 
 def read_entries(path: Path) -> list[dict[str, Any]]:
-    """Return the entries of a file of recorded runs; none without a file."""
+    """Return the entries of a file of recorded runs, or an empty list if there is no file."""
     if not path.exists():
         return []
     runs: list[dict[str, Any]] = json.loads(path.read_text(encoding="utf-8"))["runs"]
@@ -276,7 +275,7 @@ def record(
 ) -> None:
     """Compute the reference of a scheme again; this takes hours.
 
-    The file is written after each run. Runs that it holds already, of the same version, are kept.
+    The file is written after each run. Runs of the same version that the file holds are kept.
 
     Parameters
     ----------
@@ -285,7 +284,7 @@ def record(
     scheme
         One of `REFERENCES`.
     grids
-        The grids; by default all of that reference.
+        Grids to compute; by default all grids of the reference.
     settings
         Further settings for `lab_scene`, such as ``events=1``.
     """
@@ -296,12 +295,12 @@ def record(
             held = [run for run in runs if is_of(run, key)]
             if any(run["version"] == _core.version for run in held):
                 continue
-            runs = [run for run in runs if run not in held] + [_computed(key)]
+            runs = [run for run in runs if run not in held] + [_run_entry(key)]
             write_entries(runs, path)
 
 
 def keys_of(grid: Grid, settings: CaseSettings) -> list[CaseSettings]:
-    """Return the settings of each run on a grid, as they stand in its entry.
+    """Return the settings of each run on a grid, as in its entry.
 
     Examples
     --------
@@ -316,11 +315,11 @@ def keys_of(grid: Grid, settings: CaseSettings) -> list[CaseSettings]:
 
 
 def is_of(run: Mapping[str, Any], key: CaseSettings) -> bool:
-    """Return whether an entry is of a run with these settings."""
+    """Return whether an entry belongs to a run with these settings."""
     return scheme_of(run) == scheme_of(key) and key.items() <= run.items()
 
 
-def _computed(settings: CaseSettings) -> dict[str, Any]:
+def _run_entry(settings: CaseSettings) -> dict[str, Any]:
     run = run_lab(settings)
     date = datetime.date.today().isoformat()
     return entry(settings, run, run.ended, run.costs, (_core.version, date, cpu_name()))
@@ -333,7 +332,7 @@ def entry(
     costs: Sequence[Cost],
     origin: tuple[str, str, str],
 ) -> dict[str, Any]:
-    """Return a run's entry in a file.
+    """Return the entry of a run for the file.
 
     Parameters
     ----------
@@ -344,8 +343,8 @@ def entry(
     ended
         The end of each event.
     costs
-        Cost up to the end of each event; the times are those of one thread, 0 if the run had
-        several.
+        Cost up to the end of each event. Times are for one thread; they are 0 if the run had
+        several threads.
     origin
         Version, date and machine.
     """
@@ -363,7 +362,7 @@ def entry(
 
 
 def write_entries(runs: Iterable[Mapping[str, Any]], path: Path) -> None:
-    """Write a file of recorded runs, one per line."""
+    """Write a file of recorded runs, with a run in each line."""
     about = (
         "Stacks of preset lab-50 after each event, in m, with panel friction 0.3 and the core's "
         "default numerics except for the settings that each run names. Costs are sums up to the "

@@ -20,16 +20,16 @@ from snowshed.snow.stack.quantities import MEASURES
 from validation.framework.case import Outcome
 from validation.framework.drive import apply_settings
 
-#: The trimming rule of the recorded stacks, and so of all stacks that are compared with them.
+#: Trimming rule of the recorded stacks and of all stacks that are compared with them.
 TRIMMING = "equal_pace"
-#: Columns of events.csv that are compared, by the names they have here.
+#: Columns of events.csv that are compared, by their names in this package.
 COMPARED: Mapping[str, str] = {
     f"{measure.prefix}{quantity}": measure.column(quantity)
     for measure in (MEASURES["stack"], MEASURES["body"])
     for quantity in ("height", "length")
 }
 
-#: Settings of the events, and where they lie in a scene.
+#: Paths in a scene of the settings for events.
 EVENTS: Mapping[str, str] = {"events": "events.count", "between": "events.between"}
 
 
@@ -42,7 +42,7 @@ class Cost:
     wall_s
         Time of the solution alone, s.
     updates
-        Particles times steps; 0 if they were not counted.
+        Number of particles times steps; 0 if it is unknown.
     """
 
     wall_s: float
@@ -52,7 +52,7 @@ class Cost:
 
 
 class StackRun(Protocol):
-    """A run whose stacks are known after each event, made now or read from a record."""
+    """A run with known stacks after each event, either computed or recorded."""
 
     def series(self, name: str) -> Sequence[float]:
         """Return one of `COMPARED` after each event, m."""
@@ -64,14 +64,14 @@ class StackRun(Protocol):
 
 @dataclass(frozen=True)
 class Conversion:
-    """A stack before and after reseeding.
+    """Stack before and after reseeding.
 
     Attributes
     ----------
     before, after
         The stack.
     mass_before, mass_after
-        Mass of all snow, with that on the panel, kg.
+        Mass of all snow, including snow on the panel, kg.
     particles_after
         Number of particles after reseeding.
     """
@@ -88,7 +88,7 @@ class Conversion:
 
     @property
     def loose_change(self) -> float:
-        """Growth of the share of snow that lies outside the largest body."""
+        """Increase of the share of snow outside the largest body."""
         shares = [stack.detached_mass / stack.mass for stack in (self.before, self.after)]
         return shares[1] - shares[0]
 
@@ -100,7 +100,7 @@ class Conversion:
 
 @dataclass
 class LabRun:
-    """The results of a run of the laboratory scene.
+    """Results of a run of the laboratory scene.
 
     Attributes
     ----------
@@ -115,7 +115,7 @@ class LabRun:
     brought_mass
         Mass of all slabs, from their volume and density, kg.
     particle_mass
-        Mass of a particle of snow at its initial density, as the slabs are seeded, kg.
+        Mass of a particle of a seeded slab, at the initial density, kg.
     costs
         Cost up to the end of each event.
     """
@@ -144,9 +144,10 @@ def measure_of(stack: StackMeasure, name: str) -> float:
 
 
 def lab_scene(settings: CaseSettings) -> Scene:
-    """Return the scene: preset lab-50 in 2D, panel friction 0.3, one thread, and the settings.
+    """Return a scene of preset lab-50 with panel friction 0.3, one thread, and some settings.
 
-    Snow at rest sleeps as it does by default, because users run stacks with these defaults.
+    The scene is 2D unless the settings say otherwise. Snow at rest sleeps as by default, because
+    users run stacks with this default.
 
     Examples
     --------
@@ -159,7 +160,7 @@ def lab_scene(settings: CaseSettings) -> Scene:
 
 
 def run_lab(settings: CaseSettings) -> LabRun:
-    """Let the slabs slide off one after the other and measure the stack after each.
+    """Let the slabs slide off one after another, and return the stack after each event.
 
     Parameters
     ----------
@@ -198,14 +199,14 @@ def run_lab(settings: CaseSettings) -> LabRun:
 
 
 def run_seedings(settings: CaseSettings) -> list[LabRun]:
-    """Run the scene with each of ``seedings`` seeds from ``seed`` on (one, from 1)."""
+    """Run the scene with ``seedings`` seeds from ``seed`` on; the default of both is 1."""
     rest = {name: value for name, value in settings.items() if name not in ("seedings", "seed")}
     first, count = int(settings.get("seed", 1)), int(settings.get("seedings", 1))
     return [run_lab({**rest, "seed": seed}) for seed in range(first, first + count)]
 
 
 def outcome_of(runs: Sequence[StackRun], measured: Sequence[Measured]) -> Outcome:
-    """Return the outcome of several seedings; the cost is the mean of one run."""
+    """Return the outcome of several seedings; its cost is the mean cost of a run."""
     costs = [run.cost for run in runs]
     counted = all(cost.updates for cost in costs)
     return Outcome(
@@ -225,12 +226,12 @@ class _Tape:
         self._dx = float(scene["numerics"]["dx"])
 
     def measure_present(self) -> StackMeasure:
-        """Measure the stack as it is."""
+        """Measure the present stack."""
         now = self._simulation
         return self._measure(now.positions(), now.masses(), now.on_panel(), now.densities())
 
     def measure_conversion(self, reseeded: Mapping[str, Any]) -> Conversion:
-        """Measure the snow before and after a conversion, as the core reports it."""
+        """Measure the snow before and after a conversion that the core reports."""
         masses = {when: reseeded[f"masses_{when}"] for when in ("before", "after")}
         stacks = {
             when: self._measure(

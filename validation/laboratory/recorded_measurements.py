@@ -1,8 +1,8 @@
 """Measurements of `stack_convergence` from recorded runs, which need not be repeated.
 
-``python -m validation.laboratory.recorded_measurements`` adds those of the scheme objective to the
-package's recorded measurements, from which ``--accuracy`` and the error of a stack come. The full
-suite measures the same again.
+``python -m validation.laboratory.recorded_measurements`` adds the measurements of the scheme
+objective to the package's recorded measurements. ``--accuracy`` and the error of a stack use these.
+The full suite makes the same measurements.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from pathlib import Path
 from snowshed._core import InputError
 from snowshed.analysis.accuracy.measurements import CaseSettings, MeasuredSolution
 from snowshed.analysis.accuracy.mechanisms import scheme_of
-from snowshed.analysis.accuracy.recorded import PACKAGED, load_recorded, record
+from snowshed.analysis.accuracy.recorded import PACKAGED_FILE, load_recorded, record
 from validation.laboratory.case_stack_convergence import CASE, compared, matrix
 from validation.laboratory.lab_records import RecordedRun, recorded_runs
 
@@ -23,7 +23,7 @@ SCHEME = "objective"
 
 
 def measurements_of(scheme: str) -> list[MeasuredSolution]:
-    """Return the measurements of the full matrix that the recorded runs of a scheme provide.
+    """Return the measurements of the full matrix that follow from the recorded runs of a scheme.
 
     Raises
     ------
@@ -51,7 +51,7 @@ def _measured(settings: CaseSettings) -> MeasuredSolution:
         updates=outcome.updates,
         steps=outcome.steps,
         particles=outcome.particles,
-        # Without seeding and evaluation, which were not recorded.
+        # The time does not include seeding and evaluation, which were not recorded.
         elapsed_s=math.fsum(run.cost.wall_s for run in runs),
         version=_common(runs, "version"),
         machine=_common(runs, "machine"),
@@ -62,8 +62,8 @@ def _measured(settings: CaseSettings) -> MeasuredSolution:
 def undisturbed(runs: Sequence[RecordedRun]) -> list[RecordedRun]:
     """Return the runs of one grid with wall times scaled to the speed of the fastest run.
 
-    Several recorded runs are made at once, on machines with other work. Both only increase their
-    times. The speed is the number of particle updates per second, over all events of a run.
+    Recorded runs were made several at a time, on machines with other work. Both can only increase
+    their times. The speed is the number of particle updates per second, over all events of a run.
 
     Raises
     ------
@@ -89,7 +89,7 @@ def _common(runs: Iterable[RecordedRun], name: str) -> str:
     return values[0]
 
 
-def renew(new: Sequence[MeasuredSolution], path: Path = PACKAGED) -> None:
+def renew(new: Sequence[MeasuredSolution], path: Path = PACKAGED_FILE) -> None:
     """Write measurements into a file in place of those of the same case and scheme."""
     case, schemes = CASE.name, {scheme_of(measurement.settings) for measurement in new}
     others = [

@@ -1,4 +1,4 @@
-"""Large displacements under made-up body forces: order of convergence in space and in time."""
+"""Large displacements under manufactured body forces: order of convergence in space and time."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from validation.framework.case import Case, Outcome, Quantity
 from validation.manufactured.forced_body import ForcedBody, root_mean_square
 from validation.manufactured.motions import WAVE_SPEED, AxialWaves, ManufacturedMotion, Vortex
 
-#: Time from rest to the largest displacement, back, and to the largest one the other way, s.
+#: Time from rest to the largest displacement, back, and to the opposite one, s.
 DURATION = 1.5 / WAVE_SPEED
 #: Steps between two samples of the error.
 STEPS = 4
-#: The motions by name, made from their amplitude.
+#: Classes of the motions by name; their argument is the amplitude.
 MOTIONS: Mapping[str, Callable[[float], ManufacturedMotion]] = {
     "waves": AxialWaves,
     "vortex": Vortex,
@@ -29,7 +29,7 @@ SCHEME: CaseSettings = {"basis": "quadratic", "precision": "double", "pattern": 
 
 
 def measure(settings: CaseSettings) -> Outcome:
-    """Follow a motion; the error is the rms error of displacement over its rms."""
+    """Return the rms error of the displacement along a motion, relative to its rms value."""
     body = ForcedBody(motion_of(settings), settings)
     errors, displacements = [], []
     while body.time < DURATION:
@@ -47,7 +47,7 @@ def motion_of(settings: CaseSettings) -> ManufacturedMotion:
 
 
 def _series(cells: Sequence[int], *variants: CaseSettings) -> list[CaseSettings]:
-    """Return every variant at every resolution, given as cells along the square's side."""
+    """Return every variant at every resolution, in cells along the square's side."""
     # The variant's names come first, so that figures tell its settings apart.
     return [{**variant, **SCHEME, **variant, "dx": 1 / n} for variant in variants for n in cells]
 
@@ -57,11 +57,11 @@ VORTEX: CaseSettings = {"motion": "vortex", "amplitude": 1.0, "particles_per_vox
 
 
 def waves_matrix(full: bool) -> list[CaseSettings]:
-    """Return FLIP and APIC; if full, also less stretch, fewer particles, and other schemes."""
+    """Return FLIP and APIC; if full, also smaller stretches, fewer particles and other schemes."""
     if not full:
         return _series((16, 24), {**WAVES, **FLIP}, {**WAVES, **APIC})
     few: CaseSettings = {**WAVES, "amplitude": 0.02, "particles_per_voxel": 9}
-    listed = [
+    settings_list = [
         *({**WAVES, **transfer} for transfer in (FLIP, APIC)),
         *(
             {**WAVES, **transfer, "amplitude": amplitude, "particles_per_voxel": count}
@@ -74,14 +74,14 @@ def waves_matrix(full: bool) -> list[CaseSettings]:
         {**few, **APIC, "amplitude": 0.04, "basis": "cubic"},
         {**few, **APIC, "pattern": "poisson", "seed": 1},
     ]
-    return _series((16, 24, 32, 48), *listed)
+    return _series((16, 24, 32, 48), *settings_list)
 
 
 def vortex_matrix(full: bool) -> list[CaseSettings]:
-    """Return FLIP and APIC; if full, also more rotation, fewer particles, and other schemes."""
+    """Return FLIP and APIC; if full, also more rotation, fewer particles and other schemes."""
     if not full:
         return _series((16, 24, 32), {**VORTEX, **FLIP}, {**VORTEX, **APIC})
-    listed = [
+    settings_list = [
         *({**VORTEX, **transfer} for transfer in (FLIP, APIC, FLIP_99)),
         {**VORTEX, **PIC, "particles_per_voxel": 16},
         *({**VORTEX, **transfer, "particles_per_voxel": 4} for transfer in (FLIP, APIC)),
@@ -90,7 +90,7 @@ def vortex_matrix(full: bool) -> list[CaseSettings]:
         {**VORTEX, **APIC, "pattern": "poisson", "seed": 1},
         {**VORTEX, **APIC, "precision": "float"},
     ]
-    return _series((16, 24, 32, 48), *listed)
+    return _series((16, 24, 32, 48), *settings_list)
 
 
 # --- in time ----------------------------------------------------------------------------------
@@ -101,7 +101,7 @@ MIN_COURANT_FACTOR = 0.9 / 32
 
 
 def measure_steps(settings: CaseSettings) -> Outcome:
-    """Compare the displacements at the end with those of a very small step, and with the motion."""
+    """Compare the displacements at the end with a run of very small steps and with the motion."""
     body, residual, exact = _end(settings)
     _, limit, _ = _end({**settings, "courant_factor": MIN_COURANT_FACTOR})
     step = root_mean_square(residual - limit) / root_mean_square(exact)
@@ -158,8 +158,8 @@ SOURCE = (
 FORCED_MOTION = """
     A unit square of elastic snow (E = 1 MPa, Hencky) is forced into a chosen motion: the body force
     that the motion needs acts on every particle in every step. It swings from rest to its largest
-    displacement, back, and to the largest one the other way. The error is the root mean square over
-    particles and times of the error of displacement, over that of the displacement.
+    displacement, back, and to the opposite one. The error is the root mean square, over particles
+    and times, of the error of displacement, relative to that of the displacement.
 """
 
 
@@ -184,23 +184,23 @@ WAVES_CASE = Case(
     measure=measure,
     remarks="""
     Second order needs many particles. The forces on the nodes are sums over particles in place of
-    integrals. The summed gradients of quadratic splines have kinks at every row of nodes. As
+    integrals. The summed gradients of quadratic splines have kinks at every row of nodes. When
     particles of stretched snow cross these rows, the sums get a relative error that depends on the
-    number of particles per cell, and not on the cell's size. Finer cells do not reduce this part:
-    at stretches of 0.75 to 1.25 the order of APIC from 16 to 48 cells is 1.3 with 4 particles per
-    cell, 1.5 with 9 and 1.9 with 36; at 0.5 to 1.5 its error grows from 5.4 to 7.6 % with 4, stops
-    at 2.2 % with 9, and falls with the order 1.75 with 36 and 1.9 with 64. The limit therefore
-    applies to 64 particles per cell. Cubic splines, whose gradients have no kinks, need only 9 (1.9
-    to 2.1).
+    number of particles per cell, and not on the cell's size. Finer cells do not reduce this error.
+    At stretches of 0.75 to 1.25 the order of APIC from 16 to 48 cells is 1.3 with 4 particles per
+    cell, 1.5 with 9 and 1.9 with 36. At stretches of 0.5 to 1.5 its error grows from 5.4 to 7.6 %
+    with 4 particles per cell, stops at 2.2 % with 9, and falls with the order 1.75 with 36 and 1.9
+    with 64. The limit therefore applies to 64 particles per cell. Cubic splines, whose gradients
+    have no kinks, need only 9 particles per cell (orders of 1.9 to 2.1).
 
     With FLIP the order between 32 and 48 cells at 0.5 to 1.5 is 2.4 with 36 particles per cell, but
-    the error at 16 cells is 70 %, and it stays four to five times that of APIC. Its forces are
-    smoothed twice, which is an error of second order with a larger factor. FLIP with 0.99 differs
-    little here. PIC has the order 0.9, because it smooths in every step and finer cells need more
-    steps.
+    the error at 16 cells is 70 %, and on all grids it is four to five times that of APIC. FLIP
+    smooths the forces twice, which is an error of second order with a larger factor. FLIP with 0.99
+    differs little here. PIC has the order 0.9, because it smooths in every step and finer cells
+    need more steps.
 
     Random seeding has no clear order of convergence: with 9 particles per cell its errors are 7 to
-    50 %, ten times those of a lattice. The snow does not come apart: no two neighbours move a cell
+    50 %, ten times those of a lattice. The snow does not separate: no two neighbours move a cell
     apart.
     """,
 )
@@ -211,20 +211,20 @@ VORTEX_CASE = Case(
     description=FORCED_MOTION
     + """
     Rings about the square's centre turn, each by its own angle, A sin(ωt) (1 - (R/0.45 m)²)⁴. The
-    middle turns by A = 1 rad to either side, and the outside does not turn. Between them snow is
-    sheared by 0.84.
+    middle turns by A = 1 rad to either side, and the outside does not turn. The shear between them
+    is 0.84.
     """,
     quantities=(_displacement({"amplitude": 1.0, "particles_per_voxel": 9, "pattern": "regular"}),),
     matrix=vortex_matrix,
     measure=measure,
     remarks="""
-    The vortex keeps volume, so that particles stay evenly spread, and 9 per cell are enough at
-    1 rad (orders from 16 to 48 cells: FLIP 2.2, APIC 2.0). With 4, APIC falls to 1.2; its error
-    stops at 2.4 %. At 2 rad, a shear of 1.7, the order of APIC between 32 and 48 cells is 1.4 with
-    9 and 2.0 with 16 particles per cell.
+    The vortex keeps the volume, so particles stay evenly spread, and 9 per cell are enough at 1 rad
+    (orders from 16 to 48 cells: FLIP 2.2, APIC 2.0). With 4 per cell the order of APIC is only 1.2,
+    and its error stops at 2.4 %. At 2 rad, a shear of 1.7, the order of APIC between 32 and 48
+    cells is 1.4 with 9 and 2.0 with 16 particles per cell.
 
     Random seeding has errors of 8 to 16 % at any of these sizes. Single precision changes nothing
-    in the first four digits. PIC is off by 20 to 50 %, of first order at best.
+    in the first four digits. Errors of PIC are 20 to 50 %, and of first order at best.
     """,
 )
 STEPS_CASE = Case(
@@ -233,8 +233,9 @@ STEPS_CASE = Case(
     source=SOURCE + "; self-convergence against a step 32 times smaller",
     description="""
     The same motions are computed with 16 cells along the square's side and with smaller and smaller
-    steps. Their displacements at the end are compared with those of a Courant factor of 0.9/32, and
-    with the exact ones. The reference's own error raises the observed orders by 0.05 to 0.1.
+    steps. Their displacements at the end are compared with a reference, computed with a Courant
+    factor of 0.9/32, and with the exact displacements. The error of the reference raises the
+    observed orders by 0.05 to 0.1.
     """,
     quantities=(
         Quantity(
@@ -252,22 +253,24 @@ STEPS_CASE = Case(
     measure=measure_steps,
     remarks="""
     The scheme is of first order in time, though symplectic Euler, with velocities half a step
-    before positions, is a leapfrog of second order. There are two reasons. Forces move the
-    positions at once but reach particle velocities smoothed, so the displacement is ahead by
-    (1 - s²) dt v, with 1 - s² = (k dx)²/4 for a wave of wave number k (docstring of
-    validation.elastic.smoothing): first order in the step, but vanishing with dx². And steps become
-    shorter as particles become faster, by up to a fifth here. For pure FLIP the effect is 4 % in
-    the vortex at the default Courant factor (2.8 % at 0.1 rad, where steps hardly vary), a tenth of
-    the error of 16 cells: in practice space decides.
+    before positions, is a leapfrog of second order. There are two reasons. The first: forces move
+    the positions at once but reach particle velocities smoothed, so the displacement is ahead by (1
+    - s²) dt v, with 1 - s² = (k dx)²/4 for a wave of wave number k (docstring of
+    validation.elastic.smoothing): first order in the step, but vanishing with dx². The second
+    reason: steps become shorter as particles become faster, here by up to a fifth. For pure FLIP
+    the effect is 4 % in the vortex at the default Courant factor (2.8 % at 0.1 rad, where steps
+    hardly vary), which is a tenth of the error of 16 cells. In practice the error in space is
+    therefore decisive.
 
     In the axial waves the order is lower (0.6 to 0.8), because particles that cross rows of nodes
     excite short vibrations, whose phase depends on every step.
 
     Only pure FLIP has the right limit as the step goes to zero. The other transfers smooth in each
     step, and more steps smooth more. Compared with a step 32 times smaller the vortex with FLIP
-    0.99 differs by 28 %, with APIC by 55 % and with PIC by 73 %. The small steps are the wrong
-    ones, as the errors of displacement show: PIC's rises from 34 to 86 % as the step becomes four
-    times smaller. A small Courant factor therefore does not make these transfers more accurate.
+    0.99 differs by 28 %, with APIC by 55 % and with PIC by 73 %. Their small steps are less
+    accurate, as the errors of displacement show: with PIC the error rises from 34 to 86 % if the
+    step becomes four times smaller. A small Courant factor therefore does not make these transfers
+    more accurate.
     """,
 )
 

@@ -1,4 +1,4 @@
-"""A body that body forces move along a chosen motion."""
+"""A body with body forces that move it along a chosen motion."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ CASE_SETTINGS = frozenset({"motion", "amplitude"})
 
 
 class ForcedBody:
-    """The unit square under the body forces of a chosen motion.
+    """Unit square under the body forces of a chosen motion.
 
-    Particle velocities are those in the middle of the last step, as in every leapfrog: the body
-    starts with the velocity of half a step before time zero, and a force applied between two steps
-    belongs to the current time and positions of the particles. The force acts over a step whose
-    length is known only afterwards. The length of the last step is used, and the next force
+    Particle velocities are those in the middle of the last step, as in every leapfrog scheme. The
+    body therefore starts with its velocity half a step before time zero, and a force between two
+    steps is that of the current time and positions. The length of the step on which this force acts
+    is known only afterwards. The length of the last step is used instead, and the next force
     corrects the difference.
 
     Parameters
@@ -61,7 +61,7 @@ class ForcedBody:
         self._velocity_correction = np.zeros_like(self._points)
 
     def _start(self, time: float) -> tuple[TimedEventDriver, Floats]:
-        """Return the body with the velocities of a time, and its particles' initial positions."""
+        """Return a body with the velocities of a given time, and its initial positions."""
         motion, square = self.motion, Shape.box((0.5, 0.5), (1.0, 1.0))
         material: CaseSettings = {
             "youngs_modulus": YOUNGS_MODULUS,
@@ -77,7 +77,7 @@ class ForcedBody:
 
     @property
     def time(self) -> float:
-        """The time of the positions, s."""
+        """Time to which the positions belong, s."""
         return self.drive.core.time_s
 
     def step(self) -> None:
@@ -92,7 +92,7 @@ class ForcedBody:
         self._last_step = taken
 
     def displacement(self, time: Optional[float] = None) -> Floats:
-        """Return the displacements that the motion has at a time, by default now, m."""
+        """Return the exact displacements of the particles at a time, by default the present, m."""
         return self.motion.displacement(self._points, self.time if time is None else time)
 
     def residual(self) -> Floats:

@@ -28,24 +28,24 @@ WAVE_SPEED = math.sqrt(YOUNGS_MODULUS / DENSITY)
 
 
 class ManufacturedMotion(ABC):
-    """A chosen motion that swings with sin(omega t), omega = pi c."""
+    """Chosen motion that oscillates with sin(omega t), omega = pi c."""
 
     #: Poisson's ratio of the moving body.
     poissons_ratio: float
-    #: Angular frequency, 1/s: half a swing takes as long as a wave across the square.
+    #: Angular frequency, 1/s; half a period is the time of a wave across the square.
     omega = math.pi * WAVE_SPEED
 
     @abstractmethod
     def displacement(self, points: Floats, time: float) -> Floats:
-        """Return u(X, t), m."""
+        """Return the displacement u(X, t), m."""
 
     @abstractmethod
     def velocity(self, points: Floats, time: float) -> Floats:
-        """Return du/dt at X, m/s."""
+        """Return the velocity du/dt of particles that started at X, m/s."""
 
     @abstractmethod
     def body_force(self, points: Floats, time: float) -> Floats:
-        """Return the force on the particles from X, over their mass, m/s2."""
+        """Return the body force per mass on particles that started at X, m/s2."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class AxialWaves(ManufacturedMotion):
     Attributes
     ----------
     amplitude
-        A, m. The stretches reach from 1 - 4 pi A to 1 + 4 pi A.
+        Amplitude A, m. The stretches go from 1 - 4 pi A to 1 + 4 pi A.
 
     Examples
     --------
@@ -75,16 +75,16 @@ class AxialWaves(ManufacturedMotion):
     _k = 2 * math.pi
 
     def displacement(self, points: Floats, time: float) -> Floats:
-        """Return u(X, t), m."""
+        """Return the displacement u(X, t), m."""
         return np.asarray(self._swing(time) * self._profile(points)[0])
 
     def velocity(self, points: Floats, time: float) -> Floats:
-        """Return du/dt at X, m/s."""
+        """Return the velocity du/dt of particles that started at X, m/s."""
         rate = self._senses * self.amplitude * self.omega * math.cos(self.omega * time)
         return np.asarray(rate * self._profile(points)[0])
 
     def body_force(self, points: Floats, time: float) -> Floats:
-        """Return the force on the particles from X, over their mass, m/s2."""
+        """Return the body force per mass on particles that started at X, m/s2."""
         profile, slope, curvature = self._profile(points)
         swing = self._swing(time)
         stretch = 1 + swing * slope
@@ -92,11 +92,11 @@ class AxialWaves(ManufacturedMotion):
         return np.asarray(-(self.omega**2) * swing * profile - stress / DENSITY)
 
     def _swing(self, time: float) -> Floats:
-        """Return g of both directions."""
+        """Return g(t) for both directions."""
         return np.asarray(self._senses * self.amplitude * math.sin(self.omega * time))
 
     def _profile(self, points: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return f with its two derivatives; sin(2 k X)/2 is sin kX cos kX."""
+        """Return f and its first two derivatives; sin(2 k X)/2 is sin kX cos kX."""
         k = self._k
         sin, cos = np.sin(k * points), np.cos(k * points)
         slope = k * (1 + cos - 2 * cos**2)
@@ -105,12 +105,11 @@ class AxialWaves(ManufacturedMotion):
 
 @dataclass(frozen=True)
 class Vortex(ManufacturedMotion):
-    """Rings that turn about the square's centre, each by its own angle.
+    """Rotation of rings about the square's centre, each by its own angle.
 
     A particle at the radius R turns by alpha = A sin(omega t) (1 - (R/R1)^2)^4, R < R1 = 0.45 m;
-    outside, nothing moves. In axes that turn with the particle, F is a simple shear by
-    s = R dalpha/dR. Its Hencky strain has no trace, so Poisson's ratio matters through mu alone,
-    and
+    particles outside do not move. In axes that turn with the particle, F is a simple shear by s = R
+    dalpha/dR. Its Hencky strain has no trace, so Poisson's ratio matters through mu alone, and
 
         P = mu kappa [[-s/2, 1 + s^2/2], [1, -s/2]],  kappa = 2 asinh(s/2)/sqrt(1 + s^2/4)
 
@@ -120,7 +119,7 @@ class Vortex(ManufacturedMotion):
     Attributes
     ----------
     angle
-        A, rad, by which the centre turns. The shear s reaches 0.84 A.
+        Angle A by which the centre turns, rad. The shear s reaches 0.84 A.
 
     Examples
     --------
@@ -135,13 +134,13 @@ class Vortex(ManufacturedMotion):
     _centre, _radius = 0.5, 0.45
 
     def displacement(self, points: Floats, time: float) -> Floats:
-        """Return u(X, t), m."""
+        """Return the displacement u(X, t), m."""
         radius, heading = self._polar(points)
         turned = heading + self.angle * math.sin(self.omega * time) * self._profile(radius)[0]
         return self._centre + _vector(radius, 0.0, turned) - points
 
     def velocity(self, points: Floats, time: float) -> Floats:
-        """Return du/dt at X, m/s."""
+        """Return the velocity du/dt of particles that started at X, m/s."""
         radius, heading = self._polar(points)
         profile = self.angle * self._profile(radius)[0]
         turned = heading + math.sin(self.omega * time) * profile
@@ -149,7 +148,7 @@ class Vortex(ManufacturedMotion):
         return _vector(0.0, radius * turning, turned)
 
     def body_force(self, points: Floats, time: float) -> Floats:
-        """Return the force on the particles from X, over their mass, m/s2."""
+        """Return the body force per mass on particles that started at X, m/s2."""
         radius, heading = self._polar(points)
         profile, slope, curvature = self._profile(radius)
         swing = self.angle * math.sin(self.omega * time)
@@ -162,7 +161,7 @@ class Vortex(ManufacturedMotion):
         )
 
     def _stress(self, radius: Floats, slope: Floats, curvature: Floats) -> tuple[Floats, Floats]:
-        """Return Div P, radially and tangentially, Pa/m, from alpha' and alpha''."""
+        """Return the radial and tangential components of Div P (Pa/m) from alpha' and alpha''."""
         shear = radius * slope
         half = shear / 2
         shear_rate = slope + radius * curvature
@@ -174,7 +173,7 @@ class Vortex(ManufacturedMotion):
         return radial, tangential
 
     def _profile(self, radius: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return alpha/(A sin(omega t)) with its two derivatives in R."""
+        """Return alpha/(A sin(omega t)) and its first two derivatives in R."""
         part = radius / self._radius
         inside = np.maximum(1 - part**2, 0.0)
         slope = -8 * part * inside**3 / self._radius
@@ -189,6 +188,6 @@ class Vortex(ManufacturedMotion):
 def _vector(
     radial: Union[Floats, float], tangential: Union[Floats, float], heading: Floats
 ) -> Floats:
-    """Return (x, z) of vectors given along and across headings."""
+    """Return the (x, z) of vectors whose components are along and across some headings."""
     cos, sin = np.cos(heading), np.sin(heading)
     return np.stack([radial * cos - tangential * sin, radial * sin + tangential * cos], axis=1)

@@ -1,4 +1,4 @@
-"""The return mapping along strain paths, against the rate equations of the same snow."""
+"""Return mapping along strain paths, compared with the rate equations of the same snow."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 from snowshed import _core
 from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.arrays import Floats
-from snowshed.cli.self_test.return_mapping import calibrated
+from snowshed.cli.self_test.return_mapping import calibrated_snow
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import relative
 from validation.material_paths.rate_equations import RateEquations, evenly
@@ -21,29 +21,29 @@ SOURCE = (
     "the rate equations of the law (thesis 1.2.5 to 1.2.7) in principal stresses, integrated by an "
     "adaptive Runge-Kutta method of order 8 (SciPy's DOP853) to a relative 1e-12"
 )
-#: Points of each path at which states are compared.
+#: Number of points of a path at which states are compared.
 POINTS = 20
 COARSE_INCREMENTS = (1e-3, 1e-4, 1e-5)
 FINE_INCREMENTS = (1e-6, 2.5e-8)
-#: Largest deviation allowed, and the strain increments at which plain and extrapolated backward
+#: Largest allowed deviation, and the strain increments with which plain and extrapolated backward
 #: Euler must reach it.
 MAX_DEVIATION, PLAIN_INCREMENT, EXTRAPOLATED_INCREMENT = 1e-6, 2.5e-8, 1e-5
 
 
 @dataclass(frozen=True)
 class StrainPath:
-    """A straight strain path of the calibrated snow, from an isotropic state.
+    """Straight strain path of the calibrated snow, from an isotropic state.
 
     Attributes
     ----------
     strain
-        The largest principal strain at its end, tension positive.
+        Largest principal strain at the end of the path, tension positive.
     lateral
-        The other principal strains over the largest.
+        Other principal strains, relative to the largest.
     pressure
-        At the start, over p0.
+        Pressure at the start, relative to p0.
     dimension
-        2: one lateral direction; 3: two.
+        2 (with one lateral direction) or 3 (with two).
     """
 
     strain: float
@@ -58,35 +58,35 @@ class StrainPath:
         return math.copysign(1.0, self.strain) * parts
 
     def reference(self) -> Floats:
-        """Return p, q (Pa) and e_v at the path's points by the rate equations, (points, 3)."""
-        constants, strength = calibrated()
+        """Return p (Pa), q (Pa) and e_v at the path's points by the rate equations, (points, 3)."""
+        constants, strength = calibrated_snow()
         snow = RateEquations(*constants, dimension=self.dimension)
         start = snow.initial_state(strength, self.pressure * strength)
         states = snow.integrate(start, self.rate, evenly(abs(self.strain), POINTS))
         return np.column_stack([*snow.invariants(states), states[:, -1]])
 
     def mapped(self, increment: float) -> tuple[Floats, int]:
-        """Return the states by the core's return mapping, and the number of strain increments."""
-        constants, strength = calibrated()
+        """Return p, q and e_v by the core's return mapping, and the number of strain increments."""
+        constants, strength = calibrated_snow()
         law = _core.CamClay(*constants, self.dimension)
         step = increment * self.rate
         volume = float(step.sum())
         deviator = step - volume / self.dimension
-        # The direction of the deviator never changes, so one number holds it.
-        by_p = -law.bulk * volume
-        by_q = 2 * law.shear * math.sqrt(1.5 * float(deviator @ deviator))
-        each = round(abs(self.strain) / (POINTS * increment))
+        # The direction of the deviator never changes, so its magnitude is enough.
+        p_step = -law.bulk * volume
+        q_step = 2 * law.shear * math.sqrt(1.5 * float(deviator @ deviator))
+        increments_per_point = round(abs(self.strain) / (POINTS * increment))
         p, q, ev = self.pressure * strength, 0.0, law.initial_plastic_strain(strength)
         states = []
         for _ in range(POINTS):
-            for _ in range(each):
-                p, q, ev = law.return_map(p + by_p, q + by_q, ev)
+            for _ in range(increments_per_point):
+                p, q, ev = law.return_map(p + p_step, q + q_step, ev)
             states.append((p, q, ev))
-        return np.array(states), POINTS * each
+        return np.array(states), POINTS * increments_per_point
 
 
 class PathSolution(NamedTuple):
-    """A path by the core and by the rate equations, and the cost of the former."""
+    """States of a path by the core and by the rate equations, and the cost of the core."""
 
     states: Floats
     reference: Floats
@@ -95,7 +95,7 @@ class PathSolution(NamedTuple):
 
     @property
     def deviation(self) -> float:
-        """The largest difference in p or q, over the largest of either on the path."""
+        """Largest difference in p or q, relative to the largest value of p or q on the path."""
         stress, exact = self.states[:, :2], self.reference[:, :2]
         return float(np.abs(stress - exact).max() / np.abs(exact).max())
 
@@ -105,7 +105,7 @@ class PathSolution(NamedTuple):
 
 
 def solve(path: StrainPath, settings: CaseSettings) -> PathSolution:
-    """Follow a path in the increments of the settings, extrapolated if they say so."""
+    """Solve a path with the increment of the settings, and extrapolate if they say so."""
     increment = float(settings["increment"])
     reference = path.reference()
     started = time.perf_counter()
@@ -126,7 +126,7 @@ def stress_error(solved: PathSolution, settings: CaseSettings) -> Measured:
 
 
 def measure_isotropic(settings: CaseSettings) -> Outcome:
-    """Compress or pull alike in all directions."""
+    """Compress or pull equally in all directions."""
     strain = 0.1 if settings["sense"] == "tension" else -0.1
     path = StrainPath(strain, lateral=1.0, dimension=int(settings["dimension"]))
     solved = solve(path, settings)
@@ -149,10 +149,10 @@ def measure_triaxial(settings: CaseSettings) -> Outcome:
 
 
 def measure_tension(settings: CaseSettings) -> Outcome:
-    """Pull in one direction, hold the others, until no strength is left and beyond."""
+    """Pull in one direction and hold the others, until the strength is lost and beyond."""
     path = StrainPath(0.1, lateral=0.0, dimension=int(settings["dimension"]))
     solved = solve(path, settings)
-    constants, strength = calibrated()
+    constants, strength = calibrated_snow()
     law = _core.CamClay(*constants, path.dimension)
     opened = law.initial_plastic_strain(strength) + path.strain
     left = relative("opening", float(solved.states[-1, 2]), opened)
@@ -160,7 +160,7 @@ def measure_tension(settings: CaseSettings) -> Outcome:
 
 
 def critical_state(consolidation: float) -> tuple[float, float]:
-    """Return p and q, Pa, of calibrated snow sheared at constant volume for ever, in 3D.
+    """Return the final p and q (Pa) of calibrated snow that is sheared at constant volume, in 3D.
 
     Flow is purely deviatoric at the centre of the ellipse, p = (1 - beta) p0/2, whose height there
     is q = M (p + beta p0)/sqrt(1 + 2 beta). The volume is constant, so the plastic strain e_v
@@ -169,7 +169,7 @@ def critical_state(consolidation: float) -> tuple[float, float]:
     Parameters
     ----------
     consolidation
-        Initial pressure over initial p0.
+        Initial pressure relative to the initial p0.
 
     Examples
     --------
@@ -179,7 +179,7 @@ def critical_state(consolidation: float) -> tuple[float, float]:
     >>> round(p / 7000, 6), round(q / (0.5 * (p + 0.2 * 7000) / 1.4**0.5), 6)
     (0.4, 1.0)
     """
-    constants, strength = calibrated()
+    constants, strength = calibrated_snow()
     snow = RateEquations(*constants, dimension=3)
     start = snow.initial_state(strength, consolidation * strength)
     bulk = float(snow.stiffness.mean())
@@ -217,30 +217,30 @@ EXTRAPOLATED_STRESS = Quantity(
 )
 REMARKS = """
 Backward Euler is of first order: an increment ten times smaller brings only one more digit. While
-snow yields, stress is off by about ten to twenty times the strain increment: 0.1 to 0.2 % at an
-increment of 1e-4. Agreement to 1e-6 takes increments of some 5e-8, millions of them for a few
-percent of strain, which no simulation takes. With one extrapolation, from increments and their
-halves, 1e-5 is enough; the solver does not extrapolate. Snow's constants are known to a tenth at
-best, so these errors are far below their uncertainty.
+snow yields, the relative error of stress is about ten to twenty times the strain increment: 0.1 to
+0.2 % at an increment of 1e-4. An error of 1e-6 needs increments of about 5e-8, that is millions of
+increments for a few percent of strain; no simulation takes that many. With one extrapolation, from
+increments and half increments, 1e-5 is enough, but the solver does not extrapolate. The constants
+of snow are known to 10 % at best, so these errors are far below the uncertainty.
 """
 
 
 def _matrix(full: bool, variants: list[CaseSettings]) -> list[CaseSettings]:
-    """Return every increment for every variant if full, else coarse ones for the first variant."""
-    listed: list[CaseSettings] = []
+    """Return all increments for all variants if full, else coarse ones for the first variant."""
+    settings_list: list[CaseSettings] = []
     for variant in variants if full else variants[:1]:
         plain: CaseSettings = {**variant, "method": "backward Euler"}
         increments = (*COARSE_INCREMENTS, *FINE_INCREMENTS) if full else COARSE_INCREMENTS
-        listed += [{**plain, "increment": increment} for increment in increments]
-        listed += [
+        settings_list += [{**plain, "increment": increment} for increment in increments]
+        settings_list += [
             {**plain, "method": "extrapolated", "increment": increment}
             for increment in COARSE_INCREMENTS
         ]
-    return listed
+    return settings_list
 
 
 def isotropic_matrix(full: bool) -> list[CaseSettings]:
-    """Return both senses of strain in each dimension; the increment does not change the answer."""
+    """Return compression and tension in 2D and 3D; the answer does not depend on the increment."""
     return [
         {
             "sense": sense,
@@ -281,16 +281,17 @@ ISOTROPIC = Case(
     title="Material path: isotropic compression and tension",
     source=SOURCE,
     description="""
-    Calibrated snow is strained alike in all directions, by 10 % in either sense. It yields at p0 or
-    at -beta p0, hardens in compression and in tension softens until it is loose. The error is the
-    largest deviation of p or q from the rate equations at 20 points, over the largest stress.
+    Calibrated snow is compressed or pulled by 10 %, equally in all directions. It yields at p0 or
+    at -beta p0. In compression it hardens, and in tension it softens until it is loose. The error
+    is the largest deviation of p or q from the rate equations at 20 points, over the largest
+    stress.
     """,
     quantities=(Quantity("stress", STRESS.title, limit=MAX_DEVIATION),),
     matrix=isotropic_matrix,
     measure=measure_isotropic,
     remarks="""
-    On this path the end of an increment does not depend on its size: backward Euler is exact, and
-    the remaining error comes from the tolerances of both integrations.
+    On this path the size of increments has no effect, because backward Euler is exact. The
+    remaining error comes from the tolerances of both integrations.
     """,
 )
 OEDOMETER = _case(
@@ -309,10 +310,10 @@ TRIAXIAL = _case(
     "Material path: triaxial compression to the critical state",
     """
     Calibrated snow, under no stress or consolidated to 0.8 p0, is compressed by 16 % in one
-    direction while the other two give way so that the volume stays. It ends in the critical state,
-    the centre of the yield ellipse, where it flows without change of stress or volume:
-    p = (1 - beta) p0/2 and q = M (p + beta p0)/sqrt(1 + 2 beta), which is q = M p without cohesion.
-    From 0.8 p0 it compacts on its way there, from no stress it dilates.
+    direction, while the other two directions stretch so that the volume stays constant. It ends in
+    the critical state, the centre of the yield ellipse, where it flows without change of stress or
+    volume: p = (1 - beta) p0/2 and q = M (p + beta p0)/sqrt(1 + 2 beta), which is q = M p without
+    cohesion. From 0.8 p0 it compacts on the way to this state, and from no stress it dilates.
     """,
     Quantity("critical_state", "q at the end, Pa", limit=MAX_DEVIATION),
     matrix=triaxial_matrix,

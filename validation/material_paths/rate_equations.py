@@ -1,4 +1,4 @@
-"""Cohesive Modified Cam-Clay snow in rates, integrated by an adaptive Runge-Kutta method.
+"""Rate equations of cohesive Modified Cam-Clay snow, integrated by an adaptive Runge-Kutta method.
 
 The module checks the return mapping independently and shares nothing with the core: stress and
 strain are principal values instead of p and q, and the plastic multiplier comes from the
@@ -29,7 +29,7 @@ RELATIVE_TOLERANCE, ABSOLUTE_TOLERANCE = 1e-12, 1e-15
 
 @dataclass(frozen=True)
 class RateEquations:
-    """The constants of the law.
+    """Constants of the constitutive law.
 
     Attributes
     ----------
@@ -38,11 +38,11 @@ class RateEquations:
     poissons_ratio, critical_state_slope, cohesion, hardening_factor
         nu, M, beta, xi.
     dimension
-        2: invariants in the plane, as in a scene of two dimensions; 3: in space.
+        2 (invariants in the plane, as in a 2D scene) or 3.
 
     Examples
     --------
-    Compressed alike on all sides, snow yields at p = p0 and hardens from there.
+    Snow that is compressed equally on all sides yields at p = p0 and then hardens.
 
     >>> snow = RateEquations(1e6, 0.3, 0.5, 0.2, 0.1, dimension=3)
     >>> start = snow.initial_state(7e3)
@@ -61,7 +61,7 @@ class RateEquations:
 
     @property
     def shear_modulus(self) -> float:
-        """Mu, Pa."""
+        """Shear modulus mu, Pa."""
         return self.youngs_modulus / (2 * (1 + self.poissons_ratio))
 
     @property
@@ -73,11 +73,11 @@ class RateEquations:
 
     @property
     def hardening_modulus(self) -> float:
-        """K of (1.2.7), Pa."""
+        """Bulk modulus K of (1.2.7), Pa."""
         return self.youngs_modulus / (3 - 6 * self.poissons_ratio)
 
     def strength(self, ev: float) -> float:
-        """Return p0, Pa, from the volumetric plastic strain (1.2.7)."""
+        """Return the strength p0 (Pa) by (1.2.7) from the volumetric plastic strain."""
         return self.hardening_modulus * math.sinh(self.hardening_factor * max(-ev, 0.0))
 
     def initial_state(self, strength: float, pressure: float = 0.0) -> Floats:
@@ -106,7 +106,7 @@ class RateEquations:
         return pressure, np.sqrt(1.5 * (deviator**2).sum(axis=-1))
 
     def yield_function(self, state: Floats) -> float:
-        """Return y of (1.2.6), Pa2."""
+        """Return the yield function y of (1.2.6), Pa2."""
         p, q = self.invariants(state)
         p0 = self.strength(state[-1])
         shear = (1 + 2 * self.cohesion) * q**2
@@ -184,21 +184,21 @@ class RateEquations:
         states: Floats = np.reshape(solution.y, (len(start), -1)).T
         if solution.status == 0:
             return states
-        spent = self._loose(solution.y_events[0][0], rate, times - solution.t_events[0][0])
-        return np.vstack([states, spent[len(states) :]])
+        loose_states = self._loose(solution.y_events[0][0], rate, times - solution.t_events[0][0])
+        return np.vstack([states, loose_states[len(states) :]])
 
     def _rates(self, state: Floats, rate: Floats) -> Floats:
         """Return the rates of the elastic strains and of e_v on the yield surface."""
         stress, p0 = self.stress(state), self.strength(state[-1])
         pressure = -stress.mean()
         slope2, beta, xi = self.critical_state_slope**2, self.cohesion, self.hardening_factor
-        by_pressure = slope2 * (2 * pressure - (1 - beta) * p0)
-        by_strength = slope2 * ((beta - 1) * pressure - 2 * beta * p0)
+        pressure_slope = slope2 * (2 * pressure - (1 - beta) * p0)
+        strength_slope = slope2 * ((beta - 1) * pressure - 2 * beta * p0)
         hardening = -self.hardening_modulus * xi * math.cosh(xi * state[-1])
-        normal = -by_pressure / self.dimension + 3 * (1 + 2 * beta) * (stress + pressure)
-        pushed = self.stiffness @ normal
-        resistance = normal @ pushed - by_strength * hardening * normal.sum()
-        flow = max(0.0, float(pushed @ rate)) / resistance * normal
+        normal = -pressure_slope / self.dimension + 3 * (1 + 2 * beta) * (stress + pressure)
+        stiff_normal = self.stiffness @ normal
+        resistance = normal @ stiff_normal - strength_slope * hardening * normal.sum()
+        flow = max(0.0, float(stiff_normal @ rate)) / resistance * normal
         return np.append(rate - flow, flow.sum())
 
     def _loose(self, last: Floats, rate: Floats, after: Floats) -> Floats:

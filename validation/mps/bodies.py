@@ -13,7 +13,7 @@ from validation.framework.drive import TimedEventDriver
 
 GRAVITY = 9.81  # m/s2
 WATER = MpsSettings(density=1000.0, viscosity=1e-3, rheology="newtonian")
-#: Variants in the cases besides distances: walls, and the forms of Koshizuka and Oka.
+#: Variants of the cases: walls of particles, and the forms of Koshizuka and Oka.
 VARIANTS: Sequence[CaseSettings] = (
     {"walls": "particles"},
     {"gradient": "conservative", "walls": "particles"},
@@ -23,7 +23,7 @@ VARIANTS: Sequence[CaseSettings] = (
 
 
 def floor_and_sides(*sides: float) -> list[Obstacle]:
-    """Return a floor at z = 0, a wall at x = 0, and walls that face it; snow sticks to all."""
+    """Return sticky walls: a floor at z = 0, a wall at x = 0, and the walls opposite to it."""
     planes = [((0.0, 0.0), (0.0, 1.0)), ((0.0, 0.0), (1.0, 0.0))]
     planes += [((x, 0.0), (-1.0, 0.0)) for x in sides]
     return [
@@ -33,7 +33,7 @@ def floor_and_sides(*sides: float) -> list[Obstacle]:
 
 
 def block(width: float, height: float) -> Body:
-    """Return a body in the corner of the walls, m."""
+    """Return a body in the corner of the walls; lengths in m."""
     return Body(shape=Shape.box((width / 2, height / 2), (width, height)))
 
 
@@ -44,7 +44,7 @@ def mps_drive(
     settings: CaseSettings,
     case_settings: Collection[str] = (),
 ) -> TimedEventDriver:
-    """Return a drive of a fluid with a case's settings, on one thread."""
+    """Return a driver for a fluid with a case's settings, on one thread."""
     scene = Scene(
         dimension=2, method="mps", numerics=MpsSettings(**vars(fluid)), obstacles=list(obstacles),
         bodies=list(bodies), events=Events(count=1, max_time=1000.0, between="carry"),

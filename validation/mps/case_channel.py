@@ -29,7 +29,7 @@ PARTICLES_ACROSS = (10, 20, 40)  # particles
 
 
 def exact_speed(positions: Floats) -> Floats:
-    """Return the speed at distances from the middle, m/s.
+    """Return the speed (m/s) at distances (m) from the middle.
 
     Examples
     --------
@@ -41,7 +41,7 @@ def exact_speed(positions: Floats) -> Floats:
 
 
 def plug_half_width(positions: Floats, speeds: Floats) -> float:
-    """Return half the width of the plug, m: the top of the sheared fluid's parabola.
+    """Return half the width of the plug (m), where the parabola of the sheared fluid has its top.
 
     Examples
     --------
@@ -56,7 +56,7 @@ def plug_half_width(positions: Floats, speeds: Floats) -> float:
 
 
 def middle_flow(positions: Floats, fall: Floats) -> tuple[float, float, float]:
-    """Return the plug's speed, the mean speed and half the plug's width, in a slug's middle."""
+    """Return the plug's speed, the mean speed and half the plug's width in the middle of a slug."""
     middle = np.abs(positions[:, 2] - positions[:, 2].mean()) < LENGTH / 6
     positions_x, speeds = positions[middle, 0], fall[middle]
     plug = float(speeds[np.abs(positions_x) < 0.5 * PLUG_HALF_WIDTH].mean())
@@ -64,7 +64,7 @@ def middle_flow(positions: Floats, fall: Floats) -> tuple[float, float, float]:
 
 
 def measure(settings: CaseSettings) -> Outcome:
-    """Let a long slug fall until its flow is steady, and compare its middle."""
+    """Let a long slug fall until its flow is steady, and compare the flow in its middle."""
     spacing = 2 * HALF_GAP / int(settings["across"])
     plates = [
         Obstacle(name=name, shape=Shape.plane((x, 0), normal), condition="sticky")
@@ -90,14 +90,14 @@ def measure(settings: CaseSettings) -> Outcome:
 
 
 def matrix(full: bool) -> list[CaseSettings]:
-    """Return distances between particles, with both kinds of walls."""
+    """Return numbers of particles across the channel, with both kinds of walls."""
     across, beside = (
         (PARTICLES_ACROSS, PARTICLES_ACROSS[:2])
         if full
         else (PARTICLES_ACROSS[:2], PARTICLES_ACROSS[:1])
     )
-    listed: list[CaseSettings] = [{"across": count} for count in across]
-    return listed + [{"across": count, "walls": "particles"} for count in beside]
+    settings_list: list[CaseSettings] = [{"across": count} for count in across]
+    return settings_list + [{"across": count, "walls": "particles"} for count in beside]
 
 
 CASE = Case(
@@ -111,9 +111,10 @@ CASE = Case(
     (the discharge over the gap) are compared, as means over 0.2 s of the steady flow.
     """,
     remarks="""
-    The slug's ends add 0.4 % to the speed of its middle: with 10 particles across it was 9.3 % too
-    fast, 8.8 % where the slug was twice as long, and 11.8 % where it was half as long. The flow of
-    a channel without ends, which is a unit test, is exact to 1.8 % with 20 particles across.
+    The ends of the slug add 0.4 % to the speed of its middle. With 10 particles across, the middle
+    was 9.3 % too fast, 8.8 % if the slug was twice as long, and 11.8 % if it was half as long. The
+    flow of a channel without ends, which is a unit test, is exact to 1.8 % with 20 particles
+    across.
     """,
     quantities=(
         Quantity("speed", "speed of the plug, m/s", limit=0.05, limit_for={"across": 40}),

@@ -25,7 +25,7 @@ HEAP_SIZE = (0.3, 0.2)  # m, width and height before it slumps
 
 
 def coulomb(tilt: float) -> float:
-    """Return g (sin a - cos a tan phi), m/s2.
+    """Return the acceleration of a sliding slab, g (sin a - cos a tan phi), m/s2.
 
     Examples
     --------
@@ -37,7 +37,7 @@ def coulomb(tilt: float) -> float:
 
 
 def measure_slab(settings: CaseSettings) -> Outcome:
-    """Let a long slab slide, and take the mean speed of its middle."""
+    """Let a long slab slide, and compare the mean speed of its middle."""
     tilt = float(settings["tilt"])
     angle = math.radians(tilt)
     down, normal = (math.cos(angle), -math.sin(angle)), (math.sin(angle), math.cos(angle))
@@ -58,8 +58,8 @@ def measure_slab(settings: CaseSettings) -> Outcome:
 def slab_matrix(full: bool) -> list[CaseSettings]:
     """Return tilts, distances between particles, and walls of particles."""
     spacings = (0.02, 0.01, 0.005) if full else (0.02, 0.01)
-    listed: list[CaseSettings] = [{"tilt": t, "spacing": s} for t in TILTS for s in spacings]
-    return listed + [{"tilt": t, "spacing": 0.01, "walls": "particles"} for t in TILTS]
+    settings_list: list[CaseSettings] = [{"tilt": t, "spacing": s} for t in TILTS for s in spacings]
+    return settings_list + [{"tilt": t, "spacing": 0.01, "walls": "particles"} for t in TILTS]
 
 
 #: 2 tau0/(rho g), m.
@@ -67,12 +67,12 @@ SCALE = 2 * 100.0 / (1000.0 * GRAVITY)
 
 
 def resting_front() -> float:
-    """Return the end of a heap of this volume at rest, m."""
+    """Return the position of the front of the heap at rest, m."""
     return float((1.5 * HEAP_SIZE[0] * HEAP_SIZE[1] / math.sqrt(SCALE)) ** (2 / 3))
 
 
 def resting_heap(positions: Floats) -> Floats:
-    """Return the height at places of a Bingham fluid at rest: sqrt(2 tau0 (xf - x)/(rho g)).
+    """Return the height of a Bingham fluid at rest, sqrt(2 tau0 (xf - x)/(rho g)), m.
 
     Examples
     --------
@@ -106,8 +106,8 @@ def measure_heap(settings: CaseSettings) -> Outcome:
 def heap_matrix(full: bool) -> list[CaseSettings]:
     """Return distances between particles, and walls of particles."""
     spacings = (0.03, 0.02, 0.015) if full else (0.03, 0.02)
-    listed: list[CaseSettings] = [{"spacing": spacing} for spacing in spacings]
-    return [*listed, {"spacing": 0.02, "walls": "particles"}]
+    settings_list: list[CaseSettings] = [{"spacing": spacing} for spacing in spacings]
+    return [*settings_list, {"spacing": 0.02, "walls": "particles"}]
 
 
 CASES = (
@@ -117,8 +117,7 @@ CASES = (
         source="Newton's law with Coulomb's friction, g (sin a - cos a tan phi)",
         description="""
         Snow without cohesion, 0.1 m thick and 2.4 m long, with a friction angle of 24 degrees,
-        slides down a plane for 0.2 s. The mean speed of its middle sixth is
-        compared.
+        slides down a plane for 0.2 s. The mean speed of its middle sixth is compared.
         """,
         quantities=(
             Quantity("speed", "speed, m/s", limit=0.02, limit_for={"spacing": 0.01}),

@@ -21,14 +21,14 @@ MARTIN_MOYCE = ((0.832, 1.217), (1.219, 1.474), (1.997, 2.292), (2.547, 2.995), 
 KOSHIZUKA_OKA = ((0.381, 1.111), (0.769, 1.252), (1.153, 1.505), (1.537, 1.892), (1.935, 2.241), (2.323, 2.615), (2.719, 3.003), (3.096, 3.624))  # fmt: skip # noqa: E501
 #: Front of suddenly released water by the volume of fluid (benchmarks/engines/gerris_dam.gfs).
 GERRIS = ((0.5, 1.16), (1.0, 1.53), (1.5, 2.03), (2.0, 2.64), (2.5, 3.32), (3.0, 4.07), (3.5, 4.85))
-#: Origin of time in Martin and Moyce's tables, as others print them. It is not the release of the
+#: Origin of time in Martin and Moyce's tables, as reprinted by others. It is not the release of the
 #: water: the fronts of both columns that are twice as high as wide (1 1/8 and 2 1/4 inches) meet at
 #: this point.
 TABLE_ORIGIN = (1.19, 1.44)  # T*, X*
 
 
 def pressure_slope(drive: TimedEventDriver, spacing: float) -> float:
-    """Return the slope of the pressure over the specific weight, away from floor and surface."""
+    """Return the slope of the pressure, relative to the specific weight, inside the column."""
     height = drive.core.positions()[:, 2]
     inside = (height > 2 * spacing) & (height < HEIGHT - 2 * spacing)
     pressure = drive.core.field_by_id("pressure")
@@ -37,7 +37,7 @@ def pressure_slope(drive: TimedEventDriver, spacing: float) -> float:
 
 
 def measure_column(settings: CaseSettings) -> Outcome:
-    """Let a column of water stand."""
+    """Let a column of water stand, and measure its pressure, rise and speed."""
     drive = mps_drive(WATER, floor_and_sides(HEIGHT), [block(HEIGHT, HEIGHT)], settings, {"time"})
     spacing = float(settings["spacing"])
     top = float(drive.core.positions()[:, 2].max())
@@ -57,14 +57,14 @@ def column_matrix(full: bool) -> list[CaseSettings]:
     """Return distances between particles, and the other walls and gradients."""
     time = 10.0 if full else 1.0
     spacings = SPACINGS if full else SPACINGS[:2]
-    listed: list[CaseSettings] = [{"spacing": spacing, "time": time} for spacing in spacings]
-    return listed + [{"spacing": 0.01, "time": time, **variant} for variant in VARIANTS[:2]]
+    settings_list: list[CaseSettings] = [{"spacing": spacing, "time": time} for spacing in spacings]
+    return settings_list + [{"spacing": 0.01, "time": time, **variant} for variant in VARIANTS[:2]]
 
 
 def deviation(
     front: Sequence[tuple[float, float]], known: Sequence[tuple[float, float]], delay: float = 0.0
 ) -> float:
-    """Return the rms difference of a front from a measured one, in widths of the dam.
+    """Return the rms difference between a front and a known front, in widths of the dam.
 
     Examples
     --------
@@ -112,8 +112,10 @@ def _absolute_error(name: str, value: float) -> Measured:
 def dam_matrix(full: bool) -> list[CaseSettings]:
     """Return distances between particles, and the other walls and gradients."""
     across = PARTICLES_ACROSS if full else PARTICLES_ACROSS[:2]
-    listed: list[CaseSettings] = [{"across": count} for count in across]
-    return listed + [{"across": count, **variant} for variant in VARIANTS for count in across[:2]]
+    settings_list: list[CaseSettings] = [{"across": count} for count in across]
+    return settings_list + [
+        {"across": count, **variant} for variant in VARIANTS for count in across[:2]
+    ]
 
 
 COLUMN = Case(
@@ -121,9 +123,10 @@ COLUMN = Case(
     title="Water at rest between walls, as a fluid of particles",
     source="hydrostatics",
     description="""
-    A column of water, 0.2 m wide and high, stands for 10 s (1 s in the quick suite). The pressure
-    must grow with the depth by the specific weight, nothing must move, and the highest particle
-    must stay where it is; its rise is in distances between particles.
+    A column of water, 0.2 m wide and high, stands for 10 s (1 s in the quick suite). Three
+    quantities are compared: the slope of the pressure over the depth, relative to the specific
+    weight; the speed, which should be zero; and the rise of the highest particle, in distances
+    between particles.
     """,
     quantities=(
         Quantity("slope", "slope of the pressure", limit=0.01, limit_for={"walls": None}),
@@ -146,11 +149,11 @@ DAM_BREAK = Case(
     ),
     description="""
     A column of water, 2 1/4 inches wide and twice as high, collapses. The position of the front,
-    half a spacing ahead of the foremost particle, is compared in widths of the column over
-    T* = t √(2g/a). It is compared with another method for water without friction that is released
-    suddenly (volume of fluid, Gerris), and with two measured series, both as published and with
-    the origin of time of Martin and Moyce's tables, which let their runs meet at X* = 1.44,
-    T* = 1.19.
+    half a spacing ahead of the foremost particle, is compared in widths of the column over T* = t
+    √(2g/a). It is compared with another method (volume of fluid, Gerris) for water without friction
+    that is released suddenly, and with two measured series. The series are taken as published, and
+    with the origin of time of Martin and Moyce's tables, for which their runs meet at X* = 1.44, T*
+    = 1.19.
     """,
     quantities=(
         Quantity(
@@ -182,11 +185,11 @@ DAM_BREAK = Case(
     matrix=dam_matrix,
     measure=measure_dam,
     remarks="""
-    The front is that of water without friction that is released suddenly. It runs 0.2 to 0.7 ahead
-    of both series as published. With the origin of time of the tables it meets four of the six
-    points of Martin and Moyce to 0.02. Their last point, (4.034, 4.944), lies 0.26 behind, and off
-    the line of its own neighbours. Gradients that lose energy come nearer to the published series
-    only by that loss: with a finer spacing they depart again.
+    The front is that of water without friction that is released suddenly. It is 0.2 to 0.7 ahead of
+    both series as published. With the origin of time of the tables it agrees with four of the six
+    points of Martin and Moyce to 0.02. Their last point, (4.034, 4.944), is 0.26 behind the front,
+    and deviates from the line of its neighbours. Gradients that lose energy come nearer to the
+    published series only because of this loss; with a finer spacing the difference grows again.
     """,
 )
 CASES = (COLUMN, DAM_BREAK)

@@ -1,4 +1,4 @@
-"""A slab that slides off a panel: its flight and its landing."""
+"""Slab that slides off a panel: its flight and its landing."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from validation.panel_edge.rigid_slab import RigidSlab
 TILT, PANEL_LENGTH, PANEL_HEIGHT = 40.0, 2.0, 5.0  # degrees, m, m
 LENGTH, THICKNESS, WIDTH = 0.2, 0.04, 0.1  # of the slab, m; the width in 3D only
 DROP = 1.0  # m below the edge, where the slab lands
-#: Settings that are no parameters of the scene's numerics.
+#: Settings of the case that are not numerical parameters of the scene.
 CASE_SETTINGS = frozenset({"friction", "condition", "length"})
 SLAB: CaseSettings = {
     "dimension": 2,
@@ -31,22 +31,22 @@ SLAB: CaseSettings = {
     "model": "cam_clay",
     "length": LENGTH,
 }
-#: Steps between two samples, and the distance past the edge, in cells, where a slab is free.
+#: Steps between two samples, and the distance past the edge, in cells, at which a slab is free.
 STEPS, FREE_CELLS = 20, 3
 
 
 class Moment(NamedTuple):
-    """The slab at a time; vectors (x, y, z) from the panel's edge."""
+    """State of the slab at a time, with vectors (x, y, z) from the panel's edge."""
 
     time_s: float
     position: Floats  # of the centre of mass, m
     velocity: Floats  # m/s
     spin: float  # nose down, rad/s
-    rear: float  # where its last particle is, down the slope from the edge, m
+    rear: float  # m, position of its last particle, down the slope from the edge
 
 
 def panel_scene(settings: CaseSettings) -> Scene:
-    """Return a panel with a slab in its middle, and nothing below."""
+    """Return a scene of a panel with a slab in its middle and no ground."""
     panel = Panel(height=PANEL_HEIGHT, length=PANEL_LENGTH, width=2 * WIDTH, tilt=TILT)
     panel.friction = float(settings["friction"])
     panel.condition = cast(Condition, settings["condition"])
@@ -74,7 +74,7 @@ class Throw:
         return RigidSlab(length, THICKNESS, TILT, float(settings["friction"]), PANEL_LENGTH / 2)
 
     def fly(self) -> list[Moment]:
-        """Slide and fall; return the moments in free flight, the last one below the drop.
+        """Let the slab slide and fall; return its states in free flight, the last below the drop.
 
         Raises
         ------
@@ -104,14 +104,14 @@ class Throw:
 
 
 def landing(flight: list[Moment]) -> float:
-    """Return the distance from the edge where the centre of mass crosses the drop, m."""
+    """Return the distance from the edge at which the centre of mass has fallen by the drop, m."""
     before, after = flight[-2].position, flight[-1].position
     part = (-DROP - before[2]) / (after[2] - before[2])
     return float(before[0] + part * (after[0] - before[0]))
 
 
-def off_parabola(flight: list[Moment], gravity: float = 9.81) -> float:
-    """Return the largest distance from the first moment's parabola, over the distance flown."""
+def parabola_deviation(flight: list[Moment], gravity: float = 9.81) -> float:
+    """Return the largest deviation from the first state's parabola, over the distance flown."""
     first = flight[0]
     times = np.array([moment.time_s for moment in flight])[:, np.newaxis] - first.time_s
     fall = np.array([0.0, 0.0, -gravity / 2])
@@ -126,11 +126,11 @@ def measure(settings: CaseSettings) -> Outcome:
     throw = Throw(settings)
     exact = throw.rigid(settings).landing(DROP)
     flight = throw.fly()
-    off = off_parabola(flight)
+    deviation = parabola_deviation(flight)
     return throw.drive.outcome(
         [
             relative("landing", landing(flight), exact.distance),
-            Measured("flight", off, 0.0, off),
+            Measured("flight", deviation, 0.0, deviation),
             relative("spin", flight[0].spin, exact.spin),
             relative("spin_kept", flight[-1].spin / flight[0].spin, 1.0),
         ]
@@ -143,7 +143,7 @@ def matrix(full: bool) -> list[CaseSettings]:
         coarse: CaseSettings = {**SLAB, "dx": 0.02}
         return [{**coarse, "friction": 0.0}, coarse, {**SLAB, "transfer": "apic"}]
     frictions = (0.0, 0.3, 0.6)
-    listed = [{**SLAB, "dx": dx, "friction": mu} for dx in (0.02, 0.01) for mu in frictions]
+    settings_list = [{**SLAB, "dx": dx, "friction": mu} for dx in (0.02, 0.01) for mu in frictions]
     variants: list[CaseSettings] = [
         {"dx": 0.005},
         {"transfer": "apic"},
@@ -158,7 +158,7 @@ def matrix(full: bool) -> list[CaseSettings]:
         {"seed": 2},
         {"dimension": 3},
     ]
-    return [*listed, *({**SLAB, **variant} for variant in variants)]
+    return [*settings_list, *({**SLAB, **variant} for variant in variants)]
 
 
 CASE = Case(
@@ -179,7 +179,7 @@ CASE = Case(
         Quantity(
             "flight", "largest distance from the parabola over the distance flown", limit=1e-3
         ),
-        # The accuracy of the method (see the remarks), not the desired one.
+        # This limit is the accuracy of the method (see the remarks), not the desired one.
         Quantity("spin", "angular velocity on leaving, nose down, rad/s", limit=0.65),
         Quantity(
             "spin_kept",
@@ -191,15 +191,15 @@ CASE = Case(
     matrix=matrix,
     measure=measure,
     remarks="""
-    The slab lands at the right place to half a percent, but its rotation is wrong. It leaves the
-    edge with 1.1 to 1.6 times the angular velocity of a rigid slab, however fine the grid. The
-    panel's nodes stop the snow along the panel's normal, not along that of the slab's tipped face.
-    A gap between the two that is much thinner than a cell still counts as contact, so for the
-    method the rear of the tipping slab still touches the panel, although it has lifted off by
+    The place of landing is right to half a percent, but the rotation is wrong. The slab leaves the
+    edge with 1.1 to 1.6 times the angular velocity of a rigid slab, on fine grids, too. The panel's
+    nodes stop the snow along the panel's normal, not along that of the slab's tipped face. A gap
+    between panel and face that is much thinner than a cell still counts as contact. For the method,
+    the rear of the tipping slab therefore still touches the panel, although it has lifted off by
     tenths of a millimetre.
 
-    FLIP with 0.99 then damps the rotation of a slab a few cells thick: it has lost 70 % after a
-    fall of 1 m at dx 1 cm, and 95 % at 2 cm. APIC keeps the whole rotation, pure FLIP 98 %.
+    FLIP with 0.99 then damps the rotation of a slab that is a few cells thick: after a fall of 1 m,
+    70 % of it is lost at dx 1 cm, and 95 % at 2 cm. APIC keeps the whole rotation, pure FLIP 98 %.
 
     The flight agrees with the parabola to rounding, except for an error of the time step:
     symplectic Euler falls g dt t/2 too far.

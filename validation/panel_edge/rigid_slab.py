@@ -1,9 +1,9 @@
 """A rigid slab that slides off the edge of an inclined panel, tips and falls.
 
-A point mass would leave the panel the moment it passes the edge. A slab is held up by the edge
-until its last part has passed, so it flies a little further and turns. Newton's equations of a
-rigid rectangle, its bottom face sliding over a fixed edge, give both, independently of the material
-point method.
+A point mass would leave the panel as soon as it passes the edge. The edge supports a slab until its
+last part has passed, so the slab flies a little further and turns. Both effects follow,
+independently of the material point method, from Newton's equations of a rigid rectangle whose
+bottom face slides over a fixed edge.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from snowshed.base.arrays import Floats
 
 @dataclass(frozen=True)
 class Landing:
-    """The place, time and spin of a slab as it lands.
+    """Place and time of a slab's landing, and its spin.
 
     Attributes
     ----------
@@ -38,7 +38,7 @@ class Landing:
 
 @dataclass(frozen=True)
 class RigidSlab:
-    """A slab at rest on a panel that is steeper than friction can hold.
+    """Slab that starts from rest on a panel, which is too steep for friction to hold it.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class RigidSlab:
     friction
         Coulomb coefficient.
     sliding_distance
-        From the centre of mass to the edge, along the slope, m.
+        Distance along the slope from the centre of mass to the edge, m.
     gravity
         m/s2.
 
@@ -73,7 +73,7 @@ class RigidSlab:
     gravity: float = 9.81
 
     def landing(self, drop: float) -> Landing:
-        """Return the landing: the centre of mass is `drop` m below the edge.
+        """Return the landing, when the centre of mass is `drop` m below the edge.
 
         Raises
         ------
@@ -106,7 +106,7 @@ class RigidSlab:
         return (self.length**2 + self.thickness**2) / 12
 
     def _to_horizontal(self, vector: Floats) -> tuple[float, float]:
-        """Turn a vector (down the slope, normal to it) into (x, z)."""
+        """Return a vector with components (down the slope, normal to it) as (x, z)."""
         tilt = math.radians(self.tilt)
         along, off = vector
         x = along * math.cos(tilt) + off * math.sin(tilt)
@@ -132,7 +132,7 @@ class RigidSlab:
         return float(push), float(sliding), float(turning)
 
     def _departure(self) -> _Departure:
-        """Slide until the centre of the normal force reaches the edge, then tip over the edge."""
+        """Return the state in which the slab leaves the edge, after it has slid and tipped."""
         from scipy.integrate import solve_ivp
 
         half = self.thickness / 2
@@ -164,7 +164,7 @@ class RigidSlab:
 
 
 class _Departure(NamedTuple):
-    """The state in which a slab leaves the edge; vectors (down the slope, normal to it)."""
+    """State in which a slab leaves the edge, with vectors (down the slope, normal to it)."""
 
     tip_time: float
     position: Floats

@@ -18,26 +18,26 @@ from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import TimedEventDriver, apply_settings, relative
 from validation.material_paths.rate_equations import RateEquations
 
-HEIGHT, WIDTH_CELLS = 0.4, 8  # m; the width is so many cells at any resolution
+HEIGHT, WIDTH_CELLS = 0.4, 8  # m; width in cells, the same at any resolution
 DENSITY, GRAVITY = 210.0, 9.81  # kg/m3, m/s2
 #: Soft snow, so that the column settles visibly: by 1.5 % if elastic, by 3 % if it yields.
 YOUNGS_MODULUS, POISSONS_RATIO = 2e4, 0.3
 SLOPE, COHESION, HARDENING, STRENGTH = 0.5, 0.2, 1.0, 200.0
-#: Settings that are the case's own: how far the floor lies above a row of nodes, in cells.
+#: Settings of the case itself: the height of the floor above a row of nodes, in cells.
 CASE_SETTINGS = frozenset({"floor_offset"})
-#: Layers above the floor that count as its neighbourhood.
+#: Lowest layers, which the rms error of pressure leaves out.
 FLOOR_LAYERS = 2
-#: Steps after which the velocities are damped again.
-STEPS = 4
+#: Steps between two dampings of the velocities.
+STEPS_PER_DAMPING = 4
 
 
 @dataclass(frozen=True)
 class ElasticColumn:
-    """The column at rest, held at its sides; closed form in Lambert's function W.
+    """The elastic column at rest between its walls, in closed form with Lambert's function W.
 
     With a = lambda + 2 mu, the vertical Kirchhoff stress of the compression x (minus the vertical
-    Hencky strain) is a x. Per area of the undeformed column it carries a x exp(x), the weight
-    rho g h of the snow above, h measured before settling. Hence x = W(rho g h/a).
+    Hencky strain) is a x. Per area of the undeformed column the force is a x exp(x). It carries the
+    weight rho g h of the snow above, where h is the depth before settling. Hence x = W(rho g h/a).
 
     Attributes
     ----------
@@ -49,8 +49,8 @@ class ElasticColumn:
     For small strains the top sinks by rho g H^2/(2 a).
 
     >>> column = ElasticColumn(dimension=2)
-    >>> sunk = float(column.settlement(np.array(0.4)) / (210 * 9.81 * 0.4**2 / 2 / column.modulus))
-    >>> round(sunk, 2)
+    >>> ratio = column.settlement(np.array(0.4)) / (210 * 9.81 * 0.4**2 / 2 / column.modulus)
+    >>> round(float(ratio), 2)
     0.97
     """
 
@@ -58,7 +58,7 @@ class ElasticColumn:
 
     @property
     def law(self) -> RateEquations:
-        """The material."""
+        """Constitutive law of the snow."""
         return RateEquations(
             YOUNGS_MODULUS, POISSONS_RATIO, SLOPE, COHESION, HARDENING, self.dimension
         )
@@ -69,20 +69,20 @@ class ElasticColumn:
         return float(self.law.stiffness[0, 0])
 
     def compression(self, depth: Floats) -> Floats:
-        """Return x at depths below the top, m before settling."""
+        """Return the compression x at depths (m, before settling) below the top."""
         from scipy.special import lambertw
 
         return np.asarray(lambertw(DENSITY * GRAVITY * depth / self.modulus).real)
 
     def pressure(self, depth: Floats) -> Floats:
-        """Return the Kirchhoff pressure at depths, Pa."""
+        """Return the Kirchhoff pressure (Pa) at depths (m)."""
         bulk = float(self.law.stiffness.mean())
         return bulk * self.compression(depth)
 
     def settlement(self, depth: Floats) -> Floats:
-        """Return the shortening of the snow down to a depth, m.
+        """Return the shortening (m) of the snow above a depth (m).
 
-        It is the integral of 1 - exp(-x), with exp(-W(w)) = W(w)/w.
+        The shortening is the integral of 1 - exp(-x) over the depth, with exp(-W(w)) = W(w)/w.
         """
         x = self.compression(depth)
         return depth - self.modulus / (DENSITY * GRAVITY) * (x + x**2 / 2)
@@ -97,7 +97,7 @@ class YieldingColumn:
     dimension
         2 or 3.
     deepest
-        The largest depth asked for, m.
+        Largest depth at which values are computed, m.
 
     Examples
     --------
@@ -117,23 +117,23 @@ class YieldingColumn:
         downward = np.zeros(self.dimension)
         downward[-1] = -1.0
         states = law.integrate(law.initial_state(STRENGTH), downward, x)
-        carried = -law.stress(states)[:, -1] * np.exp(x)
-        depth = carried / (DENSITY * GRAVITY)
+        weight = -law.stress(states)[:, -1] * np.exp(x)
+        depth = weight / (DENSITY * GRAVITY)
         if depth[-1] < self.deepest:
             raise ValueError(f"{self.deepest} m: at most {depth[-1]:.3g} m are tabulated")
-        shorter = 1 - np.exp(-x)
-        parts = np.diff(depth) * (shorter[1:] + shorter[:-1]) / 2
-        return depth, law.invariants(states)[0], np.append(0.0, np.cumsum(parts))
+        shortening = 1 - np.exp(-x)
+        steps = np.diff(depth) * (shortening[1:] + shortening[:-1]) / 2
+        return depth, law.invariants(states)[0], np.append(0.0, np.cumsum(steps))
 
     def pressure(self, depth: Floats) -> Floats:
-        """Return the Kirchhoff pressure at depths, Pa."""
-        known, pressure, _ = self._table
-        return np.interp(depth, known, pressure)
+        """Return the Kirchhoff pressure (Pa) at depths (m)."""
+        depths, pressures, _ = self._table
+        return np.interp(depth, depths, pressures)
 
     def settlement(self, depth: Floats) -> Floats:
-        """Return the shortening of the snow down to a depth, m."""
-        known, _, settlement = self._table
-        return np.interp(depth, known, settlement)
+        """Return the shortening (m) of the snow above a depth (m)."""
+        depths, _, settlements = self._table
+        return np.interp(depth, depths, settlements)
 
 
 Column = Union[ElasticColumn, YieldingColumn]
@@ -177,21 +177,22 @@ def _wall(corner: Floats, axis: int, side: int, condition: Condition) -> Obstacl
 
 
 def settle(drive: TimedEventDriver, periods: float) -> None:
-    """Let a column come to rest, damped so strongly that no layer overshoots.
+    """Let a column come to rest, with so much damping that no layer overshoots.
 
-    An overshoot would remain in snow that yields. Velocities fall at the rate 2 omega, critical for
-    the slowest swing, omega = pi c/(2 H): all others are too quick to matter.
+    Snow that yields would keep the deformation of an overshoot. Velocities fall at the rate
+    2 omega, which is critical for the slowest vibration, omega = pi c/(2 H). All other vibrations
+    are too fast to matter.
     """
     speed = math.sqrt(ElasticColumn(drive.core.dimension).modulus / DENSITY)
     omega = math.pi * speed / (2 * HEIGHT)
     while drive.core.time_s < periods * 2 * math.pi / omega:
         before = drive.core.time_s
-        drive.step(STEPS)
+        drive.step(STEPS_PER_DAMPING)
         drive.damp(2 * omega * (drive.core.time_s - before))
 
 
 def measure(settings: CaseSettings, column: Column, periods: float) -> Outcome:
-    """Settle a column and compare means over layers one cell thick with the exact ones."""
+    """Let a column settle, and compare means over layers one cell thick with the exact means."""
     drive = TimedEventDriver(column_scene(settings))
     dx = float(settings["dx"])
     start = drive.core.positions()[:, 2]
@@ -205,33 +206,33 @@ def measure(settings: CaseSettings, column: Column, periods: float) -> Outcome:
         return np.bincount(layers, values) / size
 
     depth = HEIGHT - height
-    sunk = mean(start - drive.core.positions()[:, 2])
-    sinks = mean(column.settlement(np.array(HEIGHT)) - column.settlement(depth))
-    pressure, pressed = mean(drive.core.pressures()), mean(column.pressure(depth))
-    off = (pressure - pressed)[FLOOR_LAYERS:] / column.pressure(np.array(HEIGHT))
-    spread = float(np.sqrt(np.mean(off**2)))
+    settlement = mean(start - drive.core.positions()[:, 2])
+    exact_settlement = mean(column.settlement(np.array(HEIGHT)) - column.settlement(depth))
+    pressure, exact_pressure = mean(drive.core.pressures()), mean(column.pressure(depth))
+    errors = (pressure - exact_pressure)[FLOOR_LAYERS:] / column.pressure(np.array(HEIGHT))
+    rms_error = float(np.sqrt(np.mean(errors**2)))
     return drive.outcome(
         [
-            relative("settlement", float(sunk[-1]), float(sinks[-1])),
-            Measured("pressure", spread, 0.0, spread),
-            relative("floor_pressure", float(pressure[0]), float(pressed[0])),
+            relative("settlement", float(settlement[-1]), float(exact_settlement[-1])),
+            Measured("pressure", rms_error, 0.0, rms_error),
+            relative("floor_pressure", float(pressure[0]), float(exact_pressure[0])),
         ]
     )
 
 
 def measure_elastic(settings: CaseSettings) -> Outcome:
-    """Settle a column of elastic snow."""
+    """Let a column of elastic snow settle, and return its errors."""
     column = ElasticColumn(int(settings["dimension"]))
     return measure({**settings, "model": "elastic"}, column, periods=4)
 
 
 def measure_yielding(settings: CaseSettings) -> Outcome:
-    """Settle a column of snow that yields."""
+    """Let a column of snow that yields settle, and return its errors."""
     column = YieldingColumn(int(settings["dimension"]))
     return measure({**settings, "model": "cam_clay"}, column, periods=10)
 
 
-REGULAR: CaseSettings = {
+REGULAR_SETTINGS: CaseSettings = {
     "dimension": 2,
     "dx": 0.01,
     "pattern": "regular",
@@ -241,8 +242,8 @@ REGULAR: CaseSettings = {
     "precision": "float",
     "floor_offset": 0.0,
 }
-RANDOM: CaseSettings = {**REGULAR, "pattern": "poisson", "particles_per_voxel": 6}
-METHODS: tuple[CaseSettings, ...] = (
+RANDOM_SETTINGS: CaseSettings = {**REGULAR_SETTINGS, "pattern": "poisson", "particles_per_voxel": 6}
+METHOD_VARIANTS: tuple[CaseSettings, ...] = (
     {"particles_per_voxel": 9},
     {"particles_per_voxel": 16},
     {"transfer": "apic"},
@@ -255,27 +256,34 @@ METHODS: tuple[CaseSettings, ...] = (
 def elastic_matrix(full: bool) -> list[CaseSettings]:
     """Return resolutions; if full, also seedings, bases and other variations."""
     sizes = (0.04, 0.02, 0.01, 0.005, 0.0025) if full else (0.02, 0.01, 0.005)
-    listed: list[CaseSettings] = [{**REGULAR, "dx": dx} for dx in sizes]
+    settings_list: list[CaseSettings] = [{**REGULAR_SETTINGS, "dx": dx} for dx in sizes]
     if not full:
-        return [*listed, {**RANDOM, "dx": 0.01, "seed": 1}]
-    listed += [{**RANDOM, "dx": dx, "seed": seed} for dx in sizes for seed in (1, 2, 3)]
+        return [*settings_list, {**RANDOM_SETTINGS, "dx": 0.01, "seed": 1}]
+    settings_list += [
+        {**RANDOM_SETTINGS, "dx": dx, "seed": seed} for dx in sizes for seed in (1, 2, 3)
+    ]
     denser = (12, 24, 48)
-    listed += [{**RANDOM, "particles_per_voxel": n, "seed": 1} for n in denser]
-    listed += [{**REGULAR, "basis": "cubic", "dx": dx} for dx in sizes[1:]]
-    listed += [{**REGULAR, "floor_offset": 0.5, "dx": dx} for dx in (0.02, 0.005)]
-    listed += [{**REGULAR, **method} for method in METHODS]
-    return [*listed, {**REGULAR, "dx": 0.02, "particles_per_voxel": 8, "dimension": 3}]
+    settings_list += [{**RANDOM_SETTINGS, "particles_per_voxel": n, "seed": 1} for n in denser]
+    settings_list += [{**REGULAR_SETTINGS, "basis": "cubic", "dx": dx} for dx in sizes[1:]]
+    settings_list += [{**REGULAR_SETTINGS, "floor_offset": 0.5, "dx": dx} for dx in (0.02, 0.005)]
+    settings_list += [{**REGULAR_SETTINGS, **method} for method in METHOD_VARIANTS]
+    return [
+        *settings_list,
+        {**REGULAR_SETTINGS, "dx": 0.02, "particles_per_voxel": 8, "dimension": 3},
+    ]
 
 
 def yielding_matrix(full: bool) -> list[CaseSettings]:
     """Return resolutions; if full, also seedings and other variations."""
     sizes = (0.02, 0.01, 0.005, 0.0025) if full else (0.02, 0.01)
-    listed: list[CaseSettings] = [{**REGULAR, "dx": dx} for dx in sizes]
+    settings_list: list[CaseSettings] = [{**REGULAR_SETTINGS, "dx": dx} for dx in sizes]
     if full:
-        listed += [{**RANDOM, "dx": dx, "seed": seed} for dx in sizes[:3] for seed in (1, 2, 3)]
-        listed += [{**REGULAR, "basis": "cubic"}]
-        listed += [{**REGULAR, **method} for method in METHODS[:4]]
-    return listed
+        settings_list += [
+            {**RANDOM_SETTINGS, "dx": dx, "seed": seed} for dx in sizes[:3] for seed in (1, 2, 3)
+        ]
+        settings_list += [{**REGULAR_SETTINGS, "basis": "cubic"}]
+        settings_list += [{**REGULAR_SETTINGS, **method} for method in METHOD_VARIANTS[:4]]
+    return settings_list
 
 
 def _quantities(finest: float) -> tuple[Quantity, ...]:
@@ -292,28 +300,29 @@ def _quantities(finest: float) -> tuple[Quantity, ...]:
     )
 
 
-SETTING = """
+DESCRIPTION = """
     A column of snow 40 cm high, between frictionless walls on a floor to which it sticks, settles
-    under its own weight until it rests. Its motion is damped by hand so that it never swings back.
-    The settlement of the uppermost cell and the pressure are compared as means over layers one cell
-    thick. Pressure errors are relative to the pressure at the bottom.
+    under its own weight until it rests. Its velocities are damped so strongly that it never swings
+    back. The settlement of the uppermost cell and the pressure are compared as means over layers
+    one cell thick. Pressure errors are relative to the pressure at the bottom.
 """
-FLOOR = """
+FLOOR_REMARK = """
 The floor causes the largest error. The grid stops the nodes on and below the floor, but snow
 between the floor and the first free node still moves. The column therefore behaves as if the floor
 were a third of a cell lower. The pressure in the lowest cell is 11 to 16 % too high at any
-resolution (22 % with cubic splines), and that in the next cell is too low. This error is of first
-order in dx: the settlement is within 1 % from 80 cells of height on (160 where snow yields). These
-numbers hold if the floor lies on a row of nodes. Halfway between two rows errors are five times as
-large, at three quarters of a cell fourteen times.
+resolution (22 % with cubic splines), and the pressure in the next cell is too low. This error is of
+first order in dx: the settlement is right to 1 % if the column is at least 80 cells high (160 if
+the snow yields). These numbers hold if the floor lies on a row of nodes. If it lies half a cell
+above a row, errors are five times as large; at three quarters of a cell they are fourteen times as
+large.
 """
-RANDOM_SEEDING = """
-Random seeding, the default, makes snow softer. Where particles are sparse the grid strains too
-much, and denser places do not compensate. At 6 particles per voxel the column settles by another 1
-to 3 % if it is elastic and by 4 to 6 % if it yields. A finer grid does not help, because a cell
-holds as many particles as before. With 24 or more particles the excess is about half a percent. The
-pressure of single particles scatters by 8 % of the bottom's, on a lattice by 2 to 4 %. Use means
-over a cell.
+SEEDING_REMARK = """
+Random seeding, the default, makes snow softer. The grid strains too much where particles are
+sparse, and denser places do not compensate for it. At 6 particles per voxel the column settles by
+another 1 to 3 % if it is elastic and by 4 to 6 % if it yields. A finer grid does not help, because
+a cell holds as many particles as before. With 24 or more particles the excess is about half a
+percent. The pressure of single particles scatters by 8 % of the pressure at the bottom; on a
+lattice it scatters by 2 to 4 %. Use means over a cell.
 """
 
 ELASTIC = Case(
@@ -323,7 +332,7 @@ ELASTIC = Case(
         "closed form for Hencky elasticity: the vertical strain is W(w/(λ + 2 μ)), with Lambert's "
         "function W and the weight w of the snow above per area"
     ),
-    description=SETTING
+    description=DESCRIPTION
     + """
     The snow is elastic and soft (E = 20 kPa), so the top sinks by 1.5 % of the height and the
     strain at the bottom is no longer small.
@@ -331,7 +340,7 @@ ELASTIC = Case(
     quantities=_quantities(0.005),
     matrix=elastic_matrix,
     measure=measure_elastic,
-    remarks=FLOOR + RANDOM_SEEDING,
+    remarks=FLOOR_REMARK + SEEDING_REMARK,
 )
 YIELDING = Case(
     name="yielding_settlement",
@@ -340,7 +349,7 @@ YIELDING = Case(
         "equilibrium of every layer, with the stress of oedometric compression from the rate "
         "equations of the snow (SciPy's DOP853)"
     ),
-    description=SETTING
+    description=DESCRIPTION
     + """
     The snow is soft (E = 20 kPa) and weak (p0 = 200 Pa), so that all except its top 5 cm yields and
     hardens (factor 1), and the top sinks by 3.1 % of the height.
@@ -348,7 +357,7 @@ YIELDING = Case(
     quantities=_quantities(0.0025),
     matrix=yielding_matrix,
     measure=measure_yielding,
-    remarks=FLOOR + RANDOM_SEEDING,
+    remarks=FLOOR_REMARK + SEEDING_REMARK,
 )
 
 CASES = (ELASTIC, YIELDING)

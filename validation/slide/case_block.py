@@ -1,4 +1,4 @@
-"""A block of snow that slides down a plane, with Coulomb's and with Voellmy's friction."""
+"""Block of snow that slides down a plane, with Coulomb's and with Voellmy's friction."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from validation.slide.site import GRAVITY, Plane, Site, rectangle, slide_drive
 PLANE = Plane(35.0)
 FRICTION, TURBULENCE, THICKNESS = 0.325, 300.0, 0.5  # 1, m/s2, m
 HALF = 15.0  # m, half the block's edge on the map
-MIDDLE = 3.0  # m, from the block's middle: particles whose motion is measured
-SLIDING_TIME = 3.0  # s; edges make themselves felt in the middle only later
+MIDDLE = 3.0  # m; particles within this distance of the block's middle are measured
+SLIDING_TIME = 3.0  # s; the edges affect the middle only later
 #: Friction that stops a block, and the speed at which it starts down the slope, m/s.
 STOPPING, THROWN = 1.1, 4.0
 CASE_SETTINGS = frozenset({"law"})
@@ -32,7 +32,7 @@ class BlockMotion(NamedTuple):
 
 
 def block_motion(law: str, time: float) -> BlockMotion:
-    """Return the distance of a block that slides from rest, and its speed.
+    """Return the distance and the speed of a block that slides from rest.
 
     Coulomb: du/dt = a = g (sin - mu cos). Voellmy: du/dt = a - g u^2/(xi h), so that
     u = U tanh(a t/U) with U^2 = a xi h/g, and the distance is U^2/a ln cosh(a t/U).
@@ -84,16 +84,18 @@ def measure(settings: CaseSettings) -> Outcome:
 
 
 def matrix(full: bool) -> list[CaseSettings]:
-    """Return laws of friction, and sizes of particles, cells and steps."""
+    """Return both laws of friction, with several time steps, sizes of particles and cells."""
     steps = (0.04, 0.02, 0.01, 0.005, 0.0025) if full else (0.02, 0.01)
     particles = (0.25, 0.06, 0.03) if full else (0.25,)
-    listed: list[CaseSettings] = []
+    settings_list: list[CaseSettings] = []
     for law in ("coulomb", "voellmy", "stop"):
         base: CaseSettings = {**DEFAULTS, "law": law}
-        listed += [{**base, "time_step": dt} for dt in steps]
-        listed += [{**base, "layer_thickness": layer} for layer in particles if layer != 0.06]
-        listed += [{**base, "cell": 1.0}] if full else []
-    return listed
+        settings_list += [{**base, "time_step": dt} for dt in steps]
+        settings_list += [
+            {**base, "layer_thickness": layer} for layer in particles if layer != 0.06
+        ]
+        settings_list += [{**base, "cell": 1.0}] if full else []
+    return settings_list
 
 
 CASE = Case(
@@ -105,9 +107,9 @@ CASE = Case(
     ),
     description="""
     Half a metre of snow, 30 m long and wide on the map, slides down a plane of 35 degrees for 3 s,
-    without bonds and without artificial viscosity. The distance and the speed of its
-    middle are compared, where the thickness does not change. With μ = 1.1 a block that starts down
-    the slope at 4 m/s must stop after v²/(2 a), and must not move afterwards.
+    without bonds and without artificial viscosity. The distance and the speed of its middle, where
+    the thickness does not change, are compared. With μ = 1.1 a block that starts down the slope at
+    4 m/s must stop after v²/(2 a), and must not move afterwards.
     """,
     quantities=(
         Quantity(

@@ -16,11 +16,11 @@ PLANE = Plane(30.0)
 FRICTION = math.tan(math.radians(20.0))
 THICKNESS, DURATION = 1.0, 3.0  # m, s
 LENGTH, HALF_WIDTH = 40.0, 14.0  # m, along the slope; on the map
-MEASURED = 3.0  # m, half the width of the strip whose mean is compared: no side is felt there
-FRONT_THICKNESS = 0.05  # share of the dam's height; the front is where the snow is thicker
+STRIP_HALF_WIDTH = 3.0  # m, half the width of the compared strip, which the sides do not affect
+FRONT_THICKNESS = 0.05  # share of the dam's height; the front is the end of snow thicker than this
 
 DEFAULTS: CaseSettings = {"cell": 2.0, "time_step": 0.02}
-#: Snow of this thickness over a cell makes a particle, m: about 4, 9, 16 and 36 particles per cell.
+#: Thickness of a cell's snow in one particle, m: about 4, 9, 16 and 36 particles per cell.
 LAYERS = (0.28, 0.126, 0.071, 0.0317)
 
 
@@ -30,15 +30,15 @@ def wave_speed() -> float:
 
 
 def exact_thickness(s: Floats, time: float) -> Floats:
-    """Return the thickness at places down the slope from the dam.
+    """Return the thickness (m) at positions down the slope from the dam.
 
-    Mangeney et al. (2000): seen from snow that slides with the acceleration m = g (sin - mu cos),
-    the dam breaks as on level ground: with x' = s - m t^2/2, h = (2 c - x'/t)^2/(9 g cos) for
+    Mangeney et al. (2000): relative to snow that slides with the acceleration m = g (sin - mu cos),
+    the dam breaks as on level ground. With x' = s - m t^2/2, h = (2 c - x'/t)^2/(9 g cos) for
     -c t < x' < 2 c t.
 
     Examples
     --------
-    At the dam, seen from the moving snow, it is 4/9 of the initial thickness.
+    In axes that move with the snow, the thickness at the dam is 4/9 of the initial one.
 
     >>> exact_thickness(np.array([PLANE.coulomb(FRICTION) / 2]), 1.0).round(6).tolist()
     [0.444444]
@@ -50,7 +50,7 @@ def exact_thickness(s: Floats, time: float) -> Floats:
 
 
 def exact_front(time: float) -> float:
-    """Return the distance down the slope where the thickness is `FRONT_THICKNESS`, m."""
+    """Return the distance down the slope at which the thickness is `FRONT_THICKNESS`, m."""
     c = wave_speed()
     ahead = c * (2 - 3 * math.sqrt(FRONT_THICKNESS)) * time
     return 0.5 * PLANE.coulomb(FRICTION) * time**2 + ahead
@@ -64,10 +64,10 @@ def measure(settings: CaseSettings) -> Outcome:
     drive = slide_drive(site, {"friction": FRICTION, **settings})
     drive.run_to(DURATION)
     maps, time = maps_of(drive), drive.core.time_s
-    x, thickness = strip_mean(maps, maps.thickness, MEASURED)
+    x, thickness = strip_mean(maps, maps.thickness, STRIP_HALF_WIDTH)
     s = x / cosine
     reach = wave_speed() * time
-    near = s > 0.5 * PLANE.coulomb(FRICTION) * time**2 - reach - 5.0  # the upper end is elsewhere
+    near = s > 0.5 * PLANE.coulomb(FRICTION) * time**2 - reach - 5.0  # without the upper end
     differs = np.abs(thickness - exact_thickness(s, time))[near]
     profile = float(differs.sum() * maps.cell / cosine / (THICKNESS * reach))
     return drive.outcome(
@@ -87,17 +87,21 @@ def _front(s: Floats, thickness: Floats) -> float:
 
 
 def matrix(full: bool) -> list[CaseSettings]:
-    """Return sizes of particles and cells, and the shortest steps that go with them."""
+    """Return sizes of particles with two sizes of cells, and several time steps."""
     if not full:
         return [{**DEFAULTS, "layer_thickness": layer} for layer in LAYERS[:3]]
-    listed: list[CaseSettings] = [{**DEFAULTS, "layer_thickness": layer} for layer in LAYERS]
-    listed += [{"cell": 1.0, "time_step": 0.01, "layer_thickness": layer} for layer in LAYERS]
-    listed += [{**DEFAULTS, "layer_thickness": LAYERS[2], "time_step": dt} for dt in (0.04, 0.005)]
-    listed += [
+    settings_list: list[CaseSettings] = [{**DEFAULTS, "layer_thickness": layer} for layer in LAYERS]
+    settings_list += [
+        {"cell": 1.0, "time_step": 0.01, "layer_thickness": layer} for layer in LAYERS
+    ]
+    settings_list += [
+        {**DEFAULTS, "layer_thickness": LAYERS[2], "time_step": dt} for dt in (0.04, 0.005)
+    ]
+    settings_list += [
         {**DEFAULTS, "layer_thickness": LAYERS[2], "artificial_viscosity": much}
         for much in (10.0, 100.0)
     ]
-    return listed
+    return settings_list
 
 
 CASE = Case(
@@ -109,11 +113,11 @@ CASE = Case(
     ),
     description="""
     Snow 1 m thick behind a dam on a plane of 30 degrees, friction angle 20 degrees, is released.
-    After 3 s the thickness along the middle of a strip 28 m wide, which its sides and its upper end
-    have not reached, is compared. The error of the profile is the mean absolute difference over the
-    way of the wave behind the dam, in parts of the dam's height. The front is where the thickness
-    is a twentieth of the dam's; its error is in parts of the length of the fan. There are no bonds
-    and no artificial viscosity.
+    After 3 s the thickness along the middle of a strip 28 m wide is compared; the waves from its
+    sides and its upper end have not reached the middle. The error of the profile is the mean
+    absolute difference over the wave behind the dam, relative to the dam's height. At the front the
+    thickness is a twentieth of the dam's height; the error of its position is relative to the
+    length of the fan. There are no bonds and no artificial viscosity.
     """,
     quantities=(
         Quantity(
@@ -146,11 +150,11 @@ CASE = Case(
     measure=measure,
     remarks="""
     The error falls with the number of particles within a cell, that is within the kernel. It is
-    about proportional to the distance of the particles, the square root of their area. Four
-    particles per cell are too few: where the snow has thinned to a third, they have no neighbours,
-    and the front stays behind. Smaller cells alone do not help.
+    about proportional to the distance between particles, that is the square root of their area.
+    Four particles per cell are too few: where the thickness has fallen to a third, they have no
+    neighbours, and the front stays behind. Smaller cells alone do not help.
 
-    Artificial viscosity (the default, after SamosAT) slows the front far more than anything else.
-    Its purpose is rough ground, where it damps the noise of particles.
+    Artificial viscosity (the default, after SamosAT) slows the front far more than any other
+    setting. It is meant for rough ground, where it damps the noise of particles.
     """,
 )

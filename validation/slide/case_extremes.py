@@ -1,4 +1,4 @@
-"""Slides at the extremes of ground, thickness, steps, bonds and friction: sound, or refused."""
+"""Slides at the extremes of ground, thickness, steps, bonds and friction, with sound results."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ DEFAULTS: CaseSettings = {
     "artificial_viscosity": 100.0,
     "bonds": True,
 }
-#: Variations on the slope, one at a time.
+#: Variations of the settings on the slope.
 EXTREMES: tuple[CaseSettings, ...] = (
     {"time_step": 1e-5},
     {"time_step": 1.0, "bonds": False},
@@ -55,7 +55,7 @@ EXTREMES: tuple[CaseSettings, ...] = (
 
 
 def measure(settings: CaseSettings) -> Outcome:
-    """Run some steps, and check the mass, finite values and the snow that must not move."""
+    """Take steps, and measure the values that are not finite, the mass error and the creep."""
     height = GROUNDS[str(settings["ground"])]
     settings = {"layer_thickness": float(settings["thickness"]) / 2, **settings}
     snow = rectangle(-12.3, -12.3, 12.3, 12.3, float(settings["thickness"]))
@@ -65,10 +65,10 @@ def measure(settings: CaseSettings) -> Outcome:
         drive.step()
     facts = drive.core.slide_facts()
     speeds = np.linalg.norm(drive.core.velocities(), axis=1)
-    unsound = np.count_nonzero(~np.isfinite(drive.core.positions()))
+    not_finite = np.count_nonzero(~np.isfinite(drive.core.positions()))
     mass = (drive.core.masses().sum() + facts["left_terrain_kg"]) / released - 1
     measured = [
-        Measured("unsound", float(unsound), 0.0, float(unsound)),
+        Measured("unsound", float(not_finite), 0.0, float(not_finite)),
         Measured("mass", float(mass), 0.0, float(mass)),
     ]
     if settings.get("friction") == 2.0:
@@ -78,16 +78,16 @@ def measure(settings: CaseSettings) -> Outcome:
 
 
 def matrix(full: bool) -> list[CaseSettings]:
-    """Return grounds with thicknesses, and settings at their extremes."""
+    """Return every ground with several thicknesses, and settings at their extremes."""
     steps = 3000 if full else STEPS
     thicknesses = (0.001, 0.05, 0.5, 10.0) if full else (0.001, 10.0)
     base: CaseSettings = {**DEFAULTS, "steps_to_take": steps}
-    listed: list[CaseSettings] = [
+    settings_list: list[CaseSettings] = [
         {**base, "ground": ground, "thickness": thickness}
         for ground in GROUNDS
         for thickness in thicknesses
     ]
-    return listed + [{**base, **extreme} for extreme in EXTREMES]
+    return settings_list + [{**base, **extreme} for extreme in EXTREMES]
 
 
 CASE = Case(
@@ -95,10 +95,11 @@ CASE = Case(
     title="Slides at the extremes",
     source="conservation of mass; Coulomb's law; all numbers are finite",
     description="""
-    A slab slides over cliffs, steps, pits, a gully of one cell, level ground and a sharp ridge, 1
-    mm to 10 m thick; and on a slope with time steps, bonds, friction, viscosity and particles at
-    the extremes of their allowed ranges. All numbers must be finite, the mass on and beyond the
-    terrain must be conserved, and with μ = 2 snow on a slope of 38 degrees must not move.
+    A slab, 1 mm to 10 m thick, slides over cliffs, steps, pits, a gully of one cell, level ground
+    and a sharp ridge. In addition, it slides down a slope with time steps, bonds, friction,
+    viscosity and particles at the extremes of their allowed ranges. All numbers must be finite, and
+    the mass on and beyond the terrain must be conserved. With μ = 2, snow on a slope of 38 degrees
+    must not move.
     """,
     quantities=(
         Quantity("unsound", "coordinates that are not finite", limit=0.0, relative=False),
@@ -108,8 +109,8 @@ CASE = Case(
     matrix=matrix,
     measure=measure,
     remarks="""
-    Bonds that are too stiff for the time step shorten it. If more than a hundred steps would
-    replace one, an error gives the required step. Without shorter steps the slab would oscillate
+    Bonds that are too stiff for the time step shorten it. If a step would be divided into more than
+    a hundred, an error gives the required step. Without shorter steps the slab would oscillate
     until it breaks up.
     """,
 )

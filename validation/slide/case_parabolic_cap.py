@@ -1,4 +1,4 @@
-"""A parabolic cap of snow that slides down a plane and spreads, and stays a parabola."""
+"""Parabolic cap of snow that slides down a plane, spreads, and stays a parabola."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ PLANE = Plane(30.0)
 THICKNESS, RADIUS = 1.0, 10.0  # m, in the middle; half the length along the ground
 DURATION = 3.0  # s
 HALF_WIDTH = 14.0  # m, of a ridge
-MEASURED = 3.0  # m, half the width of the strip of a ridge that is compared
+STRIP_HALF_WIDTH = 3.0  # m, half the width of the strip of a ridge that is compared
 TERRACES = 10  # of equal width, from the middle to the rim
 CASE_SETTINGS = frozenset({"shape"})
-#: Coulomb friction; the round cap has none, as its direction would differ from place to place.
+#: Coulomb friction of a ridge; a round cap has none, because its direction would vary in space.
 FRICTION = {"ridge": math.tan(math.radians(20.0)), "cap": 0.0}
 LAYERS = (0.25, 0.11, 0.0625, 0.028)
 
@@ -28,16 +28,15 @@ DEFAULTS: CaseSettings = {"cell": 2.0, "time_step": 0.01}
 
 
 def spread(shape: str, time: float) -> float:
-    """Return half the length of the snow after a time, m.
+    """Return half the length a of the snow after a time, m.
 
-    Savage & Hutter (1989) with earth pressure 1: the thickness stays H (1 - r^2/a^2) and the speed,
-    seen from the centre of mass, a' r/a, so that a'' = 2 g cos H/a. The volume gives
-    H = H0 (a0/a)^n, n = 1 for a ridge and 2 for a round cap.
+    Savage & Hutter (1989) with earth pressure 1: the thickness stays H (1 - r^2/a^2), and the speed
+    relative to the centre of mass is a' r/a, so that a'' = 2 g cos H/a. From the volume H = H0
+    (a0/a)^n, with n = 1 for a ridge and 2 for a round cap.
 
     Examples
     --------
-    Round caps have a closed form, a^2 = a0^2 + 2 g cos H0 t^2 (the energy's, as a'' a^3 is
-    constant).
+    Round caps have a closed form, a^2 = a0^2 + 2 g cos H0 t^2, because a'' a^3 is constant.
 
     >>> a = spread("cap", 2.0)
     >>> round(float(a**2 - 100 - 2 * PLANE.normal_gravity * 4), 6)
@@ -72,7 +71,7 @@ def measure(settings: CaseSettings) -> Outcome:
 
 
 def terraces(shape: str) -> list[Area]:
-    """Return the parabola as terraces, each with the mean thickness of its part."""
+    """Return the parabola as terraces, each with the mean thickness of its strip or ring."""
     cosine = math.cos(PLANE.angle)
     edges = np.linspace(0.0, 1.0, TERRACES + 1)
     areas = []
@@ -108,11 +107,11 @@ def _ellipse(radius: float) -> list[tuple[float, float]]:
 
 
 def _half_length(drive: TimedEventDriver, shape: str) -> float:
-    """Return a from the second moment, a^2/5 for a ridge and a^2/6 along an axis of a cap."""
+    """Return the half length a from the second moment: a^2/5 for a ridge, a^2/6 for a cap."""
     x, y = drive.core.positions()[:, :2].T
     masses = drive.core.masses()  # without snow that left the terrain
     if shape == "ridge":
-        masses = masses * (np.abs(y - np.average(y, weights=masses)) < MEASURED)
+        masses = masses * (np.abs(y - np.average(y, weights=masses)) < STRIP_HALF_WIDTH)
     s = x / math.cos(PLANE.angle)
     variance = np.average((s - np.average(s, weights=masses)) ** 2, weights=masses)
     return math.sqrt((5 if shape == "ridge" else 6) * variance)
@@ -125,7 +124,7 @@ def _profile_error(drive: TimedEventDriver, shape: str, exact: float) -> float:
     time = drive.core.time_s
     s = x / math.cos(PLANE.angle) - 0.5 * PLANE.coulomb(FRICTION[shape]) * time**2
     if shape == "ridge":
-        compared, square = np.abs(y) <= MEASURED, (s / exact) ** 2
+        compared, square = np.abs(y) <= STRIP_HALF_WIDTH, (s / exact) ** 2
         highest = THICKNESS * RADIUS / exact
     else:
         compared, square = np.full(x.shape, True), (s**2 + y**2) / exact**2
@@ -136,22 +135,22 @@ def _profile_error(drive: TimedEventDriver, shape: str, exact: float) -> float:
 
 
 def matrix(full: bool) -> list[CaseSettings]:
-    """Return both shapes over the size of particles; if full, also cells and steps."""
+    """Return both shapes with several sizes of particles; if full, also of cells and steps."""
     layers = LAYERS if full else LAYERS[:3]
-    listed: list[CaseSettings] = [
+    settings_list: list[CaseSettings] = [
         {**DEFAULTS, "shape": shape, "layer_thickness": layer}
         for shape in ("ridge", "cap")
         for layer in layers
     ]
     if not full:
-        return listed
+        return settings_list
     fine: CaseSettings = {"cell": 1.0, "time_step": 0.005}
-    listed += [{**settings, **fine} for settings in listed]
-    listed += [
+    settings_list += [{**settings, **fine} for settings in settings_list]
+    settings_list += [
         {**DEFAULTS, "shape": shape, "layer_thickness": LAYERS[2], "time_step": 0.04}
         for shape in ("ridge", "cap")
     ]
-    return listed
+    return settings_list
 
 
 CASE = Case(
@@ -163,12 +162,13 @@ CASE = Case(
         "(1993), Acta Mechanica 100, 37-68; with earth pressure 1"
     ),
     description="""
-    Snow 1 m thick in the middle lies as a parabola, 10 m to either side, on a plane of 30 degrees:
-    as a ridge 28 m wide with a friction angle of 20 degrees, and as a round cap without friction.
-    It slides and spreads, and stays a parabola; an ordinary differential equation gives its half
-    length. After 3 s the half length, from the second moment of the mass, and the profile are
-    compared; for the ridge only in the middle 6 m, which its ends have not reached. The parabola is
-    seeded as ten terraces. There are no bonds and no artificial viscosity.
+    A parabola of snow lies on a plane of 30 degrees. It is 1 m thick in the middle and extends 10 m
+    to either side, either as a ridge 28 m wide with a friction angle of 20 degrees or as a round
+    cap without friction. It slides, spreads, and stays a parabola; an ordinary differential
+    equation gives its half length. After 3 s the profile is compared, and the half length from the
+    second moment of the mass. For the ridge only the middle 6 m are compared, which waves from its
+    ends have not reached. The parabola is seeded as ten terraces. There are no bonds and no
+    artificial viscosity.
     """,
     quantities=(
         Quantity(
@@ -189,9 +189,9 @@ CASE = Case(
     matrix=matrix,
     measure=measure,
     remarks="""
-    Every terrace is seeded separately. The coarsest particles are farther from each other (1.07 m)
-    than a terrace is wide (0.87 m). A terrace then holds one or two rows, which do not form a
-    lattice with those of other terraces, and the half length errs by 4 % (ridge) and 9 % (cap).
-    With particles half as far apart it errs by 0.05 and 1 %.
+    Every terrace is seeded separately. The distance between the coarsest particles (1.07 m) exceeds
+    the width of a terrace (0.87 m). A terrace then holds one or two rows, which do not form a
+    lattice with the rows of other terraces, and the error of the half length is 4 % (ridge) and 9 %
+    (cap). At half the distance between particles it is 0.05 and 1 %.
     """,
 )

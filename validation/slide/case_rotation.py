@@ -1,4 +1,4 @@
-"""A slide whose terrain and release are turned on the map."""
+"""Slide whose terrain and release are turned on the map."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from validation.slide.site import Site, maps_of, node_axes, slide_drive
 
 HALF = 70.0  # m, half the edge of the terrain
 STEEP = math.tan(math.radians(35.0))
-BEND, LEVEL = 0.0, 30.0  # m, where the slope begins to run out and where the ground is level
+BEND, LEVEL = 0.0, 30.0  # m, positions where the run-out begins and the ground becomes level
 CORNERS = ((-52.0, -9.0), (-36.0, -12.0), (-34.0, 3.0), (-38.0, 12.0), (-54.0, 8.0))
 THICKNESS = 1.0  # m
-REST_TIME = 12.0  # s, by when nearly all lies still
+REST_TIME = 12.0  # s, after which nearly all snow is at rest
 CASE_SETTINGS = frozenset({"turned", "shape"})
 
 DEFAULTS: CaseSettings = {
@@ -34,7 +34,7 @@ DEFAULTS: CaseSettings = {
 
 
 def ground(shape: str, x: Floats, y: Floats) -> Floats:
-    """Return the height of a slope that runs out, m: a plane, or a channel along it."""
+    """Return the height (m) of a slope with run-out: a plane, or a plane with a channel."""
     bend = np.clip(x, BEND, LEVEL) - BEND
     fall = STEEP * (np.minimum(x, BEND) + bend - bend**2 / (2 * (LEVEL - BEND)))
     channel = 0.0 if shape == "plane" else y**2 / 60.0
@@ -42,7 +42,7 @@ def ground(shape: str, x: Floats, y: Floats) -> Floats:
 
 
 def turn(x: Floats, y: Floats, degrees: float) -> tuple[Floats, Floats]:
-    """Return points turned counterclockwise about the origin.
+    """Return the coordinates of points after a counterclockwise turn about the origin.
 
     Examples
     --------
@@ -54,7 +54,7 @@ def turn(x: Floats, y: Floats, degrees: float) -> tuple[Floats, Floats]:
 
 
 def peaks(settings: CaseSettings, degrees: float) -> tuple[TimedEventDriver, SlideMaps]:
-    """Return a slide at rest, its terrain and release turned, and its maps."""
+    """Return a slide at its end, with turned terrain and release, and its maps."""
     shape = str(settings["shape"])
     corners = [turn(np.array(x), np.array(y), degrees) for x, y in CORNERS]
     site = Site(
@@ -90,12 +90,12 @@ def measure(settings: CaseSettings) -> Outcome:
 
 
 def _read_back(maps: SlideMaps, values: Floats, degrees: float) -> Floats:
-    """Return a map of the turned slide at the nodes of the one that was not."""
+    """Return a map of the turned slide at the nodes of the unturned one."""
     return _turned(maps, values, -degrees)
 
 
 def _turned(maps: SlideMaps, values: Floats, degrees: float) -> Floats:
-    """Return a map turned counterclockwise, bilinear between nodes; 0 beyond its edge."""
+    """Return a map after a counterclockwise turn, bilinear between nodes; 0 beyond its edge."""
     x, y = turn(*np.meshgrid(*node_axes(maps)), -degrees)
     inside = np.maximum(np.abs(x), np.abs(y)) < HALF
     heights = np.zeros_like(values)
@@ -106,16 +106,18 @@ def _turned(maps: SlideMaps, values: Floats, degrees: float) -> Floats:
 
 
 def matrix(full: bool) -> list[CaseSettings]:
-    """Return ground and angles; if full, also cells and sizes of particles."""
+    """Return both grounds with angles; if full, also finer cells and particles."""
     angles = (10.0, 30.0, 45.0, 77.0) if full else (30.0,)
-    listed: list[CaseSettings] = [
+    settings_list: list[CaseSettings] = [
         {**DEFAULTS, "shape": shape, "turned": angle}
         for shape in ("plane", "channel")
         for angle in angles
     ]
     if full:
-        listed += [{**settings, "cell": 4.0, "layer_thickness": 0.08} for settings in listed]
-    return listed
+        settings_list += [
+            {**settings, "cell": 4.0, "layer_thickness": 0.08} for settings in settings_list
+        ]
+    return settings_list
 
 
 CASE = Case(
@@ -125,9 +127,9 @@ CASE = Case(
     description="""
     A slab 1 m thick breaks loose on a slope of 35 degrees that runs out onto level ground, a plane
     or a channel, with Voellmy's friction and artificial viscosity. Terrain and release are turned
-    by an angle. The peak fields, turned back, are compared with those of the slide that was not
-    turned, over the whole map: the norms L1 and L2 of the difference, relative to those of the
-    interpolation error, which is the loss of a map that is turned and turned back bilinearly.
+    by an angle. The peak fields are turned back and compared with those of the unturned slide over
+    the whole map. The norms L1 and L2 of the difference are relative to those of the interpolation
+    error, that is the change of a map by bilinear turns there and back.
     """,
     quantities=tuple(
         Quantity(
@@ -142,9 +144,9 @@ CASE = Case(
     matrix=matrix,
     measure=measure,
     remarks="""
-    The speed at a node is a mean over the nodes around, with weights that have no direction on the
-    map. When only the nearest particles counted, the peak speed changed by up to 1.3 (L1) and 1.7
-    (L2) times the error of interpolation. The changes were at the rim, where only one particle
-    comes near a node, or none.
+    The speed at a node is a mean over the nodes around it, with weights that do not depend on
+    directions on the map. When only the nearest particles counted, the peak speed changed by up to
+    1.3 (L1) and 1.7 (L2) times the interpolation error. The changes were at the rim, where one
+    particle or none comes near a node.
     """,
 )

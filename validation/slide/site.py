@@ -27,12 +27,12 @@ Height = Callable[[Floats, Floats], Floats]
 
 @dataclass(frozen=True)
 class Plane:
-    """A plane that falls toward the east.
+    """Plane that falls toward the east.
 
     Parameters
     ----------
     tilt
-        Degrees.
+        Tilt, degrees.
 
     Examples
     --------
@@ -52,18 +52,18 @@ class Plane:
 
     @property
     def angle(self) -> float:
-        """The tilt in radians."""
+        """Tilt in radians."""
         return math.radians(self.tilt)
 
     @property
     def normal_gravity(self) -> float:
-        """The part of gravity normal to the plane, m/s2."""
+        """Component of gravity normal to the plane, m/s2."""
         return GRAVITY * math.cos(self.angle)
 
 
 @dataclass(frozen=True)
 class Site:
-    """A rectangle of ground, and the snow that lies ready on it.
+    """Rectangle of ground, and the snow that is released on it.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ class Site:
     west, south, east, north
         The rectangle on the map, m.
     release
-        The areas of snow.
+        Areas of snow.
     """
 
     height: Height
@@ -84,7 +84,7 @@ class Site:
 
 
 def rectangle(west: float, south: float, east: float, north: float, thickness: float) -> Area:
-    """Return a rectangular area of snow, m."""
+    """Return a rectangular area of snow; lengths in m."""
     corners = [(west, south), (east, south), (east, north), (west, north)]
     return Area(outline=corners, thickness=thickness)
 
@@ -92,15 +92,15 @@ def rectangle(west: float, south: float, east: float, north: float, thickness: f
 def slide_drive(
     site: Site, settings: CaseSettings, case_settings: Collection[str] = ()
 ) -> TimedEventDriver:
-    """Return a slide that is ready to go.
+    """Return a slide before its first step.
 
     Parameters
     ----------
     site
         Ground and snow.
     settings
-        Parameters of `SlideSettings`. Unless they say otherwise there are no bonds and no
-        artificial viscosity, friction is Coulomb's, and one thread computes.
+        Parameters of `SlideSettings`. By default there are no bonds and no artificial viscosity,
+        friction is Coulomb's, and the slide uses one thread.
     case_settings
         Names of settings that belong to the case, not to the method.
     """
@@ -120,7 +120,7 @@ def slide_drive(
         scene = Scene(
             method="slide",
             dimension=3,
-            # Grounds are made for the cases; some have cliffs.
+            # Some grounds of the cases have cliffs.
             terrain=Terrain(file=file, release=site.release, max_slope=90.0),
             numerics=bare,
             events=Events(max_time=400.0),
@@ -129,7 +129,7 @@ def slide_drive(
 
 
 def maps_of(drive: TimedEventDriver) -> SlideMaps:
-    """Return a slide's maps as they are now; the speed is the solver's, also beyond the snow."""
+    """Return a slide's present maps; the speed is the solver's, which extends beyond the snow."""
     speed = drive.core.slide_maps()["peak_speed"]
     return replace(slide_maps(drive.core), peak_speed=speed)
 
@@ -142,7 +142,7 @@ def node_axes(maps: SlideMaps) -> tuple[Floats, Floats]:
 
 
 def strip_mean(maps: SlideMaps, values: Floats, half_width: float) -> tuple[Floats, Floats]:
-    """Return x and the mean of a map's values over the rows within a half width of y = 0."""
+    """Return x, and a map's mean values over the rows within half a width of y = 0."""
     x, y = node_axes(maps)
     near = np.abs(y) <= half_width + 1e-9
     return x, np.asarray(values[near].mean(axis=0))

@@ -1,4 +1,4 @@
-"""Balances of momentum and energy, computed outside the solver during a run."""
+"""Balances of momentum and energy of a run, computed outside the solver."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import numpy as np
 
 from snowshed import _core
 
-#: Heights have rounding errors: errors are not taken relative to energies below the work of lifting
-#: all snow by this share of a cell.
+#: Share of a cell. Heights have rounding errors, so errors of energy are relative to at least the
+#: work of lifting all snow by this distance.
 MIN_DROP = 1e-2
 
 _SPENT = (
@@ -25,11 +25,11 @@ _SPENT = (
 
 
 class Conservation:
-    """The balances of momentum and energy of a simulation.
+    """Balances of momentum and energy of a simulation.
 
-    Energy enters with thrown snow and as work of gravity. Kinetic and elastic energy can never
-    exceed the input; together with the spent energy they must equal it. Errors are relative to the
-    whole input of the run.
+    The input of energy is that of thrown snow and the work of gravity. Kinetic and elastic energy
+    can never exceed the input, and together with the spent energy they must equal it. Errors are
+    relative to the whole input of the run.
     """
 
     def __init__(self, simulation: _core.Simulation, gravity: float, dx: float) -> None:
@@ -39,7 +39,7 @@ class Conservation:
         self._motion_input = 0.0  # J, motion of thrown snow, less the loss by reseeding
         self._thrown_energy = 0.0  # J, the same without the loss by reseeding
         self._initial_potential = 0.0  # J, gravitational energy of all snow where it was laid
-        self._max_gravity_work = 0.0  # J, largest work of gravity either way
+        self._max_gravity_work = 0.0  # J, largest work of gravity in either direction
         self._residual = (0.0, 0.0)  # J, lowest and highest
         self._excess = (-math.inf, -math.inf)  # J, highest and last
         self._mass = 0.0  # kg
@@ -47,7 +47,7 @@ class Conservation:
         self._momentum_sum = 0.0  # kg m/s, sum of their magnitudes
 
     def begin(self, before: dict[str, float]) -> None:
-        """Take in the snow that an event has brought; `before` is the energy before it."""
+        """Add the snow that an event has brought; `before` is the energy before the event."""
         after = self.simulation.energy()
         self._motion_input += _motion_energy(after) - _motion_energy(before)
         self._thrown_energy += max(after["kinetic_j"] - before["kinetic_j"], 0.0)
@@ -70,7 +70,7 @@ class Conservation:
         self._residual = (min(self._residual[0], residual), max(self._residual[1], residual))
 
     def energy_errors(self) -> dict[str, float]:
-        """Return the errors of the balance, relative to the input.
+        """Return the errors of the energy balance, relative to the input.
 
         Returns
         -------

@@ -1,4 +1,4 @@
-"""The sampled points of the parameter space: one parameter at a time, pairwise, random."""
+"""Samples of the parameter space: single parameters, pairs, and random combinations."""
 
 from __future__ import annotations
 
@@ -10,24 +10,24 @@ import numpy as np
 from snowshed.base.extras import require
 from validation.stress.space import PARAMETERS, Point, Value, reference
 
-#: Random combinations of the full suite.
+#: Number of random combinations in the full suite.
 FULL_RANDOM = 3000
 
 
 @dataclass(frozen=True)
 class Trial:
-    """One run to make.
+    """One run of the suite.
 
     Parameters
     ----------
     design:
         ``"reference"``, ``"single"``, ``"pairwise"`` or ``"random"``.
     varied:
-        Text for the parameter that differs from the reference; empty unless it is a single one.
+        Text for the parameter that differs from the reference; empty unless exactly one differs.
     point:
-        The values.
+        Values of the parameters.
     steps:
-        Number of steps of the initial length that each event may take.
+        Planned number of steps of each event, in steps of the initial length.
     """
 
     design: str
@@ -52,10 +52,10 @@ def trials(full: bool, seed: int = 1) -> list[Trial]:
 
 
 def _singles(steps: int) -> Iterator[Trial]:
-    """Yield the reference scene, then each parameter at its extremes about it.
+    """Yield the reference scene, then scenes with one parameter at an extreme.
 
-    Parameters that the reference scene does not have (a thrown block's) are varied about the scene
-    that has them, so that each extreme has an effect.
+    Parameters without effect in the reference scene (those of a thrown block) are varied in a scene
+    in which they have one.
     """
     base = reference()
     yield Trial("reference", "", base, steps)

@@ -1,4 +1,4 @@
-"""The verdict on a run: it passes if it ends in a sound state or stops with a clear error."""
+"""Verdict on a run, which passes if it ends in a sound state or stops with a clear error."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-#: The outcomes of a run, and their meanings.
+#: Outcomes of a run, and their meanings.
 OUTCOMES = {
     "rest": "the snow came to rest",
     "time_limit": "ran soundly to the time limit",
@@ -18,22 +18,22 @@ OUTCOMES = {
     "failed": "anything else",
 }
 
-#: Largest change of the mass by reseeding; without it mass is exact, bit by bit.
+#: Largest change of the mass by reseeding; without reseeding mass is exact, bit by bit.
 MASS_BOUND = 1e-9
 
 #: Largest allowed energy residual relative to the added energy. The balance is of first order in
 #: the time step, and soft snow takes steps that are not small compared with its fall or impact.
 ENERGY_BOUND = 0.2
 
-#: Largest excess of kinetic and elastic energy over the input that is allowed for a step or two.
-#: Bodies that collide strain before they slow down: symplectic Euler oscillates about a slightly
-#: different energy, by up to the energy of the colliding particles.
+#: Largest allowed excess of kinetic and elastic energy over the input for one or two steps.
+#: Colliding bodies strain before they slow down, because symplectic Euler oscillates about a
+#: slightly different energy, by up to the energy of the colliding particles.
 SWING_BOUND = 0.1
-#: The same at the end of a run.
+#: Largest allowed excess at the end of a run.
 GAIN_BOUND = 0.01
 
-#: A clear error names a place in the scene, a parameter, a particle, or the treatment
-#: between events.
+#: Words of clear errors: a place in the scene, a parameter, a particle, or the treatment between
+#: events.
 _NAMES = re.compile(
     r"^/\w+|\b(snow|numerics|events|seeding|panel|slab)\.\w+|particle \d+|reseed", re.ASCII
 )
@@ -52,7 +52,7 @@ def momentum_bound(precision: str, steps: int) -> float:
 
 
 def has_cause(message: str) -> bool:
-    """Return whether an error names its parameter or particle.
+    """Return whether an error names its cause, such as a parameter or a particle.
 
     Examples
     --------
@@ -92,6 +92,6 @@ def _state_fault(record: Mapping[str, Any]) -> str:
         "final_excess": GAIN_BOUND,
     }
     for name, bound in bounds.items():
-        if record[name] > bound:  # not for NaN: not measured
+        if record[name] > bound:  # NaN (not measured) passes
             return f"{name} is {record[name]:.3g}, more than {bound:.3g}"
     return ""

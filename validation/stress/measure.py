@@ -1,4 +1,4 @@
-"""The suite: every trial of the design computed and judged, in one table."""
+"""The suite: a table of all trials of the design, computed and judged."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ def run(full: bool, seed: int = 1, progress: Optional[Reporter] = None) -> pd.Da
     Parameters
     ----------
     full:
-        Whether to make the full suite (thousands of runs, about ten minutes on one core) or the
-        quick one (seconds).
+        Whether to make the full suite (thousands of runs, about ten minutes on one core); otherwise
+        the quick suite (seconds).
     seed:
         Seed of the random combinations.
     progress:
@@ -29,9 +29,9 @@ def run(full: bool, seed: int = 1, progress: Optional[Reporter] = None) -> pd.Da
     Returns
     -------
     pandas.DataFrame
-        One row per run: ``design``, ``varied``, a column for each parameter of
-        `space.PARAMETERS`, ``outcome`` (one of `judge.OUTCOMES`), ``reason`` where it failed, and
-        the measures of `solve.solve`.
+        One row per run: ``design``, ``varied``, a column for each parameter of `space.PARAMETERS`,
+        ``outcome`` (one of `judge.OUTCOMES`), ``reason`` (of a failure), and the measures of
+        `solve.solve`.
 
     Raises
     ------
@@ -42,7 +42,7 @@ def run(full: bool, seed: int = 1, progress: Optional[Reporter] = None) -> pd.Da
 
 
 def run_trials(plan: Sequence[Trial], progress: Optional[Reporter] = None) -> pd.DataFrame:
-    """Make the given runs; the table is that of `run`."""
+    """Make the given runs, and return a table like that of `run`."""
     rows: list[dict[str, Any]] = []
     failed = 0
     with stress_pool() as pool:

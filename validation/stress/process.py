@@ -1,4 +1,4 @@
-"""Computes stress runs in a process of their own: a crash or a hang is recorded."""
+"""Stress runs in separate processes, so that crashes and hangs are recorded."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class ProcessRun(NamedTuple):
 
 
 def stress_pool(limit_s: float = LIMIT_S) -> Pool[ProcessRun, Record]:
-    """Return the pool that computes runs, one after another, each in no more than `limit_s`.
+    """Return a pool that computes runs one after another, each within a time limit `limit_s`.
 
     Examples
     --------
@@ -34,9 +34,9 @@ def stress_pool(limit_s: float = LIMIT_S) -> Pool[ProcessRun, Record]:
 
 
 def record(pool: Pool[ProcessRun, Record], run: ProcessRun) -> Record:
-    """Return the record of a run, with ``ended`` "crashed", "hung" or "raised" if applicable.
+    """Return the record of a run; ``ended`` is "crashed", "hung" or "raised" after such an end.
 
-    "raised" is an exception that is neither `InputError` nor `SimulationError`.
+    "raised" stands for an exception that is neither `InputError` nor `SimulationError`.
     """
     pool.submit(run)
     while not (results := pool.collect(LIMIT_S)):

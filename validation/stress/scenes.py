@@ -1,4 +1,4 @@
-"""The scene of a point: a few cells of snow that slide, fall, are thrown, or collide."""
+"""Scene of a point: a few cells of snow that slide, fall, are thrown, or collide."""
 
 from __future__ import annotations
 
@@ -24,22 +24,22 @@ from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 from validation.stress.space import Point
 
-#: Distance of snow from the target of its throw, in cells: bodies act on each other within about a
-#: cell, so that contact comes soon but no body starts inside another.
+#: Distance of snow from the target of its throw, in cells. Bodies act on each other within about a
+#: cell, so contact comes soon, but no body starts inside another.
 GAP = 2.0
 
-#: Time limit of an event, s: snow of these sizes has fallen and settled by then.
+#: Time limit of an event, s; within this time, snow of these sizes falls and settles.
 MAX_DURATION = 2.0
 
-#: Snow that nothing stops may fly this many of its thicknesses: scattered far, every grain costs a
-#: neighbourhood of grid blocks of its own.
+#: Largest flight of snow without ground, in its thicknesses. Every grain that is scattered far
+#: needs grid blocks of its own.
 FLIGHT = 50.0
 
 Plane = NDArray[np.float64]
 
 
 def build(point: Point, max_time: float = MAX_DURATION) -> Scene:
-    """Return the scene of a point, each event `max_time` seconds long at most."""
+    """Return the scene of a point with events of at most `max_time` seconds."""
     scene = _SceneOf(point)
     return scene.complete(max_time)
 
@@ -52,7 +52,7 @@ def max_event_duration(point: Point) -> float:
 
 
 class _SceneOf:
-    """Builds the scene of a point; lengths in metres."""
+    """Builder of a point's scene; lengths in metres."""
 
     def __init__(self, point: Point) -> None:
         self.point = point
@@ -115,7 +115,7 @@ class _SceneOf:
         scene.bodies = [self._thrown_body(self._block(self._above_ground()), self._aslant())]
 
     def _coincident(self, scene: Scene) -> None:
-        """Throw two equal bodies; without random numbers, their particles coincide."""
+        """Throw two equal bodies with a regular pattern, so that their particles coincide."""
         self._throw(scene)
         assert scene.seeding is not None and scene.bodies is not None
         scene.seeding.pattern = "regular"
@@ -148,7 +148,7 @@ class _SceneOf:
         ]
 
     def _single(self, scene: Scene) -> None:
-        """Lay a block just large enough to be given one particle."""
+        """Throw a block that is just large enough for one particle."""
         scene.ground = self._ground()
         per_voxel = int(self.point["particles_per_voxel"])
         edge = 0.999 * self.dx * per_voxel ** (-1.0 / self.dimension)
@@ -226,5 +226,5 @@ class _SceneOf:
         return (x, z) if self.dimension == 2 else (x, y, z)
 
     def _text(self, name: str) -> Any:
-        """Return the value of a parameter that is a text."""
+        """Return the value of a parameter whose values are texts."""
         return self.point[name]

@@ -1,4 +1,4 @@
-"""One run: builds a point's scene, runs it to its end, and measures it."""
+"""One run: build a point's scene, run it to its end, and measure it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from validation.stress.space import Point
 #: Steps between two samples of the balances.
 STEPS_PER_SAMPLE = 16
 
-#: An event may take this many times the planned steps, because steps may shorten.
+#: Largest number of steps of an event over the planned number, because steps may become shorter.
 PATIENCE = 4
 
 Record = dict[str, Any]
@@ -32,14 +32,14 @@ def solve(point: Point, steps: int) -> Record:
     point:
         A value for every parameter.
     steps:
-        Steps of the initial length that each event may take.
+        Planned number of steps of each event, in steps of the initial length.
 
     Returns
     -------
     dict
-        ``ended``: how the last event ended (``rest``, ``time_limit``, ``step_limit``), or
-        ``refused`` or ``stopped`` where there was an `InputError` or a `SimulationError`, whose
-        text is the ``message``; and the measures of `tables.COLUMNS`.
+        ``ended``: the end of the last event (``rest``, ``time_limit``, ``step_limit``), or
+        ``refused`` after an `InputError`, or ``stopped`` after a `SimulationError`; ``message``:
+        the text of the error; and the measures of `tables.COLUMNS`.
 
     Examples
     --------
@@ -83,10 +83,10 @@ class _Run:
         self.duration = 0.0
         self.mass_error = 0.0
         self.momentum_error = 0.0
-        self.begun = b""  # the checkpoint of the present event's start
+        self.begun = b""  # checkpoint at the start of the present event
 
     def all_events(self) -> str:
-        """Run the events; return how the last one ended."""
+        """Run the events, and return the end of the last one."""
         ended = ""
         for _ in range(self.count):
             ended = self._event()
@@ -145,10 +145,9 @@ class _Run:
         }
 
     def _leaves_a_checkpoint(self) -> bool:
-        """Return whether a sound checkpoint remains: the present one, or else the one before.
+        """Return whether a sound checkpoint remains: the present one, or else the previous one.
 
-        A simulation whose particles are no longer sound refuses to be saved, so the checkpoint
-        from before stays.
+        A simulation with unsound particles cannot be saved. The previous checkpoint then remains.
         """
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "checkpoint.bin"
@@ -181,7 +180,7 @@ def _is_finite(simulation: _core.Simulation) -> bool:
 
 
 def _is_sound(checkpoint: Path, simulation: Optional[_core.Simulation] = None) -> bool:
-    """Tell whether a checkpoint loads and holds finite snow, that of the simulation if given."""
+    """Return whether a checkpoint loads with finite snow, and equals the simulation if given."""
     try:
         again = _core.Simulation.load(str(checkpoint))
     except (OSError, _core.InputError):
@@ -192,7 +191,7 @@ def _is_sound(checkpoint: Path, simulation: Optional[_core.Simulation] = None) -
 
 
 def _saved(simulation: _core.Simulation) -> bytes:
-    """Return a checkpoint written now."""
+    """Return a checkpoint of the present state."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "checkpoint.bin"
         simulation.save(str(path))

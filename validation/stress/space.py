@@ -1,4 +1,4 @@
-"""The space of the stress suite: each parameter with its range, its extremes and its reference."""
+"""Parameters of the stress suite, with their ranges, extremes and reference values."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 
 Value = Union[str, int, float]
 
-#: One value for every parameter of `PARAMETERS`, by name.
+#: Values of all parameters of `PARAMETERS` by name.
 Point = Mapping[str, Value]
 
 
@@ -24,11 +24,11 @@ class Range:
     name, title, unit:
         Key, heading and unit.
     low, high:
-        The extremes, tried singly and pairwise.
+        Extremes, which are tried singly and pairwise.
     reference:
-        The value in the reference scene.
+        Value in the reference scene.
     log:
-        Whether random values are log-uniform, for ranges that span decades.
+        Whether random values are log-uniform, as for ranges of several decades.
     is_integer:
         Whether values are integers.
     """
@@ -44,7 +44,7 @@ class Range:
 
     @property
     def levels(self) -> tuple[Value, ...]:
-        """Reference and extremes, the reference first."""
+        """Reference and extremes, with the reference first."""
         others = [v for v in (self.low, self.high) if v != self.reference]
         return tuple(self._rounded(v) for v in (self.reference, *others))
 
@@ -61,7 +61,7 @@ class Range:
 
 @dataclass(frozen=True)
 class Choice:
-    """A parameter with a few values, the reference first; all of them are tried."""
+    """A parameter with a few values, which are all tried; the first is the reference."""
 
     name: str
     title: str
@@ -69,7 +69,7 @@ class Choice:
 
     @property
     def reference(self) -> Value:
-        """The value in the reference scene."""
+        """Value in the reference scene."""
         return self.levels[0]
 
     def draw(self, random: np.random.Generator) -> Value:
@@ -79,7 +79,7 @@ class Choice:
 
 Parameter = Union[Range, Choice]
 
-#: Kinds of simulated snow; `scenes` builds each.
+#: Kinds of scenes, which `scenes` builds.
 KINDS = {
     "slide": "slab slides off the panel onto the ground, a chunk of snow thrown onto it",
     "throw": "block of snow thrown onto the ground",
@@ -125,7 +125,7 @@ PARAMETERS: tuple[Parameter, ...] = (
 
 
 def reference() -> dict[str, Value]:
-    """Return the point about which parameters are varied singly.
+    """Return the point from which single parameters are varied.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Tables of the report: what was tried, how it ended, errors of the balances, and costs."""
+"""Tables of the report: parameters, outcomes, errors of the balances, and costs."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from validation.stress.judge import (
 )
 from validation.stress.space import KINDS, PARAMETERS, Parameter, Range
 
-#: Failures printed in full.
+#: Largest number of failures that are printed in full.
 MAX_FAILURES = 50
 
 
 @dataclass(frozen=True)
 class SummaryTable:
-    """A table for the report.
+    """Table for the report.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ class SummaryTable:
     remark:
         A paragraph on the columns and their meaning.
     frame:
-        The table; its columns carry their units.
+        The table, with units in the names of its columns.
     """
 
     name: str
@@ -42,7 +42,7 @@ class SummaryTable:
 
 
 def summarise(frame: pd.DataFrame) -> list[SummaryTable]:
-    """Return the tables of the report from what `suite.run` returns."""
+    """Return the tables of the report from the table of `measure.run`."""
     return [
         _parameters(frame),
         _outcomes(frame),
@@ -95,7 +95,7 @@ def _outcomes(frame: pd.DataFrame) -> SummaryTable:
 
 
 def _errors(frame: pd.DataFrame) -> SummaryTable:
-    """Count messages; those that differ only in their numbers share a row."""
+    """Return a table of messages and their counts; messages may differ in numbers."""
     wrong = frame[frame.outcome.isin(["refused", "stopped"])]
     kinds = wrong.message.str.replace(r"-?\d+(\.\d+)?(e[+-]?\d+)?", "#", regex=True)
     grouped = wrong.groupby([wrong.outcome, kinds.rename("kind")])

@@ -287,8 +287,8 @@ SNOWSHED_INLINE void store_first(Scalar<V>* p, const V& v, int n) {
   for (int i = 0; i < n; ++i) p[i] = v[i];
 }
 
-/// Read the first n values at p; the lanes beyond repeat the first one, so that they hold
-/// harmless numbers without touching memory behind the array.
+/// Reads the first n values at p; the lanes beyond repeat the first one, so that they hold harmless
+/// numbers without touching memory behind the array.
 template <class V>
 SNOWSHED_INLINE V load_pack(const Scalar<V>* p, int n) {
   if (n < lane_count<V>) return load_first(p, n, broadcast<V>(p[0]));

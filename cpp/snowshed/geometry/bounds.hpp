@@ -14,11 +14,11 @@ inline constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Returns the bounds of all space.
 inline Bounds unbounded() { return {Vec3::Constant(-infinity), Vec3::Constant(infinity)}; }
 
-/// Returns the bounds of the empty set, the neutral element of `unite`.
-inline Bounds no_bounds() { return {Vec3::Constant(infinity), Vec3::Constant(-infinity)}; }
+/// Returns the bounds of the empty set, the neutral element of `united_bounds`.
+inline Bounds empty_bounds() { return {Vec3::Constant(infinity), Vec3::Constant(-infinity)}; }
 
 /// Returns the smallest bounds that contain both.
-inline Bounds unite(const Bounds& a, const Bounds& b) {
+inline Bounds united_bounds(const Bounds& a, const Bounds& b) {
   return {a.min.cwiseMin(b.min), a.max.cwiseMax(b.max)};
 }
 
@@ -32,7 +32,7 @@ inline bool is_empty(const Bounds& bounds) {
 }
 
 /// Returns bounds of the points rotation * x + translation for x within `bounds`.
-inline Bounds moved(const Bounds& bounds, const Mat3& rotation, const Vec3& translation) {
+inline Bounds transformed(const Bounds& bounds, const Mat3& rotation, const Vec3& translation) {
   if (is_empty(bounds)) return bounds;
   Bounds result{translation, translation};
   for (int row = 0; row < 3; ++row)

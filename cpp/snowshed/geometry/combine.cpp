@@ -22,8 +22,8 @@ std::pair<const LevelSet*, double> nearest(const std::vector<Shape>& shapes, con
 }
 
 Bounds non_planar_bounds_of(const std::vector<Shape>& shapes) {
-  Bounds result = no_bounds();
-  for (const Shape& shape : shapes) result = unite(result, shape->non_planar_bounds());
+  Bounds result = empty_bounds();
+  for (const Shape& shape : shapes) result = united_bounds(result, shape->non_planar_bounds());
   return result;
 }
 
@@ -34,8 +34,8 @@ class Union final : public LevelSet {
   Vec3 normal(const Vec3& x) const override { return nearest(shapes_, x).first->normal(x); }
 
   Bounds bounds() const override {
-    Bounds result = no_bounds();
-    for (const Shape& shape : shapes_) result = snowshed::unite(result, shape->bounds());
+    Bounds result = empty_bounds();
+    for (const Shape& shape : shapes_) result = united_bounds(result, shape->bounds());
     return result;
   }
 
@@ -79,7 +79,7 @@ class Difference final : public LevelSet {
   double inradius() const override { return first_->inradius(); }
 
   Bounds non_planar_bounds() const override {
-    const Bounds all = unite(first_->non_planar_bounds(), non_planar_bounds_of(others_));
+    const Bounds all = united_bounds(first_->non_planar_bounds(), non_planar_bounds_of(others_));
     const Bounds within = first_->bounds();
     return {all.min.cwiseMax(within.min), all.max.cwiseMin(within.max)};
   }
@@ -96,9 +96,9 @@ class Transformed final : public LevelSet {
 
   double distance(const Vec3& x) const override { return shape_->distance(local(x)); }
   Vec3 normal(const Vec3& x) const override { return rotation_ * shape_->normal(local(x)); }
-  Bounds bounds() const override { return moved(shape_->bounds(), rotation_, translation_); }
+  Bounds bounds() const override { return transformed(shape_->bounds(), rotation_, translation_); }
   Bounds non_planar_bounds() const override {
-    return moved(shape_->non_planar_bounds(), rotation_, translation_);
+    return transformed(shape_->non_planar_bounds(), rotation_, translation_);
   }
   double inradius() const override { return shape_->inradius(); }
   double half_thickness(const Vec3& x) const override { return shape_->half_thickness(local(x)); }

@@ -71,14 +71,14 @@ class Cutter {
 
 /// Unites the ends of sides that are too short to have a direction.
 void drop_short_sides(Section& section, double min_length) {
-  std::vector<std::uint32_t> same(section.points.size());
-  std::iota(same.begin(), same.end(), 0u);
+  std::vector<std::uint32_t> parent(section.points.size());
+  std::iota(parent.begin(), parent.end(), 0u);
   const auto root = [&](std::uint32_t i) {
-    while (same[i] != i) i = same[i] = same[same[i]];
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
     return i;
   };
   for (const auto& [a, b] : section.sides)
-    if ((section.points[a] - section.points[b]).norm() <= min_length) same[root(a)] = root(b);
+    if ((section.points[a] - section.points[b]).norm() <= min_length) parent[root(a)] = root(b);
   std::vector<std::array<std::uint32_t, 2>> sides;
   for (const auto& [a, b] : section.sides)
     if (root(a) != root(b)) sides.push_back({root(a), root(b)});
@@ -115,11 +115,11 @@ double total_area(const std::vector<Section>& sections) {
 
 std::vector<TriangleMesh> sections_at_y0(const std::vector<TriangleMesh>& meshes,
                                          const std::string& where) {
-  Bounds bounds = no_bounds();
+  Bounds bounds = empty_bounds();
   double nearest = infinity;  // distance from the vertices to the plane
   for (const TriangleMesh& mesh : meshes)
     for (const Vec3& v : mesh.vertices) {
-      bounds = unite(bounds, {v, v});
+      bounds = united_bounds(bounds, {v, v});
       nearest = std::min(nearest, std::abs(v.y()));
     }
   const double size = (bounds.max - bounds.min).norm(), plane_offset = 1e-6 * size;

@@ -18,8 +18,8 @@ namespace {
 constexpr std::size_t max_shells = 10'000;
 
 Bounds bounds_of(const TriangleMesh& mesh) {
-  Bounds bounds = no_bounds();
-  for (const Vec3& v : mesh.vertices) bounds = unite(bounds, {v, v});
+  Bounds bounds = empty_bounds();
+  for (const Vec3& v : mesh.vertices) bounds = united_bounds(bounds, {v, v});
   return bounds;
 }
 

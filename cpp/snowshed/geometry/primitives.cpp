@@ -27,7 +27,7 @@ class Plane final : public Convex {
   double distance(const Vec3& x) const override { return (x - point_).dot(normal_); }
   Vec3 normal(const Vec3&) const override { return normal_; }
   Bounds bounds() const override { return unbounded(); }
-  Bounds non_planar_bounds() const override { return no_bounds(); }
+  Bounds non_planar_bounds() const override { return empty_bounds(); }
   double inradius() const override { return infinity; }
 
  private:
@@ -55,7 +55,9 @@ class Box : public Convex {
     return box_.axes * outward.normalized();
   }
 
-  Bounds bounds() const override { return moved({-box_.half, box_.half}, box_.axes, box_.center); }
+  Bounds bounds() const override {
+    return transformed({-box_.half, box_.half}, box_.axes, box_.center);
+  }
   double inradius() const override { return box_.half.minCoeff(); }
   std::optional<OrientedBox> oriented_box() const override { return box_; }
 

@@ -99,9 +99,9 @@ class SampledGrid final : public LevelSet {
   /// Computes the bounds. A cell contains a part of the solid only if one of its corners is
   /// negative.
   void find_bounds() {
-    bounds_ = no_bounds();
+    bounds_ = empty_bounds();
     for_each_inside([&](const Vec3& at, double) {
-      bounds_ = unite(bounds_, {samples_.origin + at, samples_.origin + at});
+      bounds_ = united_bounds(bounds_, {samples_.origin + at, samples_.origin + at});
     });
     bounds_ = expanded(bounds_, samples_.spacing);
     bounds_.min = bounds_.min.cwiseMax(samples_.origin);

@@ -50,7 +50,7 @@ class Thickened final : public LevelSet {
   }
 
   Bounds bounds() const override {
-    return snowshed::unite(shape_->bounds(), expanded(middles_.bounds(), half_));
+    return united_bounds(shape_->bounds(), expanded(middles_.bounds(), half_));
   }
   Bounds non_planar_bounds() const override { return expanded(shape_->non_planar_bounds(), half_); }
   double inradius() const override { return std::max(shape_->inradius(), half_); }

@@ -204,9 +204,9 @@ class ThinPartSearch {
 
   std::pair<Vec3, Vec3> tangents(const Vec3& n) const {
     if (dimension_ == 2) return {Vec3::UnitY().cross(n), Vec3::UnitY()};
-    int least;
-    n.cwiseAbs().minCoeff(&least);
-    const Vec3 along = (Vec3::Unit(least) - n[least] * n).normalized();
+    int min_axis;
+    n.cwiseAbs().minCoeff(&min_axis);
+    const Vec3 along = (Vec3::Unit(min_axis) - n[min_axis] * n).normalized();
     return {along, n.cross(along)};
   }
 

@@ -99,11 +99,11 @@ class TriangleHierarchy {
   /// Builds the subtree of the triangles order_[begin, end) and returns its root.
   std::uint32_t build(std::uint32_t begin, std::uint32_t end) {
     const auto index = static_cast<std::uint32_t>(nodes_.size());
-    Bounds bounds = no_bounds();
+    Bounds bounds = empty_bounds();
     for (std::uint32_t n = begin; n < end; ++n)
       for (int i = 0; i < 3; ++i) {
         const Vec3 x = corner(order_[n], i);
-        bounds = unite(bounds, {x, x});
+        bounds = united_bounds(bounds, {x, x});
       }
     nodes_.push_back({bounds, begin, end, 0});
     if (end - begin <= leaf_size) return index;

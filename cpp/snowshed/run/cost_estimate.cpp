@@ -31,13 +31,14 @@ double max_overlap(const std::vector<ObstacleSpec>& obstacles) {
     else
       ++everywhere;
   }
-  std::size_t most = 0;
+  std::size_t max_overlaps = 0;
   const std::size_t stride = std::max<std::size_t>(1, boxes.size() / sampled_boxes);
   for (std::size_t i = 0; i < boxes.size(); i += stride)
-    most = std::max(most, std::size_t(std::count_if(boxes.begin(), boxes.end(), [&](const auto& b) {
-                      return b.contains(boxes[i].center());
-                    })));
-  return everywhere + double(most);
+    max_overlaps = std::max(
+        max_overlaps, std::size_t(std::count_if(boxes.begin(), boxes.end(), [&](const auto& b) {
+          return b.contains(boxes[i].center());
+        })));
+  return everywhere + double(max_overlaps);
 }
 
 /// The height of the snow of the first event, from its lowest point or z = 0 if that is lower, m.

@@ -42,9 +42,9 @@ EventSequence::EventSequence(std::unique_ptr<Simulation> sim, ResultsFolder fold
     steps_before_ += record.steps;
     wall_before_ += record.wall;
   }
-  const int done = sim_->event() - int(sim_->event_running());
+  const int finished_events = sim_->event() - int(sim_->event_running());
   // Folders of the previous version have no such record.
-  if (int(record_.finished.size()) < done)
+  if (int(record_.finished.size()) < finished_events)
     count_from(sim_->method().counters().steps, earlier_wall_);
 }
 

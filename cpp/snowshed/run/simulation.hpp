@@ -169,8 +169,8 @@ class Simulation {
   bool is_at_rest();
   std::optional<RunEnd> event_end();
   std::unique_ptr<Method> empty_method() const;
-  static std::unique_ptr<Simulation> restored(const BinaryReader&, const Scene&,
-                                              const std::filesystem::path& base_dir);
+  static std::unique_ptr<Simulation> from_archive(const BinaryReader&, const Scene&,
+                                                  const std::filesystem::path& base_dir);
   void read_back(const std::filesystem::path& checkpoint) const;
   RunReport report(double rms_speed) const;
 

@@ -107,7 +107,7 @@ std::unique_ptr<Simulation> Simulation::load(const std::filesystem::path& checkp
   const BinaryReader in = BinaryReader::load(checkpoint);
   in.require_finite();  // a clock that is not a number would never reach the end of an event
   const Scene scene = parse_scene(in.text("scene"), checkpoint.string());
-  return restored(in, threads ? with_threads(scene, *threads) : scene, in.text("base_dir"));
+  return from_archive(in, threads ? with_threads(scene, *threads) : scene, in.text("base_dir"));
 }
 
 std::unique_ptr<Simulation> Simulation::load_into(const Scene& scene,
@@ -117,15 +117,15 @@ std::unique_ptr<Simulation> Simulation::load_into(const Scene& scene,
   in.require_finite();
   const Scene earlier = resolve(parse_scene(in.text("scene"), checkpoint.string()));
   check_same_snow(in, assemble_snows(earlier), assemble_snows(resolve(scene)));
-  auto sim = restored(in, scene, base_dir);
+  auto sim = from_archive(in, scene, base_dir);
   if (sim->running_)
     throw InputError(checkpoint.string(),
                      "its event " + std::to_string(sim->event_) + " still runs; finish it first");
   return sim;
 }
 
-std::unique_ptr<Simulation> Simulation::restored(const BinaryReader& in, const Scene& scene,
-                                                 const std::filesystem::path& base_dir) {
+std::unique_ptr<Simulation> Simulation::from_archive(const BinaryReader& in, const Scene& scene,
+                                                     const std::filesystem::path& base_dir) {
   auto sim = std::make_unique<Simulation>(scene, base_dir);
   check_kernels(in);
   check_files(in, sim->surroundings_);

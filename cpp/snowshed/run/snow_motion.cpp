@@ -56,8 +56,8 @@ void add_flight(const Scene& scene, double front_slides, SnowMotion& motion) {
   motion.distance =
       acceleration * slides * slides / 2.0 + falling_distance(scene, acceleration * slides, falls);
   if (std::isfinite(motion.fall_time)) return;
-  const double apart = scene.gravity * std::max(0.0, slides - front_slides) * falls;
-  motion.stretch = 1.0 + apart / scene.slab->length;
+  const double front_lead = scene.gravity * std::max(0.0, slides - front_slides) * falls;
+  motion.stretch = 1.0 + front_lead / scene.slab->length;
 }
 
 /// The slab's rear slides off the lower edge and falls freely.

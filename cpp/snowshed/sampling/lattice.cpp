@@ -64,7 +64,8 @@ std::vector<Cell> cells_of(const OrientedBox& box, int dimension, double spacing
   return cells;
 }
 
-/// From the centre of a solid's bounds to a corner of a lattice that begins at their lowest corner.
+/// The vector from the centre of a solid's bounds to a corner of a lattice that begins at their
+/// lowest corner.
 Vec3 shift_to_lowest_corner(const Bounds& bounds, double spacing) {
   const Vec3 half = (bounds.max - bounds.min) / 2;
   Vec3 shift = Vec3::Zero();
@@ -93,7 +94,7 @@ class CutCells {
  public:
   void add(const Cell& cell) { cells_.push_back(cell); }
 
-  /// Calls place(center) for `wanted` of them.
+  /// Calls place(center) for `wanted` of these cells.
   template <class Place>
   void choose(std::size_t wanted, Place place) {
     double sum = 0;

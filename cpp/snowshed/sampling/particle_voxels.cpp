@@ -23,10 +23,10 @@ namespace {
 constexpr double max_nodes = 1.5e8;  // 1.2 GB while converting, 0.6 GB after
 
 Bounds bounds_of(const std::vector<Vec3>& points, int dimension) {
-  Bounds bounds = no_bounds();
+  Bounds bounds = empty_bounds();
   for (const Vec3& x : points) {
     if (!x.allFinite()) throw InputError("", "a particle position is not finite");
-    bounds = unite(bounds, {x, x});
+    bounds = united_bounds(bounds, {x, x});
   }
   if (dimension == 2) bounds.min.y() = bounds.max.y() = 0;
   return bounds;

@@ -39,8 +39,9 @@ Int to_integer(const nlohmann::json& value, const std::string& path, const Range
                const std::string& allowed) {
   const double number = to_number(value, path, allowed);
   if (std::floor(number) != number) throw wrong_type(path, value, allowed);
-  // Before the conversion, which is undefined for numbers Int cannot hold. The limit itself is
-  // not representable as a double for 64 bits; there the next power of two is already too large.
+  // The check comes before the conversion, which is undefined for numbers that Int cannot hold. The
+  // limit itself is not representable as a double for 64 bits; there the next power of two is
+  // already too large.
   constexpr Int max_value = std::numeric_limits<Int>::max();
   const bool fits = value.is_number_float()
                         ? number < static_cast<double>(max_value)

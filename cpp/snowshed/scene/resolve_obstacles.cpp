@@ -29,13 +29,14 @@ std::string note_on(const Thickening& t, const Obstacle& obstacle, const Scene& 
   const std::string unit = scene.numerics->info().length_unit;
   const std::string name =
       obstacle.name.empty() ? "an obstacle" : "obstacle '" + obstacle.name + "'";
-  const std::string least = millimetres(2 * scene.numerics->resolution());
+  const std::string required_thickness = millimetres(2 * scene.numerics->resolution());
   if (t.is_dilated)
     return name + " is " + millimetres(t.thickness) + " thick, less than two " + unit +
-           ": it is made " + least + " thick, " + millimetres(t.outward) + " more on each side";
+           ": it is made " + required_thickness + " thick, " + millimetres(t.outward) +
+           " more on each side";
   return name + " has parts thinner than two " + unit + ", down to " + millimetres(t.thickness) +
-         " at " + place_of(t.thinnest, scene.dimension) + ": there it is made " + least +
-         " thick, up to " + millimetres(t.outward) + " more on each side";
+         " at " + place_of(t.thinnest, scene.dimension) + ": there it is made " +
+         required_thickness + " thick, up to " + millimetres(t.outward) + " more on each side";
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ Box unbounded() {
 }
 
 /// The box around `box` after a rotation and a translation.
-Box moved(const Box& box, const Mat3& rotation, const Vec3& translation) {
+Box transformed(const Box& box, const Mat3& rotation, const Vec3& translation) {
   if (!box.sizes().allFinite()) return unbounded();
   return around(rotation * box.center() + translation, rotation.cwiseAbs() * box.sizes() / 2.0);
 }
@@ -35,15 +35,15 @@ Box plate_bounds(const ShapeSpec& shape) {
   axes.col(0) = Vec3::UnitY().cross(axes.col(2)).normalized();
   axes.col(1) = axes.col(2).cross(axes.col(0));
   const Vec3 size(shape.length, shape.width, shape.thickness);
-  return moved(around(Vec3::Zero(), size / 2.0), axes,
-               shape.center - shape.thickness / 2.0 * axes.col(2));
+  return transformed(around(Vec3::Zero(), size / 2.0), axes,
+                     shape.center - shape.thickness / 2.0 * axes.col(2));
 }
 
 std::optional<Box> transform_bounds(const ShapeSpec& shape) {
   const auto inner = shape_bounds(shape.shapes.front());
   if (!inner) return std::nullopt;
   const Eigen::AngleAxisd rotation(radians(shape.angle), shape.axis.normalized());
-  return moved(*inner, rotation.toRotationMatrix(), shape.translate);
+  return transformed(*inner, rotation.toRotationMatrix(), shape.translate);
 }
 
 std::optional<Box> union_bounds(const ShapeSpec& shape) {

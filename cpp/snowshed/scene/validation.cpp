@@ -88,11 +88,12 @@ class SceneRules {
       double& thickness = layer.event == 0 ? always : of_event[layer.event];
       thickness += layer.thickness;
     }
-    double most = 0.0;
-    for (const auto& [event, thickness] : of_event) most = std::max(most, thickness);
+    double max_thickness = 0.0;
+    for (const auto& [event, thickness] : of_event)
+      max_thickness = std::max(max_thickness, thickness);
     Scene single_layer = scene_;
     single_layer.slab->layers.clear();
-    single_layer.slab->thickness = always + most;
+    single_layer.slab->thickness = always + max_thickness;
     return assemble_slab(single_layer, 1).front().shape;
   }
 
@@ -247,10 +248,10 @@ class SceneRules {
 
   void check_seeding(const Seeding& seeding) const {
     const double given = seeding.particles_per_voxel;
-    const double least = in_3d() ? 6.0 : 4.0;  // thesis A.3.2
-    if (given != 0.0 && given < least && !seeding.allow_sparse)
+    const double min_count = in_3d() ? 6.0 : 4.0;  // thesis A.3.2
+    if (given != 0.0 && given < min_count && !seeding.allow_sparse)
       fail(seeding.particles_per_voxel, show(given) + " is too few in " + (in_3d() ? "3D" : "2D") +
-                                            ": give at least " + show(least) +
+                                            ": give at least " + show(min_count) +
                                             ", 0 for the default, or set " +
                                             path_of(scene_, seeding.allow_sparse));
   }

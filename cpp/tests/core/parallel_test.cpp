@@ -65,7 +65,7 @@ void race() {
   });
 }
 
-/// Two loops that run at once, and the second writes what the first does.
+/// Two loops that run at once and write to the same elements.
 void race_of_loops() {
   std::vector<int> written(100, 0);
   const auto write = [&](std::ptrdiff_t begin, std::ptrdiff_t end) {

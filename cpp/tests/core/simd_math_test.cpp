@@ -14,8 +14,8 @@ class LaneMath : public testing::Test {
  protected:
   static constexpr double epsilon = std::numeric_limits<T>::epsilon();
 
-  /// Largest relative error of f against `exact` on random arguments: lo to hi in their logarithm,
-  /// of both signs where `negative` is set.
+  /// Largest relative error of f against `exact` on random arguments with the given sign, from lo
+  /// to hi, whose logarithms are uniformly distributed.
   template <class F, class G>
   static double worst(double lo, double hi, double sign, F f, G exact) {
     Random random(1);

@@ -98,7 +98,7 @@ TEST(MeshShells, ThreeLevelsInAnySense) {
     bool inward[3];
     double volume;
   };
-  // The winding number within each, seen from the outermost: 1, then it grows or falls by one.
+  // The winding number within the outermost cube is 1; each inner cube adds or subtracts one.
   for (const Case& c :
        {Case{{false, true, false}, 64 - 8 + 1},                                  // 1, 0, 1
         Case{{true, false, true}, 64 - 8 + 1}, Case{{false, false, false}, 64},  // 1, 2, 3
@@ -122,7 +122,7 @@ TEST(MeshShells, OverlappingShellsAreUnited) {
 }
 
 TEST(MeshShells, SolidsThatTouchAreTwo) {
-  // At a face whose diagonals are the same, at an edge, and at a corner.
+  // They touch at a face that both divide along the same diagonal, at an edge, or at a corner.
   for (const Vec3& shift : {Vec3(1, 0, 0), Vec3(1, 0, 1), Vec3(1, 1, 1)}) {
     const TriangleMesh mesh = cubes({{zero, one}, {shift, shift + one}});
     EXPECT_EQ(connected_shells(mesh).size(), 2u);

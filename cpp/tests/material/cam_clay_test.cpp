@@ -201,7 +201,7 @@ TYPED_TEST(CamClayReturn, KeepsTheVolumeOnTheCentreLine) {
 }
 
 TYPED_TEST(CamClayReturn, SnowWithoutStrengthKeepsNoStressAndItsVolume) {
-  // With p0 = 0, a particle opens freely in tension or shear, and e_v takes the opening.
+  // With p0 = 0, a particle opens freely in tension or shear, and e_v grows by the opening.
   const double bulk = RateEquations(calibrated, 3).bulk;
   const Return open = returned<TypeParam>(calibrated, 3, -0.01 * bulk, 500.0, 0.02);
   EXPECT_EQ(open.p, 0.0);

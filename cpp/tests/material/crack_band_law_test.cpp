@@ -130,7 +130,7 @@ TEST(Relaxation, OverstressDecaysExponentially) {
   }
 }
 
-/// A part of the way back keeps the volume balance, and lies between the trial and the surface.
+/// A return that ends midway keeps the volume balance, and lies between the trial and the surface.
 TEST(Relaxation, APartOfTheWayBackKeepsTheVolume) {
   Random random(3);
   const auto law = banded<double>(0.5);

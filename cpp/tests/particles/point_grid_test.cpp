@@ -46,7 +46,7 @@ TEST(PointGrid, IsGivenUpWhileItSorts) {
   int asked = 0;
   const auto never = [&] { return ++asked, false; };
   PointGrid(points, 0.05, never);
-  EXPECT_GT(asked, 100);  // sorting compares more than ten times as often as there are points
+  EXPECT_GT(asked, 100);  // sorting makes more than ten comparisons per point
   for (int turn : {1, asked / 2, asked}) {
     int left = turn;
     EXPECT_THROW(PointGrid(points, 0.05, [&] { return --left == 0; }), Stopped);

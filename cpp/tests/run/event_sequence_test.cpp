@@ -199,9 +199,9 @@ TEST_F(EventSequenceTest, ResumesOnlyItsOwnScene) {
   EventSequence::create(scene, ".", path("a")).run(quiet, never);
   scene.panel->tilt = 55;
   scene.gravity = 3;
-  const std::string said =
+  const std::string message =
       message_of<InputError>([&] { EventSequence::resume(scene, ".", path("a")); });
-  EXPECT_NE(said.find("differs in /gravity, /panel/tilt;"), std::string::npos) << said;
+  EXPECT_NE(message.find("differs in /gravity, /panel/tilt;"), std::string::npos) << message;
   EXPECT_THROW(EventSequence::resume(scene, ".", path("nowhere")), InputError);
 }
 

@@ -47,7 +47,7 @@ TEST(EventsEnd, AtTheStatedSpeedAndTime) {
 
 TEST(EventsEnd, ByItsTimeLimitToAStep) {
   Scene scene = drift({drifting_box(0, 0.1, 1.0, 1), drifting_box(1, 0.1, 0, 2)});
-  scene.events.rest_time = 0.15;  // the speed is looked at ten times as often
+  scene.events.rest_time = 0.15;  // the speed is checked ten times as often
   for (const double limit : {0.16, 0.1601, 0.1777}) {
     scene.events.max_time = limit;
     Simulation sim(scene);

@@ -78,7 +78,7 @@ TEST_F(GrainsRun, TheCurveBeginsAtRestAndEndsWithEachStage) {
   EXPECT_TRUE(std::is_sorted(stage.begin(), stage.end()));
   const auto second = std::find(stage.begin(), stage.end(), 2.0) - stage.begin();
   ASSERT_LT(std::size_t(second), stage.size());
-  EXPECT_NEAR(strain[std::size_t(second) - 1], 1e-3, 2e-5);  // a step too far at most
+  EXPECT_NEAR(strain[std::size_t(second) - 1], 1e-3, 2e-5);  // at most a step too far
   EXPECT_EQ(time.back(), sim.method().time());
 }
 
@@ -100,7 +100,7 @@ TEST_F(GrainsRun, AResumedRunHasTheSameBitsAndTheSameCurve) {
   EXPECT_TRUE(second->method().state().velocities == whole.method().state().velocities);
 }
 
-double carried(const LoadingStresses& s) { return std::min(s.top_stress, s.bottom_stress); }
+double plate_stress(const LoadingStresses& s) { return std::min(s.top_stress, s.bottom_stress); }
 
 TEST_F(GrainsRun, PeaksAreThoseOfAllStepsBetweenTwoRows) {
   Scene s = scene();
@@ -111,12 +111,12 @@ TEST_F(GrainsRun, PeaksAreThoseOfAllStepsBetweenTwoRows) {
   Simulation sim(s);
   sim.begin_event();
   // Largest stress by row, over the steps.
-  std::vector<double> largest{carried(grains_of(sim).stresses())};
+  std::vector<double> largest{plate_stress(grains_of(sim).stresses())};
   std::size_t rows = 1;
   while (!*sim.method().at_rest()) {
     if (largest.size() == rows) largest.push_back(-1e300);
     sim.step();
-    largest.back() = std::max(largest.back(), carried(grains_of(sim).stresses()));
+    largest.back() = std::max(largest.back(), plate_stress(grains_of(sim).stresses()));
     rows = column(sim, "time_s").size();
   }
   const auto top = column(sim, "peak_top_stress_pa"), bottom = column(sim, "peak_bottom_stress_pa");
@@ -164,8 +164,9 @@ TEST_F(GrainsRun, ResumingWithAnotherImageIsRefused) {
   auto labels = two_grains();
   labels[0] = 0;
   write_labels(labels);
-  const std::string said = message_of<InputError>([&] { Simulation::load(path("checkpoint")); });
-  EXPECT_NE(said.find("labels.npy: has changed since the checkpoint"), std::string::npos) << said;
+  const std::string message = message_of<InputError>([&] { Simulation::load(path("checkpoint")); });
+  EXPECT_NE(message.find("labels.npy: has changed since the checkpoint"), std::string::npos)
+      << message;
 }
 
 TEST_F(GrainsRun, ADamagedCurveIsRefused) {
@@ -176,8 +177,8 @@ TEST_F(GrainsRun, ADamagedCurveIsRefused) {
   for (const std::int64_t stage : {std::int64_t(-1), std::int64_t(3), std::int64_t(1) << 40}) {
     const std::size_t data = bytes.find("curve/stage") + 16;  // the name fills two words
     write_plainly(path("forged"), forged(bytes, data, stage));
-    const std::string said = message_of<InputError>([&] { Simulation::load(path("forged")); });
-    EXPECT_NE(said.find("not that of this loading"), std::string::npos) << said;
+    const std::string message = message_of<InputError>([&] { Simulation::load(path("forged")); });
+    EXPECT_NE(message.find("not that of this loading"), std::string::npos) << message;
   }
 }
 
@@ -185,8 +186,8 @@ TEST_F(GrainsRun, VoxelsOfAnotherUnitAreRefused) {
   for (const double voxel : {0.1, 1e-7}) {
     Scene s = scene();
     s.sample->voxel_size = voxel;
-    const std::string said = message_of<InputError>([&] { Simulation sim(s); });
-    EXPECT_NE(said.find("labels.npy: wrongly scaled"), std::string::npos) << said;
+    const std::string message = message_of<InputError>([&] { Simulation sim(s); });
+    EXPECT_NE(message.find("labels.npy: wrongly scaled"), std::string::npos) << message;
   }
 }
 
@@ -213,17 +214,17 @@ TEST_F(GrainsRun, FilesOfHolesThatClaimManyLabelsAreRefused) {
     write_plainly(path("labels.npy"), npy_file(1, npy_header("|u1", shape), ""));
     const auto head = std::filesystem::file_size(path("labels.npy"));
     std::filesystem::resize_file(path("labels.npy"), head + size);
-    const std::string said = message_of<InputError>([&] { Simulation sim(s); });
-    EXPECT_NE(said.find("labels"), std::string::npos) << said;
-    EXPECT_EQ(said.find("no grain"), std::string::npos) << said;
+    const std::string message = message_of<InputError>([&] { Simulation sim(s); });
+    EXPECT_NE(message.find("labels"), std::string::npos) << message;
+    EXPECT_EQ(message.find("no grain"), std::string::npos) << message;
   }
 }
 
 TEST_F(GrainsRun, AnImageWithoutGrainsIsRefused) {
   const Scene s = scene();
   write_labels(std::vector<std::uint8_t>(edge * edge * edge, 0));
-  const std::string said = message_of<InputError>([&] { Simulation sim(s); });
-  EXPECT_NE(said.find("labels.npy: no grain in the image"), std::string::npos) << said;
+  const std::string message = message_of<InputError>([&] { Simulation sim(s); });
+  EXPECT_NE(message.find("labels.npy: no grain in the image"), std::string::npos) << message;
 }
 
 TEST_F(GrainsRun, StagesThatTakeLongerThanAnEventMayAreRefused) {
@@ -232,8 +233,8 @@ TEST_F(GrainsRun, StagesThatTakeLongerThanAnEventMayAreRefused) {
   s.events.rest_time = 0;
   EXPECT_NO_THROW(Simulation{s});
   s.events.max_time = 5.9e-5;
-  const std::string said = message_of<InputError>([&] { Simulation sim(s); });
-  EXPECT_EQ(said.find("/events/max_time: the stages take 6e-05 s"), 0u) << said;
+  const std::string message = message_of<InputError>([&] { Simulation sim(s); });
+  EXPECT_EQ(message.find("/events/max_time: the stages take 6e-05 s"), 0u) << message;
 }
 
 TEST_F(GrainsRun, OnlyGrainsHaveACurve) {

@@ -10,7 +10,8 @@
 namespace snowshed {
 namespace {
 
-/// The panel of the small scene: 0.1 m long; snow of 0.03 m was laid on it, the cells are 0.01 m.
+/// The panel of the small scene is 0.1 m long. Snow 0.03 m thick was laid on it; the cells are 0.01
+/// m.
 struct Place {
   double along, above;
   bool on_panel;

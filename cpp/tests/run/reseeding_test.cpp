@@ -8,8 +8,8 @@
 namespace snowshed {
 namespace {
 
-/// A heap of one snow, with a grain of another that lies where a grain of the first does, so that
-/// no new particle is nearest to it.
+/// A heap of one snow, and a hidden particle of another snow at the place of a particle of the
+/// heap. No new particle takes the snow of the hidden one.
 ParticleState heap_with_a_hidden_grain() {
   ParticleState heap;
   heap.positions = mpm::filled_box(2, Vec3(1, 0, 0), Vec3(1.1, 0, 0.1), 0.005).positions;

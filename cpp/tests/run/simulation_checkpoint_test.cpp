@@ -40,9 +40,9 @@ TEST_F(SimulationCheckpoint, WithoutATimeIsRefused) {
   for (const char* section : {"clock", "run", "energy"})
     for (const double value : {std::nan(""), std::numeric_limits<double>::infinity()}) {
       write_plainly(path("forged"), forged(bytes, data_of(bytes, section), value));
-      const std::string said = message_of<InputError>([&] { Simulation::load(path("forged")); });
-      EXPECT_NE(said.find(section + std::string("' is not a finite number")), std::string::npos)
-          << said;
+      const std::string message = message_of<InputError>([&] { Simulation::load(path("forged")); });
+      EXPECT_NE(message.find(section + std::string("' is not a finite number")), std::string::npos)
+          << message;
     }
 }
 

@@ -140,8 +140,8 @@ TEST_F(SimulationTest, ACheckpointIsNotReplacedByOneThatCannotBeLoaded) {
   const std::string good = content(path("checkpoint"));
   // Infinite in single precision.
   sim.add_velocity(std::vector<Vec3>(sim.method().size(), Vec3(1e300, 0, 0)));
-  const std::string said = message_of<SimulationError>([&] { sim.save(path("checkpoint")); });
-  EXPECT_NE(said.find("not a finite number"), std::string::npos) << said;
+  const std::string message = message_of<SimulationError>([&] { sim.save(path("checkpoint")); });
+  EXPECT_NE(message.find("not a finite number"), std::string::npos) << message;
   EXPECT_TRUE(content(path("checkpoint")) == good);
   EXPECT_EQ(number_of_files(), 1u);
 }

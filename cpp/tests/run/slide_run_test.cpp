@@ -30,8 +30,8 @@ class SlideRun : public TemporaryFolder {
     return content(path("checkpoint"));
   }
 
-  /// Returns the message with which a checkpoint is refused after the mark of a file was changed:
-  /// 0 the terrain, 1 the map of thickness.
+  /// Returns the message with which a checkpoint is refused after the mark of a file was changed.
+  /// File 0 is the terrain, file 1 the map of thickness.
   std::string refusal_with_mark_of(int file) const {
     const std::string bytes = checkpoint();
     const std::size_t mark = data_of(bytes, "ground") + 8 * std::size_t(file);

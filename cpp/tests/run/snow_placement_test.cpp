@@ -36,7 +36,7 @@ std::string box(int dimension, double x, double z, double length, double height,
 }
 
 /// The notes on the first event, or the message with which it is refused.
-std::string said_of(const Scene& scene) try {
+std::string notes_or_refusal(const Scene& scene) try {
   Simulation sim(scene);
   sim.begin_event();
   std::string all;
@@ -58,8 +58,9 @@ class SnowPlacement : public ::testing::TestWithParam<std::pair<int, const char*
                   const std::string& more = "") const {
     return snowshed::box(dimension(), x, z, length, height, more);
   }
-  std::string said(const std::string& bodies, const std::string& parts = R"("ground": {})") const {
-    return said_of(with_bodies(dimension(), method(), bodies, parts));
+  std::string notes_or_refusal(const std::string& bodies,
+                               const std::string& parts = R"("ground": {})") const {
+    return snowshed::notes_or_refusal(with_bodies(dimension(), method(), bodies, parts));
   }
 };
 
@@ -68,12 +69,13 @@ TEST_P(SnowPlacement, SaysNothingOfSnowThatTouchesGroundWallsAndOtherSnow) {
   const std::string wall =
       std::string(R"("obstacles": [{"shape": {"type": "box", "center": [0.3, )") +
       (flat ? "0.1" : "0, 0.1") + R"(], "size": [0.2, )" + (flat ? "0.2" : "1, 0.2") + "]}}]";
-  EXPECT_EQ(said(box(0, 0.1, 0.4, 0.2) + "," + box(0, 0.25, 0.4, 0.1), R"("ground": {}, )" + wall),
+  EXPECT_EQ(notes_or_refusal(box(0, 0.1, 0.4, 0.2) + "," + box(0, 0.25, 0.4, 0.1),
+                             R"("ground": {}, )" + wall),
             "");
 }
 
 TEST_P(SnowPlacement, RefusesSnowBelowTheGround) {
-  const std::string text = said(box(0, 0, 0.4, 0.24));
+  const std::string text = notes_or_refusal(box(0, 0, 0.4, 0.24));
   expect_part(text, "refused: /bodies/0/shape: 5");
   expect_part(text, "% of its particles lie below the ground, such as at (");
 }
@@ -83,15 +85,15 @@ TEST_P(SnowPlacement, RefusesSnowInAnObstacleByItsName) {
       std::string(R"("ground": {}, "obstacles": [{"name": "post", "shape": )") +
       (dimension() == 2 ? R"({"type": "box", "center": [0, 0.2], "size": [0.1, 0.4]}}])"
                         : R"({"type": "box", "center": [0, 0, 0.2], "size": [0.1, 1, 0.4]}}])");
-  expect_part(said(box(0, 0.2, 0.4, 0.4), parts), "inside the obstacle \"post\"");
+  expect_part(notes_or_refusal(box(0, 0.2, 0.4, 0.4), parts), "inside the obstacle \"post\"");
 }
 
 TEST_P(SnowPlacement, RefusesBodiesOneInAnother) {
-  const std::string text = said(box(0, 0.1, 0.4, 0.2) + "," + box(0.1, 0.1, 0.4, 0.2));
+  const std::string text = notes_or_refusal(box(0, 0.1, 0.4, 0.2) + "," + box(0.1, 0.1, 0.4, 0.2));
   expect_part(text, "refused: /bodies/0/shape: 7");
   expect_part(text, "within the snow of /bodies/1");
   // A small body in a large one lies within it as a whole, but takes up little of the large one.
-  expect_part(said(box(0, 0.25, 0.5, 0.5) + "," + box(0, 0.25, 0.04, 0.04)),
+  expect_part(notes_or_refusal(box(0, 0.25, 0.5, 0.5) + "," + box(0, 0.25, 0.04, 0.04)),
               "/bodies/1/shape: 100 % of its particles lie within the snow of /bodies/0");
 }
 
@@ -99,7 +101,7 @@ TEST_P(SnowPlacement, SaysNothingOfSnowThatTouchesTheSidesOfTheDomain) {
   const std::string parts = dimension() == 2
                                 ? R"("domain": {"min": [-0.2, 0], "max": [0.2, 1]})"
                                 : R"("domain": {"min": [-0.2, -0.2, 0], "max": [0.2, 0.2, 1]})";
-  EXPECT_EQ(said(box(0, 0.1, 0.4, 0.2), parts), "");
+  EXPECT_EQ(notes_or_refusal(box(0, 0.1, 0.4, 0.2), parts), "");
 }
 
 TEST_P(SnowPlacement, RefusesAddedSnowOutsideTheDomain) {
@@ -119,10 +121,11 @@ TEST_P(SnowPlacement, RefusesAddedSnowOutsideTheDomain) {
   }
 }
 
-TEST_P(SnowPlacement, TellsOfALittleAndOfMoreWhereTheSceneAllowsIt) {
-  const std::string sliver = said(box(0, 0.1994, 0.4, 0.4));  // 0.15 % of its height
+TEST_P(SnowPlacement, NotesASliverAndAllowsMoreIfTheSceneDoes) {
+  const std::string sliver = notes_or_refusal(box(0, 0.1994, 0.4, 0.4));  // 0.15 % of its height
   EXPECT_EQ(sliver.find("refused"), std::string::npos) << sliver;
-  const std::string half = said(box(0, 0, 0.4, 0.24), R"("ground": {}, "misplaced_snow": "allow")");
+  const std::string half =
+      notes_or_refusal(box(0, 0, 0.4, 0.24), R"("ground": {}, "misplaced_snow": "allow")");
   EXPECT_EQ(half.find("/bodies/0/shape: 5"), 0u) << half;
 }
 
@@ -131,7 +134,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, SnowPlacement,
                                            std::pair{2, "mps"}, std::pair{3, "mps"}));
 
 TEST(SnowPlacementNotes, TellOfASliver) {
-  const std::string text = said_of(with_bodies(2, "mpm", box(2, 0, 0.199, 0.4, 0.4)));
+  const std::string text = notes_or_refusal(with_bodies(2, "mpm", box(2, 0, 0.199, 0.4, 0.4)));
   expect_part(text, "/bodies/0/shape: 0.");
   expect_part(text, "below the ground");
 }
@@ -231,9 +234,10 @@ TEST(SnowPlacementNotes, TellWhereTheGridThickensAnObstacle) {
   const std::string parts =
       R"("ground": {}, "obstacles": [{"name": "shelf", "shape":
         {"type": "box", "center": [0, 0.5], "size": [1, 0.004]}}])";
-  const std::string text = said_of(with_bodies(2, "mpm", box(2, 0, 0.602, 0.4, 0.2), parts));
+  const std::string text =
+      notes_or_refusal(with_bodies(2, "mpm", box(2, 0, 0.602, 0.4, 0.2), parts));
   expect_part(text, "beside the obstacle \"shelf\", where it is thickened");
-  EXPECT_EQ(said_of(with_bodies(2, "mps", box(2, 0, 0.602, 0.4, 0.2), parts)), "");
+  EXPECT_EQ(notes_or_refusal(with_bodies(2, "mps", box(2, 0, 0.602, 0.4, 0.2), parts)), "");
 }
 
 TEST(SnowPlacementNotes, HoldForParticlesThatAreAddedByHand) {
@@ -258,13 +262,13 @@ TEST(Percent, HasTwoDigitsWhereItIsSmall) {
 
 // --- mass ---------------------------------------------------------------------------------------
 
-struct Sized {
+struct SolidWithVolume {
   std::string shape;
   double volume;
 };
 
 /// Boxes, rotated boxes and balls, with their volumes in closed form.
-std::vector<Sized> solids(int dimension) {
+std::vector<SolidWithVolume> solids(int dimension) {
   if (dimension == 2)
     return {{R"({"type": "box", "center": [0, 1], "size": [0.47, 0.113]})", 0.47 * 0.113},
             {R"({"type": "transform", "shapes": [{"type": "box", "size": [0.47, 0.053]}],
@@ -286,7 +290,7 @@ std::vector<Sized> solids(int dimension) {
 TEST(MassOfBodies, IsDensityTimesVolumeWhateverTheResolution) {
   for (const int dimension : {2, 3})
     for (const std::string method : {"mpm", "mps"})
-      for (const Sized& solid : solids(dimension))
+      for (const SolidWithVolume& solid : solids(dimension))
         for (const double size : {0.013, 0.02, 0.03}) {
           Scene scene = with_bodies(dimension, method, R"({"shape": )" + solid.shape + "}");
           double density = scene.snow.density;
@@ -353,21 +357,21 @@ TEST(MassOfBodies, IsThatOfTheLayersByMps) {
 class NotesOfRuns : public TemporaryFolder {};
 
 TEST_F(NotesOfRuns, StandInTheRecordOnceAlsoWhenTheRunGoesOn) {
-  struct Heard : EventObserver {
+  struct NoteRecorder : EventObserver {
     void noted(const std::string& note) override { notes.push_back(note); }
     std::vector<std::string> notes;
   };
   Scene scene = with_bodies(2, "mpm", box(2, 0, 0, 0.4, 0.2),
                             R"("ground": {}, "misplaced_snow": "allow",
                                "events": {"max_time": 0.01, "rest_time": 0.001})");
-  Heard heard, again;
-  EventSequence::create(scene, ".", path("run")).run(heard, never);
-  ASSERT_EQ(heard.notes.size(), 1u);
-  EXPECT_EQ(RunRecord::read(path("run") / "run.json", {}).notes, heard.notes);
+  NoteRecorder recorder, resumed_recorder;
+  EventSequence::create(scene, ".", path("run")).run(recorder, never);
+  ASSERT_EQ(recorder.notes.size(), 1u);
+  EXPECT_EQ(RunRecord::read(path("run") / "run.json", {}).notes, recorder.notes);
   EventSequence resumed = EventSequence::resume(scene, ".", path("run"));
-  resumed.record().add_note(heard.notes.front());
-  resumed.run(again, never);
-  EXPECT_EQ(RunRecord::read(path("run") / "run.json", {}).notes, heard.notes);
+  resumed.record().add_note(recorder.notes.front());
+  resumed.run(resumed_recorder, never);
+  EXPECT_EQ(RunRecord::read(path("run") / "run.json", {}).notes, recorder.notes);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The presets against the thesis's tables, and that each can be run and stored.
+// The presets have the values of the thesis's tables, and each can be run and stored.
 #include "snowshed/scene/presets.hpp"
 
 #include <gtest/gtest.h>

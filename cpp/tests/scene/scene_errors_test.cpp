@@ -346,14 +346,14 @@ TEST(SceneErrorsText, AsManyShapesAsAreAllowedCanBeWrittenAndReadAgain) {
 }
 
 TEST(SceneErrorsText, BlankLinesAreNoPartOfTheMessage) {
-  const auto said = [](const std::string& text) {
+  const auto message_for = [](const std::string& text) {
     return message_of<InputError>([&] { parse_scene(text); });
   };
-  const std::string message = said("\n\t\r\n\n ?");
+  const std::string message = message_for("\n\t\r\n\n ?");
   EXPECT_EQ(message.substr(0, 26), "scene:4:2: not valid JSON:");
   EXPECT_EQ(message.substr(message.rfind(", after")), ", after \"?\"");
-  // The parser writes nine bytes for each blank, several times over.
-  EXPECT_LT(said(std::string(1 << 22, '\n') + "x").size(), 200u);
+  // The parser's own message would have nine bytes for each blank, several times over.
+  EXPECT_LT(message_for(std::string(1 << 22, '\n') + "x").size(), 200u);
   EXPECT_EQ(where_of("{\"a\\\"\n\": 1}"), "name:1:6");  // within a text they remain escaped
 }
 

@@ -105,7 +105,7 @@ def _as_record(kind: typing.Any, value: object, where: str) -> object:
 
 
 def _as_sequence(origin: type, item: object, value: object, where: str) -> object:
-    """Return a list of records, which may be changed, or a tuple of numbers."""
+    """Return a list of records, which callers may change, or a tuple of numbers."""
     if not isinstance(value, (list, tuple)):
         return MISMATCH
     items = []

@@ -12,7 +12,7 @@ MISSING = "\N{EN DASH}"
 TIMES = "\N{MULTIPLICATION SIGN}"
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 #: Smaller shares are written as plain numbers, not in percent.
-SMALL = 1e-5
+MIN_PERCENT_SHARE = 1e-5
 #: Units of an estimate: used below this number of seconds; seconds per unit; name; decimals.
 UNITS_OF_TIME = (
     (100, 1, "s", 0),
@@ -66,7 +66,7 @@ def percent(value: Optional[float], digits: int = 3) -> str:
     """
     if value is None or isnan(value):
         return MISSING
-    if 0 < abs(value) < SMALL:
+    if 0 < abs(value) < MIN_PERCENT_SHARE:
         return number(value, digits)
     return f"{number(100 * value, digits)} %"
 

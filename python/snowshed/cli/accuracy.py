@@ -27,12 +27,12 @@ if TYPE_CHECKING:
     from snowshed.analysis.accuracy.recorded_stacks import RecordedStack
 
 
-def part(text: str) -> float:
+def parse_fraction(text: str) -> float:
     """Return a fraction, given as ``5%`` or ``0.05``.
 
     Examples
     --------
-    >>> [part(text) for text in ("5%", "0.05", "2.5 %")]
+    >>> [parse_fraction(text) for text in ("5%", "0.05", "2.5 %")]
     [0.05, 0.05, 0.025]
     """
     text = text.strip()
@@ -47,7 +47,7 @@ def part(text: str) -> float:
 
 accuracy_option = click.option(
     "--accuracy",
-    type=part,
+    type=parse_fraction,
     metavar="PERCENT",
     help="Choose dx and scheme by the allowed error of a stack's height and length, such as 20%, "
     "from recorded runs.",
@@ -191,17 +191,17 @@ def _outcome(stack: RecordedStack, wanted: float, what: str) -> str:
     from snowshed.analysis.accuracy.recorded_stacks import PRESET
 
     height, length = (percent(error, 2) for error in stack.errors)
-    off = (
+    errors_text = (
         f"the height of the stack was off by {height} and its length by {length}, against the "
         "finest recorded grid of the scheme."
     )
     if stack.error <= wanted:
         return (
             f"{what}. These were the quickest in the recorded runs of {PRESET} to stay within it: "
-            f"{off}"
+            f"{errors_text}"
         )
     share = ceil(100 * stack.error)
-    return f"no recorded run of {PRESET} was that accurate. The best is {what}: {off}" + (
+    return f"no recorded run of {PRESET} was that accurate. The best is {what}: {errors_text}" + (
         f" --accuracy {share}% chooses this grid." if share < 100 else ""
     )
 
@@ -256,8 +256,12 @@ def _differences(stack: RecordedStack, data: Mapping[str, Any], thickness: float
     from snowshed.analysis.accuracy.recorded_stacks import PRESET_THICKNESS, circumstances
     from snowshed.analysis.accuracy.setting_labels import settings_label
 
-    mine = circumstances(data)
-    other = {k: v for k, v in stack.settings.items() if k in mine and v != mine[k]}
+    scene_circumstances = circumstances(data)
+    other = {
+        name: value
+        for name, value in stack.settings.items()
+        if name in scene_circumstances and value != scene_circumstances[name]
+    }
     lengths = Mechanisms(_scheme(stack)).lengths_note(PRESET_THICKNESS, thickness)
     return [
         *(

@@ -72,13 +72,13 @@ DEFERRED = (
     ("reproduce", "reproduce", "Reproduce a publication; needs the source of snowshed."),
 )
 #: Former names of commands, which the help leaves out.
-FORMER = (("plan", "run", "plan"), ("verify", "self_test", "self-test"))
+FORMER_COMMANDS = (("plan", "run", "plan"), ("verify", "self_test", "self-test"))
 
 
 def _add_commands() -> None:
     for name, module, short_help in DEFERRED:
         cli.add_command(Deferred(name, f"snowshed.cli.commands.{module}", short_help))
-    for name, module, command in FORMER:
+    for name, module, command in FORMER_COMMANDS:
         module_name = f"snowshed.cli.commands.{module}"
         cli.add_command(Deferred(name, module_name, hidden=True, command=command))
 

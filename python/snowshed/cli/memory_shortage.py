@@ -9,9 +9,9 @@ from types import FrameType
 from typing import Optional
 
 #: Modules whose work grows with the number of particles.
-OF_PARTICLES = ("snowshed.running.", "snowshed.methods.", "snowshed.study.")
+PARTICLE_MODULES = ("snowshed.running.", "snowshed.methods.", "snowshed.study.")
 #: Names of file arguments in readers, in the order in which they are tried.
-NAMES = ("path", "file", "source", "where", "raster", "mesh")
+FILE_ARGUMENTS = ("path", "file", "source", "where", "raster", "mesh")
 
 
 def memory_message(error: MemoryError) -> str:
@@ -31,7 +31,7 @@ def memory_message(error: MemoryError) -> str:
         module = str(frame.f_globals["__name__"])
         if file := _read_file(frame):
             return f"out of memory while {file} was read ({module})"
-        if module.startswith(OF_PARTICLES):
+        if module.startswith(PARTICLE_MODULES):
             return f"out of memory ({module}); give fewer particles or a larger dx"
     stage = [str(frame.f_globals["__name__"]) for frame in frames[-1:]]
     return f"out of memory ({stage[0]})" if stage else "out of memory"
@@ -42,6 +42,6 @@ def _read_file(frame: FrameType) -> Optional[str]:
     code = frame.f_code
     for name in code.co_varnames[: code.co_argcount + code.co_kwonlyargcount]:
         value = frame.f_locals.get(name)
-        if name in NAMES and isinstance(value, (str, Path)) and Path(value).is_file():
+        if name in FILE_ARGUMENTS and isinstance(value, (str, Path)) and Path(value).is_file():
             return os.fspath(value)
     return None

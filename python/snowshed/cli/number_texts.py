@@ -35,7 +35,7 @@ def numbers(option: str, text: str, *, example: str, steps: bool = False) -> lis
     """
     try:
         if steps and ":" in text:
-            return _stepped(text)
+            return _parse_steps(text)
         return [float(part) for part in text.split(",")]
     except (ValueError, ZeroDivisionError, OverflowError):
         forms = f"a list of numbers such as {example}"
@@ -43,7 +43,7 @@ def numbers(option: str, text: str, *, example: str, steps: bool = False) -> lis
         raise InputError(f"{option}: {text!r} is not {forms}") from None
 
 
-def _stepped(text: str) -> list[float]:
+def _parse_steps(text: str) -> list[float]:
     low, high, step = (float(part) for part in text.split(":"))
     count = int((high - low) / step + 1e-9) + 1
     if not (step > 0 and 1 <= count <= MAX_STEPS):

@@ -41,13 +41,13 @@ SHORT_NAMES = {
     "bodies": "body",
 }
 #: Parameters whose options ``--help`` shows; ``--help-all`` shows all options.
-BASIC = (
+BASIC_PATHS = (
     "dimension", "panel.height", "panel.length", "panel.width", "panel.tilt", "panel.friction",
     "panel.condition", "slab.thickness", "slab.layers", "ground.tilt", "snow.density",
     "snow.youngs_modulus", "snow.preconsolidation_pressure", "snow.cohesion", "numerics.dx",
     "numerics.threads", "events.count", "events.max_time", "output.snapshot_interval",
 )  # fmt: skip
-PREFIXED = ("panel", "slab", "ground", "domain")
+PREFIXED_SECTIONS = ("panel", "slab", "ground", "domain")
 TYPES: Mapping[str, Any] = {"number": float, "integer": int, "string": str}
 
 Command = TypeVar("Command", bound=Callable[..., Any])
@@ -73,14 +73,14 @@ def option_name(path: str) -> str:
     ['--tilt', '--panel-thickness', '--density']
     """
     section, _, leaf = path.rpartition(".")
-    name = f"{section}-{leaf}" if section in PREFIXED else leaf
+    name = f"{section}-{leaf}" if section in PREFIXED_SECTIONS else leaf
     return "--" + SHORT_NAMES.get(path, name).replace("_", "-").replace(".", "-")
 
 
 def scene_options(command: Command) -> Command:
     """Add all options that describe a scene to a click command.
 
-    ``--help`` shows those of `BASIC`, ``--help-all`` all of them.
+    ``--help`` shows those of `BASIC_PATHS`, ``--help-all`` all of them.
     """
     command = click.option(
         "--help-all",
@@ -93,30 +93,30 @@ def scene_options(command: Command) -> Command:
     for parameter in reversed(scene_parameters()):
         for path in parameter.aliases:
             command = _option(replace(parameter, path=path), hidden=True)(command)
-        command = _option(parameter, hidden=parameter.path not in BASIC)(command)
+        command = _option(parameter, hidden=parameter.path not in BASIC_PATHS)(command)
     command = click.option(
         "--snow",
         "snow_preset",
         metavar="NAME",
-        shell_complete=_completed(SNOWS, files=True),
+        shell_complete=_completion(SNOWS, files=True),
         help=f"Snow of the thesis ({', '.join(SNOWS)}), or a JSON file of a snow.",
     )(command)
     return click.option(
         "--preset",
         metavar="NAME",
-        shell_complete=_completed(PRESETS),
+        shell_complete=_completion(PRESETS),
         help=f"Scene to start from: {', '.join(PRESETS)}.",
     )(command)
 
 
-def _completed(names: Sequence[str], *, files: bool = False) -> Callable[..., Any]:
+def _completion(names: Sequence[str], *, files: bool = False) -> Callable[..., Any]:
     """Return the completion of an option: names, or files if no name fits."""
 
-    def offered(_: click.Context, __: click.Parameter, begun: str) -> list[CompletionItem]:
+    def complete(_: click.Context, __: click.Parameter, begun: str) -> list[CompletionItem]:
         fitting = [CompletionItem(name) for name in names if name.startswith(begun)]
         return fitting or ([CompletionItem(begun, type="file")] if files else [])
 
-    return offered
+    return complete
 
 
 def scene_from_options(
@@ -186,5 +186,5 @@ def _help(parameter: Parameter) -> str:
         default = parameter.default
         notes.append(f"default {default if isinstance(default, str) else json.dumps(default)}")
     section = parameter.path.partition(".")[0]
-    subject = f"{section.capitalize()}: " if section in PREFIXED else ""
+    subject = f"{section.capitalize()}: " if section in PREFIXED_SECTIONS else ""
     return subject + parameter.description + (f" [{'; '.join(notes)}]" if notes else "")

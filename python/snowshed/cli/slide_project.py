@@ -53,7 +53,7 @@ def run_project(
     with removing_copies(folder):
         with held_notes() as notes:
             simulations = _simulations(project, folder, settings, thickness, max_time)
-            scenes = [_resolved(simulation) for simulation in simulations]
+            scenes = [_resolve_scene(simulation) for simulation in simulations]
         in_summary = notes_for_summary(notes, *(simulation.scene for simulation in simulations))
         if not resume:
             _check_others(simulations[1:], scenes[1:])
@@ -85,7 +85,7 @@ def print_project_cost(
     for simulation in _simulations(project, folder, settings, thickness, max_time):
         if not quiet:
             say(f"{simulation.release}, {simulation.sim_type}:")
-        print_cost(_resolved(simulation))
+        print_cost(_resolve_scene(simulation))
 
 
 def _simulations(
@@ -106,7 +106,7 @@ def _simulations(
     return simulations
 
 
-def _resolved(simulation: AvaFrameSimulation) -> ResolvedScene:
+def _resolve_scene(simulation: AvaFrameSimulation) -> ResolvedScene:
     with _locating_in_ini(simulation):
         return simulation.scene.resolve()
 

@@ -104,7 +104,7 @@ class Table:
         return total
 
     def _read(self) -> list[dict[str, str]]:
-        records = _records(self.path, _decoded(self.path, MAX_TABLE_BYTES))
+        records = _records(self.path, _read_table_text(self.path, MAX_TABLE_BYTES))
         _, names = next(records, (0, []))
         self._written = names
         rows = [dict(zip(names, cells)) for _, cells in records]
@@ -205,7 +205,9 @@ def read_text_table(
     OSError
         If it cannot be read.
     """
-    records = _records(path, _decoded(path, MAX_TEXT_BYTES), comment="#", most=MAX_WRITTEN_ROWS)
+    records = _records(
+        path, _read_table_text(path, MAX_TEXT_BYTES), comment="#", most=MAX_WRITTEN_ROWS
+    )
     head = next(records, None)
     if head is None:
         raise InputError(f"{path}: empty; {hint}")
@@ -302,7 +304,7 @@ def read_csv(path: Path, *, as_text: bool = False) -> pd.DataFrame:
     OSError
         If it cannot be read.
     """
-    return parse_csv(_decoded(path, MAX_TABLE_BYTES), path, as_text=as_text)
+    return parse_csv(_read_table_text(path, MAX_TABLE_BYTES), path, as_text=as_text)
 
 
 def parse_csv(text: str, where: Path | str, *, as_text: bool = False) -> pd.DataFrame:
@@ -319,7 +321,7 @@ def parse_csv(text: str, where: Path | str, *, as_text: bool = False) -> pd.Data
     return table
 
 
-def _decoded(path: Path, largest: int) -> str:
+def _read_table_text(path: Path, largest: int) -> str:
     content = unpacked(read_input(path, largest), path, largest)
     try:
         text = content.decode("utf-8-sig")
@@ -337,7 +339,7 @@ def _records(
 ) -> Iterator[tuple[int, list[str]]]:
     """Yield the first line and the cells of each record, all of the same length."""
     pulled: list[int] = []
-    reader = csv.reader(_numbered(path, text, comment, pulled), strict=True)
+    reader = csv.reader(_content_lines(path, text, comment, pulled), strict=True)
     names: list[str] = []
     for count in itertools.count():
         if count > most + 1:
@@ -361,7 +363,7 @@ def _records(
         yield pulled[0], cells
 
 
-def _numbered(path: Path | str, text: str, comment: str, pulled: list[int]) -> Iterator[str]:
+def _content_lines(path: Path | str, text: str, comment: str, pulled: list[int]) -> Iterator[str]:
     """Yield the lines that are neither empty nor comments, noting their numbers in `pulled`."""
     length = 0
     for number, match in enumerate(LINES.finditer(text), 1):

@@ -136,7 +136,7 @@ def read_input(path: Path, largest: int = MAX_TEXT_BYTES) -> bytes:
     with open(path, "rb", opener=_open_at_once) as file:
         status = os.fstat(file.fileno())
         if not stat.S_ISREG(status.st_mode):
-            content = _awaited(file.fileno(), path, largest)
+            content = _read_pipe(file.fileno(), path, largest)
         elif status.st_size <= largest:
             content = file.read(largest + 1) or b""  # None before the first byte
         if status.st_size > largest or len(content) > largest:
@@ -145,7 +145,7 @@ def read_input(path: Path, largest: int = MAX_TEXT_BYTES) -> bytes:
     return content
 
 
-def _awaited(descriptor: int, path: Path, largest: int) -> bytes:
+def _read_pipe(descriptor: int, path: Path, largest: int) -> bytes:
     """Return the content of a pipe or a device, at most `largest` + 1 bytes."""
     content, end = bytearray(), time.monotonic() + PIPE_TIMEOUT_S
     while len(content) <= largest:

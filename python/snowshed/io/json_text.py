@@ -38,7 +38,7 @@ def loads(text: Union[str, bytes]) -> Any:
         return json.loads(text, object_pairs_hook=_object)
     except _RepeatedKeyError:
         decoded = text if isinstance(text, str) else text.decode(json.detect_encoding(text))
-        path, line = next(_repeated(decoded))
+        path, line = next(_repeated_keys(decoded))
         message = f"{path}: this key appears twice, the second time in line {line}"
     raise ValueError(message)
 
@@ -50,7 +50,7 @@ def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     return mapping
 
 
-def _repeated(text: str) -> Iterator[tuple[str, int]]:
+def _repeated_keys(text: str) -> Iterator[tuple[str, int]]:
     """Yield path and line of repeated keys in a valid text."""
     names: list[Union[str, int]] = []  # path from the root to the current position
     seen: list[set[str]] = []  # keys of the enclosing objects, and indices of the lists

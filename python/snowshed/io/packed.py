@@ -14,14 +14,14 @@ from snowshed.base.limits import KB, MAX_MEMBERS, MAX_TEXT_BYTES, MAX_UNPACKING_
 
 GZIP, XZ = b"\x1f\x8b", b"\xfd7zXZ\x00"
 #: Refused packings, by their first bytes.
-OTHERS = {
+REFUSED_PACKINGS = {
     b"PK\x03\x04": "a zip archive",
     b"BZh": "packed with bzip2",
     b"7z\xbc\xaf\x27\x1c": "a 7z archive",
     b"\x28\xb5\x2f\xfd": "packed with zstd",
 }
 ZEROS = re.compile(rb"\0*")
-PART = 64 * KB  # bytes of input at once, because the rest is copied for every member
+PART_BYTES = 64 * KB  # bytes of input at once, because the rest is copied for every member
 
 
 def unpacked(content: bytes, path: Path, largest: int = MAX_TEXT_BYTES) -> bytes:
@@ -47,7 +47,7 @@ def unpacked(content: bytes, path: Path, largest: int = MAX_TEXT_BYTES) -> bytes
     >>> unpacked(gzip.compress(b"snow"), Path("a.gz")), unpacked(b"snow", Path("a"))
     (b'snow', b'snow')
     """
-    for begin, what in OTHERS.items():
+    for begin, what in REFUSED_PACKINGS.items():
         if content.startswith(begin):
             raise InputError(f"{path}: {what}; unpack it and give the file inside")
     if content.startswith(GZIP):
@@ -90,7 +90,7 @@ def _members(
     for _ in range(MAX_MEMBERS):
         member = begin()
         while not member.eof:
-            part = content[start : start + PART]
+            part = content[start : start + PART_BYTES]
             if not part:
                 raise InputError(f"{path}: damaged: {kind}: it ends too early")
             start += len(part)

@@ -18,7 +18,11 @@ from snowshed.io.run_files import check_run_file
 Summarised = TypeVar("Summarised", bound="Summary")
 
 #: Names that figures had in files of earlier versions.
-FORMER = {"duration_s": "sim_time_s", "particles": "final_particles", "grains": "final_particles"}
+FORMER_NAMES = {
+    "duration_s": "sim_time_s",
+    "particles": "final_particles",
+    "grains": "final_particles",
+}
 
 
 @dataclass(frozen=True)
@@ -48,13 +52,13 @@ class Summary:
         Raises
         ------
         InputError
-            If it is missing, or not the one that the run wrote.
+            If the file is missing, or is not the file that the run wrote.
         """
         file = Path(folder) / cls.FILE
         if not file.is_file():
             raise InputError(f"{file}: missing; a run writes it at its end")
         check_run_file(file)
-        figures = {FORMER.get(name, name): value for name, value in read_object(file).items()}
+        figures = {FORMER_NAMES.get(name, name): value for name, value in read_object(file).items()}
         given = {
             field.name: _in_tuples(figures.get(field.name))
             for field in fields(cls)

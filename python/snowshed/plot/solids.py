@@ -231,7 +231,7 @@ def _parts(
     elif kind == "mesh" and (surface := _mesh(shape, base_dir)) is not None:
         yield surface
     else:
-        surface = _sampled(shape, scene, base_dir, near)
+        surface = _sampled_surface(shape, scene, base_dir, near)
         if len(surface.triangles):
             yield surface
 
@@ -248,7 +248,7 @@ def _mesh(shape: Mapping[str, Any], base_dir: Path) -> Optional[Solid]:
     return Solid("mesh", "solid", corners, triangles)
 
 
-def _sampled(
+def _sampled_surface(
     shape: Mapping[str, Any], scene: Mapping[str, Any], base_dir: Path, near: Box
 ) -> Solid:
     """Return the surface of any shape where the snow may come, from samples of its distance."""

@@ -86,7 +86,7 @@ def stack_figure(
     title = f"Stack after event {simulation.event}, from the side"
     if stack.mass == 0.0:
         title += ": no snow has come down"
-    if _pictured(stack) is stack.body:
+    if _pictured_extent(stack) is stack.body:
         title += f": its largest body; 97 % of the snow lies within {stack.length:.2f} m"
     _caption(figure, scene, title, simulation.damping_rate_per_s)
     return figure
@@ -242,7 +242,7 @@ def _draw_measures(axes: Axes, stack: StackMeasure, tilt: float) -> None:
     """Draw the outline, and height and length as dimension lines along the ground."""
     if len(stack.outline) == 0:
         return
-    shown = _pictured(stack)
+    shown = _pictured_extent(stack)
     axes.plot(*_tilted(_profile(shown), tilt).T, color=INK, linewidth=1.3, zorder=5)
     _dimension_line(axes, _length_ends(shown), tilt, f"length {shown.length:.3f} m", above=False)
     foot = _ground_at_crest(shown)
@@ -250,7 +250,7 @@ def _draw_measures(axes: Axes, stack: StackMeasure, tilt: float) -> None:
     _dimension_line(axes, crest, tilt, f"height {shown.height:.3f} m", above=True)
 
 
-def _pictured(stack: StackMeasure) -> Extent:
+def _pictured_extent(stack: StackMeasure) -> Extent:
     """Return the stack, or its largest body if that would be too small to see."""
     return stack.body if stack.length > 2 * stack.body.length > 0 else stack
 
@@ -352,14 +352,14 @@ def _stack_limits(stack: StackMeasure, tilt: float) -> Limits:
     """Return a close view of the stack and its dimension lines."""
     if len(stack.outline) == 0:
         return 0.0, 1.0, -0.1, 0.3
-    return _around(_tilted(_frame(_pictured(stack)), tilt), 0.1)
+    return _around(_tilted(_frame(_pictured_extent(stack)), tilt), 0.1)
 
 
 def _scene_limits(stack: StackMeasure, tilt: float, frame: dict[str, Any] | None) -> Limits:
     """Return a view of the panel, the ground below it and the stack."""
     points = [np.zeros((1, 2))]
     if len(stack.outline):
-        points.append(_tilted(_frame(_pictured(stack)), tilt))
+        points.append(_tilted(_frame(_pictured_extent(stack)), tilt))
     if frame is not None:
         ends = np.array(_panel_ends(frame))
         points += [ends, ends * [1, 0] - ends[:, :1] * [0, np.tan(np.radians(tilt))]]

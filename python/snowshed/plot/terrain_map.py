@@ -115,7 +115,7 @@ def _column(outline: Outline, axis: int) -> Floats:
 
 
 def _cropped(ground: Raster, part: Extent) -> Raster:
-    """Return a part of a terrain with a border of one cell, where the terrain has it."""
+    """Return a part of a terrain with a border of one cell, if the terrain extends so far."""
     rows, columns = ground.heights.shape
     left = max(0, int((part[0] - ground.east) / ground.cell) - 1)
     bottom = max(0, int((part[2] - ground.north) / ground.cell) - 1)

@@ -28,7 +28,7 @@ DATASET = (
     "material_id",
 )
 #: Names of quantities in files of earlier versions.
-RENAMED = {"snow": "material_id"}
+DATASET_NAMES = {"snow": "material_id"}
 
 
 def particle_dataset(values: Mapping[str, Numbers], event: int, time: float) -> xarray.Dataset:
@@ -56,7 +56,7 @@ def particle_dataset(values: Mapping[str, Numbers], event: int, time: float) -> 
     """
     library = require("xarray", "study", "a Dataset of particles")
     meanings = {name: (unit, meaning) for name, unit, meaning in _core.quantities()}
-    named = {RENAMED.get(name, name): array for name, array in values.items()}
+    named = {DATASET_NAMES.get(name, name): array for name, array in values.items()}
     dimensions = ("particle", "component")
     dataset: xarray.Dataset = library.Dataset(
         {name: (dimensions[: array.ndim], array) for name, array in named.items() if name != "id"},

@@ -149,7 +149,7 @@ class Results:
         xarray.Dataset
             Dimensions ``particle``, with the ids, and ``component``.
         """
-        number, file = self._stored(event)
+        number, file = self._stored_event(event)
         return particle_dataset(read_particles(file), number, self._duration(number))
 
     def grid(self, event: Optional[int] = None) -> xarray.Dataset:
@@ -168,10 +168,10 @@ class Results:
         xarray.Dataset
             Dimensions x, (y,) z, the nodes, and component.
         """
-        number, file = self._stored(event)
+        number, file = self._stored_event(event)
         return grid_dataset(stored_grid(self.scene.data, file), number, self._duration(number))
 
-    def _stored(self, event: Optional[int]) -> tuple[int, Path]:
+    def _stored_event(self, event: Optional[int]) -> tuple[int, Path]:
         """Return the number of an event, the last by default, and the file of its particles."""
         there = {
             int(file.stem.rpartition("_")[2]): file

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 #: Files of a run from which the new run continues.
-CONTINUED = (
+CONTINUED_FILES = (
     *("run.json", "events.csv", "outline.csv", "conversions.csv", "ageing.csv", "ageing.json"),
     *("energy.csv", "film.bin", "particles.pvd", "particles", "snapshots"),
 )
@@ -124,7 +124,7 @@ def extended_scene(
     snow: Optional[Snow] = None,
     thickness: Optional[float] = None,
 ) -> ResolvedScene:
-    """Return a scene with more events, which may lay other slabs.
+    """Return a scene with more events; the new events may lay other slabs.
 
     Raises
     ------
@@ -197,7 +197,7 @@ def _prepare(earlier: RunFolder, scene: ResolvedScene, out_dir: Path) -> None:
         scene.core, scene.base_dir, os.fspath(earlier.checkpoint)
     )
     with replacing_folder(out_dir) as beside:
-        for name in CONTINUED:
+        for name in CONTINUED_FILES:
             there = earlier.folder / name
             if there.is_dir():
                 shutil.copytree(there, beside / name)

@@ -320,13 +320,13 @@ class Simulation:
     def on_panel(self, order: Order = "id") -> Booleans:
         """Return whether each particle (n,) lies on the panel."""
         on_panel = self._core.on_panel()
-        if _checked(order) == "storage":
+        if _checked_order(order) == "storage":
             by_id, on_panel = on_panel, np.empty_like(on_panel)
             on_panel[self._core.order_by_id()] = by_id
         return on_panel
 
     def _read(self, name: str, order: Order) -> Numbers:
-        read = self._core.field_by_id if _checked(order) == "id" else self._core.field
+        read = self._core.field_by_id if _checked_order(order) == "id" else self._core.field
         return read(name)
 
     def to_xarray(self) -> xarray.Dataset:
@@ -443,7 +443,7 @@ class Simulation:
         )
 
 
-def _checked(order: Order) -> Order:
+def _checked_order(order: Order) -> Order:
     if order not in ("id", "storage"):
         raise InputError(f'order: {order!r}; allowed: "id", "storage"')
     return order

@@ -69,7 +69,7 @@ class ResolvedScene:
         return data
 
     def copied_data(self) -> JsonObject:
-        """Return a copy of the data, which may be changed."""
+        """Return a copy of the data, which callers may change."""
         return copy.deepcopy(dict(self.data))
 
     def __getstate__(self) -> dict[str, str]:

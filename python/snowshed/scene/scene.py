@@ -47,8 +47,8 @@ from snowshed.scene.scene_repr import scene_repr
 __all__ = ["ResolvedScene", "Scene", "SceneLike", "resolve_scene"]
 
 #: Parts that every scene has; a part without values is empty.
-ALWAYS = ("snow", "seeding", SETTINGS_KEY, "events", "output")
-NOT_GIVEN: Any = None
+REQUIRED_PARTS = ("snow", "seeding", SETTINGS_KEY, "events", "output")
+UNSET: Any = None
 
 SLIP_CHANGED = (
     '"slip" now holds snow on the surface except at its edge; '
@@ -136,7 +136,7 @@ class Scene(Record):
     title: Optional[str] = None
     gravity: Optional[float] = None
     misplaced_snow: Optional[MisplacedSnow] = None
-    snow: Snow = NOT_GIVEN
+    snow: Snow = UNSET
     panel: Optional[Panel] = None
     slab: Optional[Slab] = None
     ground: Optional[Ground] = None
@@ -147,11 +147,11 @@ class Scene(Record):
     obstacles: Optional[List[Obstacle]] = None
     bodies: Optional[List[Body]] = None
     domain: Optional[Domain] = None
-    seeding: Seeding = NOT_GIVEN
+    seeding: Seeding = UNSET
     method: Optional[str] = None
-    numerics: MethodSettings = NOT_GIVEN
-    events: Events = NOT_GIVEN
-    output: Output = NOT_GIVEN
+    numerics: MethodSettings = UNSET
+    events: Events = UNSET
+    output: Output = UNSET
 
     _base_dir = "."  # not a field: the folder of the files that the scene names
 
@@ -204,7 +204,9 @@ class Scene(Record):
             At a value that its field does not take.
         """
         data = super().to_data(path, depth)
-        return {key: value for key, value in data.items() if key not in ALWAYS or value != {}}
+        return {
+            key: value for key, value in data.items() if key not in REQUIRED_PARTS or value != {}
+        }
 
     def assign(self, key: str, value: object, path: str = "") -> None:
         """Set one field by its JSON key; settings become those of the scene's method.
@@ -220,7 +222,7 @@ class Scene(Record):
 
     def _keep(self, name: str, value: object, where: str) -> None:
         """Set a field; a part that every scene has becomes empty, and settings fit the method."""
-        if name in ALWAYS and value is None:
+        if name in REQUIRED_PARTS and value is None:
             kind = self.record_type(name)
             value = kind() if kind is not None else None
         if name == SETTINGS_KEY:
@@ -288,7 +290,7 @@ class Scene(Record):
 
     def __repr__(self) -> str:
         """Return the values that differ from the defaults, as calls that make them."""
-        return scene_repr(self, ALWAYS)
+        return scene_repr(self, REQUIRED_PARTS)
 
     def _repr_html_(self) -> str:
         """Return a drawing and the text for notebooks; an incomplete scene has no drawing."""

@@ -26,7 +26,11 @@ def scene_repr(scene: Record, always: Collection[str]) -> str:
     lines = []
     for key, name in scene.keys().items():
         value = getattr(scene, name)
-        if key in always and isinstance(value, Record) and not _given(value, nodes.get(key, {})):
+        if (
+            key in always
+            and isinstance(value, Record)
+            and not _changed_fields(value, nodes.get(key, {}))
+        ):
             continue
         if key != "snowshed" and not _is_default(value, nodes.get(key, {})):
             lines.append(f"    {name}={_literal(value, nodes.get(key, {}))},\n")
@@ -35,7 +39,7 @@ def scene_repr(scene: Record, always: Collection[str]) -> str:
 
 def _literal(value: object, node: JsonObject) -> str:
     if isinstance(value, Record):
-        return call_text(type(value), _given(value, node))
+        return call_text(type(value), _changed_fields(value, node))
     if isinstance(value, (list, tuple)):
         items = resolve(scene_schema(), node).get("items")
         of_items = items if isinstance(items, dict) else {}
@@ -44,7 +48,7 @@ def _literal(value: object, node: JsonObject) -> str:
     return f"{value:g}" if isinstance(value, float) else repr(value)
 
 
-def _given(record: Record, node: JsonObject) -> dict[str, str]:
+def _changed_fields(record: Record, node: JsonObject) -> dict[str, str]:
     """Return the fields that differ from the defaults, as texts."""
     nodes = properties(scene_schema(), node)
     return {

@@ -56,7 +56,7 @@ def natural_cover(
         return [0.0] * len(season)
     if not isinstance(settings.cover, str):
         return [settings.cover] * len(season)
-    measured = _measured(season)
+    measured = _measured_depths(season)
     snow = SnowColumn(load_factor=gravity)
     depths: list[float] = []
     for row, earlier, depth in zip(season, [None, *season], measured):
@@ -94,7 +94,7 @@ def end_of_readings(season: Sequence[Weather]) -> Optional[Weather]:
     return last if last.snow_depth else None
 
 
-def _measured(season: Sequence[Weather]) -> list[Optional[float]]:
+def _measured_depths(season: Sequence[Weather]) -> list[Optional[float]]:
     """Return the depth at each row from readings, m; None in long gaps and outside the readings."""
     depths: list[Optional[float]] = [row.snow_depth for row in season]
     readings = [number for number, row in enumerate(season) if row.snow_depth is not None]

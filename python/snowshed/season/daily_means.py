@@ -150,7 +150,7 @@ def _sums(rows: Sequence[Observation], name: str) -> tuple[dict[date, float], se
 
 
 def _disjoint(station: Station) -> Sequence[Observation]:
-    """Return rows whose new snow does not overlap; of rolling sums, those at one clock time."""
+    """Return rows whose new snow does not overlap: rolling sums are taken at one clock time."""
     if "snowfall" not in station.rolling:
         return station.rows
     rows_with_snowfall = [row for row in station.rows if row.snowfall is not None]

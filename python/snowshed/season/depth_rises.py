@@ -92,8 +92,8 @@ def snow_of_depth(days: StationDays, temperature: Floats) -> DepthSnow:
         numbers = np.flatnonzero(wrong)
         snow.notes.append(
             f"{plural(len(numbers), 'reading')} of the snow depth "
-            f"({_some(days.dates, numbers)}) went up or down by {MIN_SPIKE:g} m or more and was "
-            "taken back: a spike or a drop-out of the sensor, not snow"
+            f"({_dates_text(days.dates, numbers)}) went up or down by {MIN_SPIKE:g} m or more and "
+            "was taken back: a spike or a drop-out of the sensor, not snow"
         )
     readings = np.flatnonzero(~np.isnan(level))
     if len(readings):
@@ -107,7 +107,7 @@ def snow_of_depth(days: StationDays, temperature: Floats) -> DepthSnow:
 def _enter_rise(days: StationDays, snow: DepthSnow, before: int, after: int, rise: float) -> None:
     """Enter the rise from one reading to the next."""
     span = days.dates[after].toordinal() - days.dates[before].toordinal()
-    own = slice(before + 1, after + 1)
+    span_days = slice(before + 1, after + 1)
     rise_text = f"{rise:.2f} m from {days.dates[before]} to {days.dates[after]}"
     if rise > RECORD_DAY * span:
         snow.notes.append(
@@ -122,11 +122,11 @@ def _enter_rise(days: StationDays, snow: DepthSnow, before: int, after: int, ris
     if span > MAX_TOTAL_DAYS and rise < MIN_RISE:
         return  # the snow may have fallen and settled: unknown
     share = rise / span if rise >= MIN_RISE else 0.0
-    snow.snow[own] = share
+    snow.snow[span_days] = share
     if span > 1 and share:
         snow.totals.append(SharedRise(range(before + 1, after + 1), rise))
     if span > MAX_TOTAL_DAYS:
-        snow.filled[own] = True
+        snow.filled[span_days] = True
 
 
 def _note_gaps(days: StationDays, snow: DepthSnow) -> None:
@@ -134,10 +134,10 @@ def _note_gaps(days: StationDays, snow: DepthSnow) -> None:
     gaps = [total for total in snow.totals if len(total.days) > MAX_TOTAL_DAYS]
     if not gaps:
         return
-    most = max(gaps, key=lambda total: total.rise)
+    largest = max(gaps, key=lambda total: total.rise)
     largest_total = (
-        f"by {most.rise:.2f} m in the {len(most.days)} days to {days.dates[most.days[-1]]}, of "
-        f"which {len(most.days) - 1} have no reading"
+        f"by {largest.rise:.2f} m in the {len(largest.days)} days to "
+        f"{days.dates[largest.days[-1]]}, of which {len(largest.days) - 1} have no reading"
     )
     among = f" over {len(gaps)} gaps without readings, the most" if len(gaps) > 1 else ""
     snow.notes.append(
@@ -160,31 +160,31 @@ def _invalid_readings(
         if abs(change) < MIN_SPIKE or joints[first] != joints[good]:
             place += 1
             continue
-        limit, back = _longest(change, ordinals[first] - ordinals[good]), 0
+        limit, reverted_at = _max_spike_days(change, ordinals[first] - ordinals[good]), 0
         for later in range(place + 1, len(readings)):
-            now = readings[later]
-            if ordinals[now] - ordinals[first] > limit or joints[now] != joints[good]:
+            later_day = readings[later]
+            if ordinals[later_day] - ordinals[first] > limit or joints[later_day] != joints[good]:
                 break
-            beyond = (depth[good] - depth[now]) / change  # below 0: not fully reverted
+            beyond = (depth[good] - depth[later_day]) / change  # below 0: not fully reverted
             frozen = change < 0.0 and temperature[good : first + 1].max() <= MELT_LIMIT
             if (
                 MIN_REVERTED_SHARE - 1.0
                 <= beyond
                 <= (np.inf if frozen else 1.0 - MIN_REVERTED_SHARE)
             ):
-                back = later
+                reverted_at = later
                 break
-        melted = 0.0 < change <= RECORD_DAY and back > 0
-        if melted and temperature[first : readings[back] + 1].max() > MELT_LIMIT:
-            back = 0
-        if back:
-            wrong[readings[place:back]] = True
-            readings[place:back] = []
+        melted = 0.0 < change <= RECORD_DAY and reverted_at > 0
+        if melted and temperature[first : readings[reverted_at] + 1].max() > MELT_LIMIT:
+            reverted_at = 0
+        if reverted_at:
+            wrong[readings[place:reverted_at]] = True
+            readings[place:reverted_at] = []
         place += 1
     return wrong
 
 
-def _longest(change: float, days: int) -> int:
+def _max_spike_days(change: float, days: int) -> int:
     """Return the largest number of days that a spike of this size lasts."""
     if abs(change) > RECORD_DAY * days:
         return IMPOSSIBLE_DAYS
@@ -198,12 +198,12 @@ def _note_jumps(days: StationDays, snow: DepthSnow) -> None:
     if rising:
         snow.notes.append(
             f"the snow depth jumps at {plural(len(rising), 'joint')} of two series "
-            f"({_sizes(rising)}), which is not snowfall"
+            f"({_jumps_text(rising)}), which is not snowfall"
         )
     if others:
         snow.notes.append(
             f"the snow depth jumps {plural(len(others), 'time')} faster than snow falls "
-            f"({_sizes(others)}), which is not snowfall"
+            f"({_jumps_text(others)}), which is not snowfall"
         )
 
 
@@ -211,12 +211,12 @@ def _seam_dates(days: StationDays) -> set[date]:
     return {days.dates[number] for number in np.flatnonzero(days.seams).tolist()}
 
 
-def _sizes(jumps: Sequence[tuple[date, float]]) -> str:
+def _jumps_text(jumps: Sequence[tuple[date, float]]) -> str:
     largest = sorted(jumps, key=lambda jump: -abs(jump[1]))[:3]
     listed = ", ".join(f"{rise:+.2f} m on {day}" for day, rise in largest)
     return listed if len(jumps) <= len(largest) else f"the largest: {listed}"
 
 
-def _some(dates: Sequence[date], numbers: Integers) -> str:
+def _dates_text(dates: Sequence[date], numbers: Integers) -> str:
     listed = ", ".join(str(dates[number]) for number in numbers[:3])
     return listed if len(numbers) <= 3 else f"{listed} and others"

@@ -212,7 +212,7 @@ def _result(plan: SeasonPlan, settings: SeasonSettings, folder: SeasonFolder) ->
     table = season_table(scene.data, days, settings, events, outlines)
     simulated = table[pd.notna(table["event"]) & pd.notna(table["stack_height_m"])]
     dx = resolution_of(scene.data)
-    staying = first_staying(events)
+    first_staying_event = first_staying(events)
     return SeasonResult(
         table,
         releases=sum(day.released for day in days),
@@ -220,13 +220,13 @@ def _result(plan: SeasonPlan, settings: SeasonSettings, folder: SeasonFolder) ->
         contact=first_contact(table, dx),
         burial_event=first_reached(simulated["clearance_m"].tolist(), dx),
         crest_event=first_reached(simulated["crest_clearance_m"].tolist(), dx),
-        staying_event=staying,
+        staying_event=first_staying_event,
         winters=plan.winters,
         notes=[
             *plan.record.notes,
             *plan.winters.shortfalls,
             *assumptions(table, days, settings),
-            *notes(dx, days, settings, events, staying),
+            *notes(dx, days, settings, events, first_staying_event),
         ],
     )
 

@@ -13,7 +13,7 @@ from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
 #: 1994, Water Resour. Res. 30, 1665-1679.
 ALL_SNOW, ALL_RAIN = -1.1, 3.3
 DENSITY = "hedstrom-pomeroy-1998"
-COLDEST = -90.0  # degrees C, of the density
+MIN_TEMPERATURE = -90.0  # degrees C, of the density
 RULE = (
     "new snow follows from precipitation and temperature: all snow below "
     f"{ALL_SNOW:g} °C, all rain above {ALL_RAIN:g} °C (U.S. Army Corps of Engineers 1956), "
@@ -52,7 +52,7 @@ def snow_of_gauge(water: Floats, temperature: Floats) -> Floats:
     """
     density = NEW_SNOW_DENSITY[DENSITY]
     snow = [
-        amount * snow_fraction(warm) / density(max(warm, COLDEST))
+        amount * snow_fraction(warm) / density(max(warm, MIN_TEMPERATURE))
         for amount, warm in zip(water, temperature)
     ]
     return np.asarray(np.minimum(np.round(snow, 4), RECORD_DAY), dtype=float)

@@ -13,14 +13,14 @@ if TYPE_CHECKING:
     import pandas as pd
 
 #: Share of a slab that may stay on the panel; if more stays, the core lays the next slab on top.
-STAYING = 0.02
+MAX_STAYING_SHARE = 0.02
 
 
 def first_staying(events: pd.DataFrame) -> Optional[int]:
-    """Return the first event that leaves more than `STAYING` of its snow on the panel."""
+    """Return the first event that leaves more than `MAX_STAYING_SHARE` of its snow on the panel."""
     total = events["mass_kg"] + events["on_panel_kg"]
     brought = total.diff().fillna(total)
-    stayed = events["event"][events["on_panel_kg"] > STAYING * brought]
+    stayed = events["event"][events["on_panel_kg"] > MAX_STAYING_SHARE * brought]
     return int(stayed.iloc[0]) if len(stayed) else None
 
 
@@ -75,7 +75,7 @@ def notes(
     days: Sequence[WinterDay],
     settings: SeasonSettings,
     events: pd.DataFrame,
-    staying: Optional[int],
+    first_staying_event: Optional[int],
 ) -> list[str]:
     """Return notes on the limits of the results, a sentence each.
 
@@ -89,13 +89,13 @@ def notes(
         The settings of the season.
     events
         The table of the slide-offs, as in events.csv.
-    staying
+    first_staying_event
         From `first_staying`.
     """
     return [
         *_slab_notes(dx, days, settings),
         *_ageing_notes(settings),
-        *_slide_off_notes(events, staying),
+        *_slide_off_notes(events, first_staying_event),
     ]
 
 
@@ -128,11 +128,11 @@ def _ageing_notes(settings: SeasonSettings) -> Iterator[str]:
         )
 
 
-def _slide_off_notes(events: pd.DataFrame, staying: Optional[int]) -> Iterator[str]:
-    if staying is not None:
+def _slide_off_notes(events: pd.DataFrame, first_staying_event: Optional[int]) -> Iterator[str]:
+    if first_staying_event is not None:
         yield (
-            f"from event {staying} on, snow that should have left stayed on the panel; later slabs "
-            "are laid on top of it"
+            f"from event {first_staying_event} on, snow that should have left stayed on the panel; "
+            "later slabs are laid on top of it"
         )
     unfinished = int((events["ended"] == "time_limit").sum())
     if unfinished:

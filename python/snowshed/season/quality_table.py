@@ -51,9 +51,9 @@ def caption(winters: WinterList) -> str:
     if len(winters.winters) > 1:
         return f"Snow of {len(winters.winters)} winters; well observed in {len(winters.counted)}"
     winter = winters.winters[0]
-    filled = f"; filled: {_filled(winter)}" if winter.sources[SnowSource.FILLED] else ""
+    filled = f"; filled: {_filled_text(winter)}" if winter.sources[SnowSource.FILLED] else ""
     return (
-        f"Snow of {winter.name}: observed on {_observed(winter)}, source: {winter.source_text}"
+        f"Snow of {winter.name}: observed on {_observed_text(winter)}, source: {winter.source_text}"
         f"{filled}"
     )
 
@@ -62,16 +62,16 @@ def _row(winter: WinterQuality) -> tuple[str, ...]:
     missing = winter.sources[SnowSource.MISSING]
     return (
         winter.name,
-        _observed(winter),
+        _observed_text(winter),
         f"{winter.snowfall:.2f}" if winter.rows else "",
         winter.source_text if winter.rows else "",
-        _filled(winter) if winter.sources[SnowSource.FILLED] else "",
+        _filled_text(winter) if winter.sources[SnowSource.FILLED] else "",
         plural(missing, "day") if missing else "",
         "yes" if winter.counts else "no",
     )
 
 
-def _observed(winter: WinterQuality) -> str:
+def _observed_text(winter: WinterQuality) -> str:
     if winter.listed and winter.rows:
         return "list of snowfalls"
     if not winter.rows:
@@ -79,5 +79,5 @@ def _observed(winter: WinterQuality) -> str:
     return f"{winter.observed} of {plural(winter.season, 'day')} ({whole_percent(winter.share)})"
 
 
-def _filled(winter: WinterQuality) -> str:
+def _filled_text(winter: WinterQuality) -> str:
     return f"{plural(winter.sources[SnowSource.FILLED], 'day')}, {winter.filled_snow:.2f} m"

@@ -22,7 +22,7 @@ from snowshed.season.source import SnowSource
 
 CONTRADICTION = 2.0  # ratio of two columns over a winter
 MIN_DIFFERENCE = 0.1  # m over a winter
-COLD = -4.0  # degrees C; on colder days all precipitation is snow
+MAX_COLD_TEMPERATURE = -4.0  # degrees C; on colder days all precipitation is snow
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ class Chooser:
         only: SnowSource | None = None,
     ) -> None:
         self.only = only
-        self._cold = temperature <= COLD
+        self._cold = temperature <= MAX_COLD_TEMPERATURE
         everything = np.ones(len(temperature), dtype=bool)
         self._all = {
             source: column

@@ -11,13 +11,13 @@ import numpy as np
 from snowshed.base.arrays import Booleans, Floats, Integers
 
 MAX_INTERPOLATED_DAYS = 3  # longest gap that is interpolated linearly, days
-AROUND = 7  # half width of the window of a mean, days
+HALF_WINDOW_DAYS = 7  # half width of the window of a mean, days
 MIN_MEASURED_DAYS = 5  # smallest number of measured days in such a mean
-YEAR = 366
+DAYS_OF_YEAR = 366
 
 
 def filled_temperatures(
-    dates: Sequence[date], measured: Floats, is_measured: Optional[Booleans] = None
+    dates: Sequence[date], measured: Floats, counted: Optional[Booleans] = None
 ) -> tuple[Floats, Booleans, list[str]]:
     """Return the temperature of every day, the days far from a measurement, and notes.
 
@@ -31,7 +31,7 @@ def filled_temperatures(
         Days, in order.
     measured : (n,)
         Temperatures, degrees C; NaN: not measured; at least one is measured.
-    is_measured : (n,)
+    counted : (n,)
         The days that notes count; None: all.
 
     Examples
@@ -42,21 +42,21 @@ def filled_temperatures(
     """
     ordinals = np.array([day.toordinal() for day in dates])
     measured_days = np.flatnonzero(~np.isnan(measured))
-    lined: Floats = np.interp(ordinals, ordinals[measured_days], measured[measured_days])
+    interpolated: Floats = np.interp(ordinals, ordinals[measured_days], measured[measured_days])
     far = _distance(ordinals, ordinals[measured_days]) > MAX_INTERPOLATED_DAYS
-    usual = _usual(dates, measured)
-    climate = far & ~np.isnan(usual)
-    filled = np.where(climate, usual, lined)
-    gaps = np.isnan(measured) & (True if is_measured is None else is_measured)
+    climate_means = _climate_means(dates, measured)
+    climate = far & ~np.isnan(climate_means)
+    filled = np.where(climate, climate_means, interpolated)
+    gaps = np.isnan(measured) & (True if counted is None else counted)
     return filled, far, _notes(dates, gaps & climate, gaps & far & ~climate, gaps & ~far)
 
 
 def _notes(
-    dates: Sequence[date], climate: Booleans, lined: Booleans, bridged: Booleans
+    dates: Sequence[date], climate: Booleans, interpolated: Booleans, bridged: Booleans
 ) -> list[str]:
     rules = (
         (climate, "they have the mean of the same days of the year in the file"),
-        (lined, "no other year has temperatures then; they are interpolated"),
+        (interpolated, "no other year has temperatures then; they are interpolated"),
         (bridged, "they are interpolated from the days before and after"),
     )
     return [
@@ -88,17 +88,17 @@ def _distance(days: Floats, measured_days: Floats) -> Floats:
     return np.asarray(np.minimum(np.abs(days - before), np.abs(after - days)), dtype=float)
 
 
-def _usual(dates: Sequence[date], measured: Floats) -> Floats:
+def _climate_means(dates: Sequence[date], measured: Floats) -> Floats:
     """Return the mean temperature around each day of the year; NaN where too few were measured."""
-    place = np.array([_day_of_year(day) for day in dates])
+    day_of_year = np.array([_day_of_year(day) for day in dates])
     is_measured = ~np.isnan(measured)
-    sums = np.bincount(place[is_measured], measured[is_measured], YEAR)
-    counts = np.bincount(place[is_measured], minlength=YEAR)
-    window = np.arange(-AROUND, AROUND + 1)
-    around = (np.arange(YEAR)[:, None] + window) % YEAR
+    sums = np.bincount(day_of_year[is_measured], measured[is_measured], DAYS_OF_YEAR)
+    counts = np.bincount(day_of_year[is_measured], minlength=DAYS_OF_YEAR)
+    window = np.arange(-HALF_WINDOW_DAYS, HALF_WINDOW_DAYS + 1)
+    around = (np.arange(DAYS_OF_YEAR)[:, None] + window) % DAYS_OF_YEAR
     total, number = sums[around].sum(axis=1), counts[around].sum(axis=1)
     means = np.where(number >= MIN_MEASURED_DAYS, total / np.maximum(number, 1), np.nan)
-    return np.asarray(means[place], dtype=float)
+    return np.asarray(means[day_of_year], dtype=float)
 
 
 def _day_of_year(day: date) -> int:

@@ -73,7 +73,9 @@ def makespan(works: Iterable[float], workers: int) -> float:
     return max(busy_until)
 
 
-def expected(scenes: Sequence[str], works: Sequence[float], workers: int, threads: int) -> float:
+def expected_time(
+    scenes: Sequence[str], works: Sequence[float], workers: int, threads: int
+) -> float:
     """Return the expected time of runs, s.
 
     The speed is measured on three runs, each of which stands for a third of the work. Before long

@@ -38,15 +38,15 @@ BUSY_S = 60.0  # s to wait for another process that is writing
 SQL_TYPES: Mapping[type, str] = {int: "INTEGER", float: "REAL", str: "TEXT"}
 
 #: Columns of each method's measures after an event: int, float or str.
-MEASURED: Mapping[str, Mapping[str, type]] = {
+MEASURE_COLUMNS: Mapping[str, Mapping[str, type]] = {
     name: method.run_class().COLUMNS for name, method in METHODS.items()
 }
 #: Columns of all methods, with their types in the store.
 STORED_TYPES: Mapping[str, str] = {
-    name: SQL_TYPES[kind] for columns in MEASURED.values() for name, kind in columns.items()
+    name: SQL_TYPES[kind] for columns in MEASURE_COLUMNS.values() for name, kind in columns.items()
 }
 #: Columns of the default method.
-MEASURED_TYPES: Mapping[str, str] = {name: STORED_TYPES[name] for name in MEASURED[DEFAULT]}
+MEASURED_TYPES: Mapping[str, str] = {name: STORED_TYPES[name] for name in MEASURE_COLUMNS[DEFAULT]}
 #: Facts about the computing of a run.
 TIMING: Mapping[str, str] = {
     "run_wall_s": "REAL",

@@ -18,7 +18,7 @@ from snowshed.scene.scene import Scene
 from snowshed.study import session, study_file
 from snowshed.study.factors import SEED, Part, axis
 from snowshed.study.scene_hash import RunKey
-from snowshed.study.season_part import DECIDED, SeasonPart
+from snowshed.study.season_part import SEASON_PATHS, SeasonPart
 from snowshed.study.table import read_table
 
 if TYPE_CHECKING:
@@ -161,7 +161,7 @@ class Study:
             raise InputError("has no parts; give at least one, which may be empty")
         for part in self.parts:
             self._check(part)
-        count = sum(math.prod(len(factor) for factor in part) for part in self._seeded())
+        count = sum(math.prod(len(factor) for factor in part) for part in self._seeded_parts())
         if count > MAX_RUNS:
             raise InputError(f"has {count} runs; at most {MAX_RUNS} are allowed")
 
@@ -303,13 +303,13 @@ class Study:
         """
         return session.expected_duration([run.scene for run in self.runs()], jobs=jobs)
 
-    def _seeded(self) -> Iterator[Part]:
+    def _seeded_parts(self) -> Iterator[Part]:
         seeds = [] if self.seeds is None else [axis(SEED, self.seeds)]
         for part in self.parts:
             yield [*part, *seeds]
 
     def _points(self) -> Iterator[dict[str, object]]:
-        for part in self._seeded():
+        for part in self._seeded_parts():
             for points in itertools.product(*(factor.points() for factor in part)):
                 yield {path: value for point in points for path, value in point.items()}
 
@@ -328,7 +328,7 @@ class Study:
                 raise InputError(f"{path}: varied by two factors of the same product")
             if any(path == name or path.startswith(f"{name}.") for name in WITHOUT_EFFECT):
                 raise InputError(f"{path}: cannot be varied; it does not change a result")
-            if self.season is not None and any(path.startswith(name) for name in DECIDED):
+            if self.season is not None and any(path.startswith(name) for name in SEASON_PATHS):
                 raise InputError(f"{path}: cannot be varied; the weather of the season sets it")
         if self.seeds is not None and SEED in paths:
             raise InputError(f"{SEED}: varied by a factor and by the study's seeds")

@@ -88,8 +88,8 @@ def to_dataset(table: pd.DataFrame) -> xarray.Dataset:
     grids = table.set_index(["hash", "event"])[per_event].unstack("event")
     runs = table.drop(columns=["event", *per_event]).drop_duplicates("hash")
     grids = grids.reindex(runs["hash"])
-    data = {name: (("run", "event"), _filled(grids[name])) for name in per_event}
-    coordinates = {name: ("run", _filled(runs[name])) for name in runs}
+    data = {name: (("run", "event"), _plain_array(grids[name])) for name in per_event}
+    coordinates = {name: ("run", _plain_array(runs[name])) for name in runs}
     coordinates["event"] = ("event", list(grids[per_event[0]].columns))
     dataset = library.Dataset(data, coordinates)
     for name, unit in _units().items():
@@ -128,7 +128,7 @@ WRITERS: Mapping[str, Callable[[pd.DataFrame, Path], None]] = {
 }
 
 
-def _filled(columns: Any) -> Any:
+def _plain_array(columns: Any) -> Any:
     """Return the values of columns as a plain array; NetCDF knows no missing texts or counts."""
     kinds = columns.dtypes if columns.ndim == 2 else [columns.dtype]
     if all(kind == "Int64" for kind in kinds):

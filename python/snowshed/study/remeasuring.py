@@ -90,7 +90,7 @@ def remeasure(
             f"{folder}: no particles of {len(rows) - len(measures)} of {len(rows)} stacks; "
             "their runs were computed without keep_particles"
         )
-    return _replaced(table, measures)
+    return _with_measures(table, measures)
 
 
 def _unpacked(store: Store, hash_: str, event: int, data: bytes) -> EventParticles:
@@ -100,7 +100,7 @@ def _unpacked(store: Store, hash_: str, event: int, data: bytes) -> EventParticl
         raise store.damaged(f"run {hash_}, event {event}: {error}") from None
 
 
-def _replaced(table: pd.DataFrame, measures: Mapping[Any, Mapping[str, Any]]) -> pd.DataFrame:
+def _with_measures(table: pd.DataFrame, measures: Mapping[Any, Mapping[str, Any]]) -> pd.DataFrame:
     """Return the table with the new measures of its rows."""
     import pandas as pd
 

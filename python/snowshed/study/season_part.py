@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 WEATHER = "weather"
 #: Parameters of a scene that the winter sets.
-DECIDED = ("slab.thickness", "slab.layers", "events.count", "bodies")
+SEASON_PATHS = ("slab.thickness", "slab.layers", "events.count", "bodies")
 
 
 @dataclass(frozen=True)

@@ -141,7 +141,7 @@ def expected_duration(scenes: Sequence[str], *, jobs: Optional[int] = None) -> t
     workers, at_once = Resources(jobs).workers(len(scenes))
     works = [cost_estimate.work(scene) for scene in scenes]
     threads = workers.threads(len(scenes))
-    return cost_estimate.expected(scenes, works, at_once, threads), at_once
+    return cost_estimate.expected_time(scenes, works, at_once, threads), at_once
 
 
 def _compute(
@@ -349,7 +349,7 @@ class _Narrator:
         works = [session.work[run.hash] for run in session.waiting]
         threads = session.workers.threads(len(works))
         self._work = sum(works) or 1.0
-        self._expected = cost_estimate.expected(scenes, works, at_once, threads)
+        self._expected = cost_estimate.expected_time(scenes, works, at_once, threads)
 
     def __call__(self) -> None:
         session = self._session

@@ -202,9 +202,9 @@ def _content(data: dict[str, Any], file: Path) -> Content:
     return Content(
         _scene(data, folder),
         parts,
-        _typed(data.get("name", file.stem), str, "name", "a text"),
+        _checked_value(data.get("name", file.stem), str, "name", "a text"),
         _seeds(data["seeds"]) if "seeds" in data else None,
-        _typed(data.get("description", ""), str, "description", "a text"),
+        _checked_value(data.get("description", ""), str, "description", "a text"),
         SeasonPart.of(_table(data["season"], "season"), folder) if "season" in data else None,
     )
 
@@ -213,7 +213,7 @@ def _scene(data: Mapping[str, Any], folder: Path) -> Scene:
     given = dict(_table(data.get("scene"), "scene"))
     sources = {key: given.pop(key) for key in SCENE_SOURCES if key in given}
     for key, value in sources.items():
-        _typed(value, str, f"scene.{key}", "a text")
+        _checked_value(value, str, f"scene.{key}", "a text")
     scene = Scene()
     if "preset" in sources:
         scene = _with_place("scene", Scene.preset, sources["preset"])
@@ -228,7 +228,7 @@ def _scene(data: Mapping[str, Any], folder: Path) -> Scene:
             _with_place("scene", scene.set, key, value)
     for key, path in (("dimension", "dimension"), ("events", "events.count")):
         if key in data:
-            scene.set(path, _typed(data[key], int, key, "a whole number"))
+            scene.set(path, _checked_value(data[key], int, key, "a whole number"))
     accuracy = _table(data.get("accuracy", {}), "accuracy")
     names = {key: FORMER_NAMES.get(key, key) for key in accuracy}
     settings = accuracy_of(scene.to_data())
@@ -284,12 +284,12 @@ def _factors(data: Mapping[str, Any], where: str) -> list[Factor]:
     return [
         *(_with_place(f"{where}axes", axis, path, _values(value, f"{where}axes.{path}"))
           for path, value in axes.items()),
-        *(_zipped(table, inside) for table, inside in _tables(data, "zip", where)),
+        *(_zip_factor(table, inside) for table, inside in _tables(data, "zip", where)),
         *(_sample(table, inside) for table, inside in _tables(data, "sample", where)),
     ]  # fmt: skip
 
 
-def _zipped(table: Mapping[str, Any], where: str) -> Factor:
+def _zip_factor(table: Mapping[str, Any], where: str) -> Factor:
     columns = {path: _values(value, f"{where}.{path}") for path, value in _flatten(table).items()}
     return _with_place(where, Factor, columns)
 
@@ -300,8 +300,8 @@ def _sample(table: Mapping[str, Any], where: str) -> Factor:
     if not isinstance(method, str) or method not in SAMPLE_METHODS:
         allowed = ", ".join(SAMPLE_METHODS)
         raise InputError(f"{where}.method: {method!r} is unknown; allowed: {allowed}")
-    count = _typed(table.get("count"), int, f"{where}.count", "a whole number")
-    seed = _typed(table.get("seed", 1), int, f"{where}.seed", "a whole number")
+    count = _checked_value(table.get("count"), int, f"{where}.count", "a whole number")
+    seed = _checked_value(table.get("seed", 1), int, f"{where}.seed", "a whole number")
     axes = _flatten(_table(table.get("axes", {}), f"{where}.axes"))
     spans = {path: _span(value, f"{where}.axes.{path}") for path, value in axes.items()}
     return _with_place(where, SAMPLE_METHODS[method], spans, count, seed=seed)
@@ -323,7 +323,7 @@ def _range(value: Mapping[str, Any], where: str) -> list[float]:
     numbers = _range_numbers(value, RANGE_KEYS, where)
     start, stop = numbers.pop("from"), numbers.pop("to")
     if "count" in numbers:
-        _typed(value["count"], int, f"{where}.count", "a whole number")
+        _checked_value(value["count"], int, f"{where}.count", "a whole number")
     scale = value.get("scale", "linear")
     if scale == "linear":
         return _with_place(where, linear, start, stop, **numbers)
@@ -391,7 +391,7 @@ def _check_keys(data: Iterable[str], allowed: tuple[str, ...], where: str) -> No
             raise InputError(f"{where}{key}: unknown key; allowed: {', '.join(allowed)}")
 
 
-def _typed(value: Any, kind: type, where: str, expected: str) -> Any:
+def _checked_value(value: Any, kind: type, where: str, expected: str) -> Any:
     if value is None:
         raise InputError(f"{where}: missing; give {expected}")
     if not isinstance(value, kind) or isinstance(value, bool):

@@ -14,7 +14,7 @@ from snowshed.scene.accuracy_settings import NUMBERS, accuracy_of
 from snowshed.scene.resolved import scene_data
 from snowshed.scene.schema import current_path, with_current_names
 from snowshed.snow.stack.quantities import MEASURES, QUANTITIES
-from snowshed.study.database import MEASURED, STORED_TYPES, TIMING
+from snowshed.study.database import MEASURE_COLUMNS, STORED_TYPES, TIMING
 from snowshed.study.factors import SEED
 from snowshed.study.store import Store, StoredRun
 
@@ -68,7 +68,7 @@ def read_table(
         rows = list(_rows(store, name))
         axes = store.axes(name)
         scenes = [scene_data(run.scene) for run in store.runs(name)] or [{}]
-    measured = [column for scene in scenes for column in MEASURED[method_of(scene).name]]
+    measured = [column for scene in scenes for column in MEASURE_COLUMNS[method_of(scene).name]]
     settings = [column for scene in scenes for column in accuracy_of(scene)]
     columns = ["hash", *axes, "seed", "event", *measured, "error", "version", "dimension"]
     columns += [*settings, *(("wall_s", *RUN_TIMING) if timing else ())]

@@ -1,4 +1,4 @@
-"""Claims of chapter 4, as far as they can be judged without the measured stacks."""
+"""Claims of chapter 4, judged without the measured stacks."""
 
 from __future__ import annotations
 
@@ -43,12 +43,12 @@ class Recovery:
 
 def is_ranked_well(data: Recovery) -> Finding:
     """Test whether the ranking finds the snow that made the synthetic stacks."""
-    here = data.ranked
+    true_rows = data.ranked
     for path, value in CALIBRATED.items():
-        here = here[(here[path] / value - 1).abs() < 1e-9]
-    if here.empty:
+        true_rows = true_rows[(true_rows[path] / value - 1).abs() < 1e-9]
+    if true_rows.empty:
         raise LookupError("the calibrated snow among the parameter sets")
-    rank, count = int(here["rank"].iloc[0]), len(data.ranked)
+    rank, count = int(true_rows["rank"].iloc[0]), len(data.ranked)
     best = settings({path: data.ranked[path].iloc[0] for path in CALIBRATED})
     verdict = CONTRADICTED
     if rank == 1:
@@ -61,7 +61,8 @@ def is_ranked_well(data: Recovery) -> Finding:
 def is_in_the_ranges(data: Recovery) -> Finding:
     """Test whether the 95 % ranges of the posterior hold the true snow.
 
-    One of three ranges misses it by chance in about one of seven draws of the errors.
+    One of the three ranges misses the true value by chance, in about one of seven draws of the
+    errors.
 
     p0 and beta of the true snow lie at the ends of the grid, which no range between quantiles
     reaches: a range that is open at an end extends to it.

@@ -1,8 +1,9 @@
 """Claims of section 3.4: effects of a parameter, on average over all other parameters.
 
 The data are the table of `snowshed.analysis.sensitivity.fixation` with a column ``noise_m``: the
-standard deviation that the seeding gives ``mean_m``. A number without an event belongs to the last
-one. Values of the other parameters are a design, not a sample: only the seeding is random.
+standard deviation that the seeding gives ``mean_m``. Numbers are those after the last
+event unless an event is given. Values of the other parameters are a design, not a sample: only the
+seeding is random.
 """
 
 from __future__ import annotations
@@ -16,10 +17,10 @@ from reproductions.common.hypothesis_tests import (
     Estimate,
     Finding,
     all_of,
+    is_small,
     mean_of,
     negative,
     positive,
-    small,
 )
 from reproductions.frischholz2023.claims.s_index import (
     COHESION,
@@ -76,7 +77,7 @@ def hardly_matter(table: pd.DataFrame, target: str) -> Finding:
     for parameter in (HARDENING, MODULUS):
         mean = _last(_target_rows(table, target), parameter)["mean_m"].mean()
         change = effect(table, parameter, target).scaled(1 / mean)
-        findings.append(small(change, MAX_MINOR_CHANGE, _change(parameter, target), "%"))
+        findings.append(is_small(change, MAX_MINOR_CHANGE, _change(parameter, target), "%"))
     return all_of(findings)
 
 
@@ -141,7 +142,7 @@ def cohesion_drives(table: pd.DataFrame) -> Finding:
         for _, row in rows[rows["value"] < MAX_WEAK_COHESION * (1 - 1e-9)].iterrows():
             scatter = _deviation(row).scaled(1 / row["mean_m"])
             what = f"scatter at β {row['value']:g}, event {event:g}"
-            findings.append(small(scatter, MAX_INSENSITIVE_DEVIATION, what, "%"))
+            findings.append(is_small(scatter, MAX_INSENSITIVE_DEVIATION, what, "%"))
     return all_of(findings)
 
 

@@ -4,7 +4,7 @@ The data have one row per panel and event: ``event``, ``panel_height``, ``panel_
 ``panel_tilt`` (degrees), and ``ratio``, ``height``, ``length`` of the stack. Each input is judged
 among rows that share all others, relative to the mean of these rows. The noise is the standard
 error of a fitted slope, from the scatter about the fit. The events of a panel are not independent,
-because each builds on the one before: errors are summed by panels.
+because each builds on the one before, so errors are summed by panel.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from reproductions.common.hypothesis_tests import (
     Claim,
     Estimate,
     Finding,
+    is_small,
     negative,
     positive,
-    small,
 )
 from snowshed.base.arrays import Floats
 from snowshed.base.formatting import percent
@@ -35,11 +35,11 @@ if TYPE_CHECKING:
 
 PANEL = ("panel_height", "panel_length", "panel_tilt")
 INPUTS = ("event", *PANEL)
-#: Ratio of remaining variances from which a shape fits better.
+#: Smallest ratio of remaining variances at which a shape fits better.
 MIN_VARIANCE_RATIO = 1.5
 #: Largest departure of a parabola from a straight line, relative to the line's change.
 MAX_CURVATURE = 0.25
-#: Largest difference of equal slopes, relative to the mean slope.
+#: Largest difference of slopes that count as equal, relative to the mean slope.
 MAX_SLOPE_DIFFERENCE = 0.25
 #: Largest relative change of the ratio over all tilts if it hardly depends on them.
 MAX_TILT_EFFECT = 0.1
@@ -76,8 +76,8 @@ class Fit:
 def fit(table: pd.DataFrame, varied: str, target: str, *shapes: Shape) -> Fit:
     """Fit a target to functions of one input, among rows that share all others.
 
-    Standard errors are robust to errors that are alike within a panel (Liang and Zeger, 1986), and
-    not below those of independent errors.
+    Standard errors allow for correlation within a panel (Liang and Zeger, 1986), and are at least
+    those of independent errors.
 
     Raises
     ------
@@ -104,14 +104,16 @@ def fit(table: pd.DataFrame, varied: str, target: str, *shapes: Shape) -> Fit:
     if freedom < 1:
         raise LookupError(f"enough rows that differ in nothing but {varied.replace('_', ' ')}")
     inputs = [rows[varied].to_numpy(float) for rows in groups]
-    columns = np.concatenate([_centred([shape(x) for shape in shapes]) for x in inputs], axis=1).T
+    columns = np.concatenate(
+        [_subtract_means([shape(x) for shape in shapes]) for x in inputs], axis=1
+    ).T
     targets = np.concatenate([_relative(rows[target].to_numpy(float)) for rows in groups])
     slopes, *_ = np.linalg.lstsq(columns, targets, rcond=None)
-    left = targets - columns @ slopes
-    variance = float((left**2).sum() / freedom)
+    residuals = targets - columns @ slopes
+    variance = float((residuals**2).sum() / freedom)
     inverse = np.linalg.pinv(columns.T @ columns)
     panels = np.concatenate([panel[rows.index] for rows in groups])
-    sums = pd.DataFrame(columns * left[:, None]).groupby(panels).sum().to_numpy()
+    sums = pd.DataFrame(columns * residuals[:, None]).groupby(panels).sum().to_numpy()
     clusters = len(sums)
     robust = inverse @ sums.T @ sums @ inverse * (clusters / max(clusters - 1, 1))
     errors = np.sqrt(np.maximum(variance * np.diag(inverse), np.diag(robust)))
@@ -124,7 +126,7 @@ def straight(x: Floats) -> Floats:
     return x
 
 
-def _centred(columns: Sequence[Floats]) -> Floats:
+def _subtract_means(columns: Sequence[Floats]) -> Floats:
     return np.array([column - column.mean() for column in columns])
 
 
@@ -149,7 +151,7 @@ def _slope(table: pd.DataFrame, varied: str, target: str) -> tuple[Estimate, str
 
 
 def slopes_are_the_same(table: pd.DataFrame) -> Finding:
-    """Test whether H/L falls with the panel's height at every event alike."""
+    """Test whether the slope of H/L on the panel's height is the same at every event."""
     slopes = []
     for _, rows in table.groupby("event"):
         slope = fit(rows, "panel_height", "ratio", straight).slopes[0]
@@ -161,7 +163,7 @@ def slopes_are_the_same(table: pd.DataFrame) -> Finding:
     if not mean:
         raise LookupError("a slope")
     text = "largest difference between slopes of two events, of the mean slope"
-    return small((high - low).scaled(1 / mean), MAX_SLOPE_DIFFERENCE, text, "%")
+    return is_small((high - low).scaled(1 / mean), MAX_SLOPE_DIFFERENCE, text, "%")
 
 
 def is_logarithmic(table: pd.DataFrame) -> Finding:
@@ -179,13 +181,13 @@ def is_logarithmic(table: pd.DataFrame) -> Finding:
 
 
 def is_linear_in_height(table: pd.DataFrame) -> Finding:
-    """Test whether a parabola bends H/L away from a straight line by a small part of its change."""
+    """Test whether H/L departs little from a straight line in the panel's height."""
     middle = (table["panel_height"].min() + table["panel_height"].max()) / 2
     parabola = fit(table, "panel_height", "ratio", straight, lambda x: (x - middle) ** 2)
     slope, bend = parabola.slopes
     change = slope.value * parabola.span
     departure = bend.scaled((parabola.span / 2) ** 2 / change)
-    return small(departure, MAX_CURVATURE, "departure from a line, of the line's change", "%")
+    return is_small(departure, MAX_CURVATURE, "departure from a line, of the line's change", "%")
 
 
 def hardly_depends_on_tilt(table: pd.DataFrame) -> Finding:
@@ -198,7 +200,9 @@ def hardly_depends_on_tilt(table: pd.DataFrame) -> Finding:
     low, high = min(means, key=_value), max(means, key=_value)
     tilts = [first, *others]
     text = f"{tilts[means.index(high)]:g} and {tilts[means.index(low)]:g} degrees"
-    return small(high - low, MAX_TILT_EFFECT, f"largest relative difference of H/L, of {text}", "%")
+    return is_small(
+        high - low, MAX_TILT_EFFECT, f"largest relative difference of H/L, of {text}", "%"
+    )
 
 
 def _equal(x: Floats, value: float) -> Floats:

@@ -18,10 +18,10 @@ from reproductions.common.hypothesis_tests import (
     Claim,
     Estimate,
     Finding,
-    near,
+    is_near,
+    is_small,
     negative,
     positive,
-    small,
     widening,
 )
 from snowshed.base.formatting import percent
@@ -36,8 +36,8 @@ MEAN_HEIGHT, HEIGHT_TOLERANCE = 0.10, 0.010
 MEAN_LENGTH, LENGTH_TOLERANCE = 0.30, 0.061
 #: Largest motion of a tail that hardly moves, relative to the stack's length.
 MAX_TAIL_MOTION = 0.1
-#: Share of all events' snow that separates a slab that stayed from a slab that slid.
-STAYS = 0.5
+#: Share of the snow of all events on the panel above which a slab counts as stayed.
+MIN_STAYING_SHARE = 0.5
 
 Metric = Callable[..., float]
 
@@ -90,7 +90,7 @@ def head_walks_back(rows: pd.DataFrame) -> Finding:
 def tail_stays(rows: pd.DataFrame) -> Finding:
     """Test whether the tail moves by less than a tenth of the length after the first event."""
     moved = mean_over_runs(rows, lambda run: _growth(run, "tail") / run["length"].iloc[-1])
-    return small(moved, MAX_TAIL_MOTION, "tail, last event minus first, of the last length", "%")
+    return is_small(moved, MAX_TAIL_MOTION, "tail, last event minus first, of the last length", "%")
 
 
 def head_makes_the_length(rows: pd.DataFrame) -> Finding:
@@ -103,7 +103,10 @@ def length_grows_most_at_second(rows: pd.DataFrame) -> Finding:
     """Test whether the second event adds more length than each later one."""
     leads = [
         mean_over_runs(
-            rows, lambda run, at=event: _added(run, "length", 2) - _added(run, "length", at)
+            rows,
+            lambda run, at=event: (
+                _event_growth(run, "length", 2) - _event_growth(run, "length", at)
+            ),
         )
         for event in _later(rows)[1:]
     ]
@@ -113,7 +116,7 @@ def length_grows_most_at_second(rows: pd.DataFrame) -> Finding:
 def height_grows_always(rows: pd.DataFrame) -> Finding:
     """Test whether the height grows at every event, on average over the runs."""
     growths = [
-        mean_over_runs(rows, lambda run, at=event: _added(run, "height", at))
+        mean_over_runs(rows, lambda run, at=event: _event_growth(run, "height", at))
         for event in _later(rows)
     ]
     return positive(_least(growths), "smallest growth of the height at an event", "m")
@@ -124,7 +127,7 @@ def _later(rows: pd.DataFrame) -> list[int]:
     return sorted(int(event) for event in rows["event"].unique())[1:]
 
 
-def _added(run: pd.DataFrame, column: str, event: int) -> float:
+def _event_growth(run: pd.DataFrame, column: str, event: int) -> float:
     return float(run[column][event] - run[column][event - 1])
 
 
@@ -153,25 +156,25 @@ def steeper_throws_further(rows: pd.DataFrame) -> Finding:
         raise LookupError("stacks of two tilts")
     ends = rows[rows["tilt"].isin([tilts[0], tilts[-1]])]
 
-    def signed(run: pd.DataFrame) -> float:
+    def signed_middle(run: pd.DataFrame) -> float:
         """Return the middle of the stack, negative at the lower tilt."""
         middle = float((run["head"] + run["tail"]).mean() / 2)
         return middle if run["tilt"].iloc[0] == tilts[-1] else -middle
 
     what = f"middle of the stack, {tilts[-1]:g} minus {tilts[0]:g} degrees"
-    return positive(mean_over_runs(ends, signed).scaled(2.0), what, "m")
+    return positive(mean_over_runs(ends, signed_middle).scaled(2.0), what, "m")
 
 
 def mean_height(rows: pd.DataFrame) -> Finding:
     """Test whether the mean height over the events is about that of the laboratory."""
     height = mean_over_runs(rows, lambda run: float(run["height"].mean()))
-    return near(height, MEAN_HEIGHT, HEIGHT_TOLERANCE, "mean height over the events", "m")
+    return is_near(height, MEAN_HEIGHT, HEIGHT_TOLERANCE, "mean height over the events", "m")
 
 
 def mean_length(rows: pd.DataFrame) -> Finding:
     """Test whether the mean length over the events is about that of the laboratory."""
     length = mean_over_runs(rows, lambda run: float(run["length"].mean()))
-    return near(length, MEAN_LENGTH, LENGTH_TOLERANCE, "mean length over the events", "m")
+    return is_near(length, MEAN_LENGTH, LENGTH_TOLERANCE, "mean length over the events", "m")
 
 
 def ratio_of_dimensions(both: tuple[pd.DataFrame, pd.DataFrame]) -> Finding:
@@ -188,13 +191,13 @@ def ratio_of_dimensions(both: tuple[pd.DataFrame, pd.DataFrame]) -> Finding:
     ratio = three.value / two.value
     parts = math.hypot(three.noise / three.value, two.noise / two.value)
     text = "3D over 2D height after the last event"
-    return near(Estimate(ratio, ratio * parts), RATIO_3D_2D, RATIO_TOLERANCE, text)
+    return is_near(Estimate(ratio, ratio * parts), RATIO_3D_2D, RATIO_TOLERANCE, text)
 
 
 def slabs_stop_at_30_degrees(rows: pd.DataFrame) -> Finding:
     """Test whether a slab at 30 degrees stays on a panel of any of the frictions.
 
-    A single coefficient cannot show whether it *sometimes* does: it stops all slabs or none.
+    A single coefficient stops all slabs or none, so it cannot show whether slabs *sometimes* stay.
 
     Parameters
     ----------
@@ -204,7 +207,7 @@ def slabs_stop_at_30_degrees(rows: pd.DataFrame) -> Finding:
     """
     stayed = rows.groupby("friction")["stayed"].mean().sort_index()
     listed = ", ".join(f"{percent(part, 2)} at friction {mu:g}" for mu, part in stayed.items())
-    verdict = CONTRADICTED if (stayed < STAYS).all() else UNDECIDED
+    verdict = CONTRADICTED if (stayed < MIN_STAYING_SHARE).all() else UNDECIDED
     return Finding(verdict, f"snow that stays on the panel: {listed} (tan 30° is 0.577)")
 
 

@@ -16,7 +16,7 @@ from reproductions.common.hypothesis_tests import (
     Estimate,
     Finding,
     all_of,
-    near,
+    is_near,
     positive,
     widening,
 )
@@ -86,8 +86,8 @@ def _mean_over_folds(of_model: pd.DataFrame, values: Floats) -> Estimate:
 def overfitting(data: RegressionResults, model: str) -> Estimate:
     """Return the excess of validation scores over those on the development sets."""
     folds = _folds(data, model)
-    lost = folds["validation_score"] - folds["development_score"]
-    return _mean_over_folds(folds, lost.to_numpy(float))
+    excess = folds["validation_score"] - folds["development_score"]
+    return _mean_over_folds(folds, excess.to_numpy(float))
 
 
 def mean_error(data: RegressionResults, model: str) -> Estimate:
@@ -109,14 +109,14 @@ def rbf_is_better_by_ratio(data: RegressionResults) -> Finding:
     ratio = linear.value / rbf.value
     noise = ratio * math.hypot(linear.noise / linear.value, rbf.noise / rbf.value)
     text = "validation score, linear over RBF"
-    return near(
+    return is_near(
         Estimate(ratio, noise), MIN_LINEAR_OVER_RBF, RELATIVE_TOLERANCE * MIN_LINEAR_OVER_RBF, text
     )
 
 
 def score_agrees(data: RegressionResults) -> Finding:
     """Test whether the RBF kernel's validation score is about 0.005."""
-    finding = near(
+    finding = is_near(
         validation(data, "rbf"),
         VALIDATION_SCORE,
         RELATIVE_TOLERANCE * VALIDATION_SCORE,
@@ -149,9 +149,11 @@ def is_sub_centimetre(data: RegressionResults) -> Finding:
 
 def error_agrees(data: RegressionResults, model: str) -> Finding:
     """Test whether a model's mean absolute error is about that of Table 5.3.2."""
-    aim = THESIS_ERRORS[model][0]
-    text = f"mean absolute error (thesis {aim})"
-    finding = near(mean_error(data, model), aim, RELATIVE_TOLERANCE * aim, text)
+    thesis_error = THESIS_ERRORS[model][0]
+    text = f"mean absolute error (thesis {thesis_error})"
+    finding = is_near(
+        mean_error(data, model), thesis_error, RELATIVE_TOLERANCE * thesis_error, text
+    )
     return _undecided_unless_all_rows(finding, data)
 
 
@@ -160,15 +162,15 @@ def quartiles_agree(data: RegressionResults) -> Finding:
     findings = []
     for model, printed in THESIS_QUARTILES.items():
         ours = data.quartiles.loc[model, ["Q1", "Q2", "Q3", "Q4"]].to_numpy(float)
-        off = np.abs(ours / np.array(printed) - 1)
+        deviations = np.abs(ours / np.array(printed) - 1)
         scatter = math.hypot(
             data.errors["mean_absolute_error"][model], data.errors["standard_deviation"][model]
         )
         # The largest prediction, Q4, belongs to a single panel, the other quartiles to many.
         noise = scatter / np.array([*[math.sqrt(data.panels)] * 3, 1.0]) / np.array(printed)
-        worst = Estimate(float(off.max()), float(noise[off.argmax()]))
+        worst = Estimate(float(deviations.max()), float(noise[deviations.argmax()]))
         findings.append(
-            near(worst, 0.0, MAX_QUARTILE_DEVIATION, f"{model}, worst quartile off by", "%")
+            is_near(worst, 0.0, MAX_QUARTILE_DEVIATION, f"{model}, worst quartile off by", "%")
         )
     finding = all_of(findings)
     return _undecided_unless_all_rows(finding, data)

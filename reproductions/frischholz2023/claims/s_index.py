@@ -14,10 +14,10 @@ from reproductions.common.hypothesis_tests import (
     Estimate,
     Finding,
     all_of,
+    is_small,
     mean_of,
     negative,
     positive,
-    small,
 )
 from snowshed.plot.labels import label
 
@@ -47,24 +47,24 @@ def indices(table: pd.DataFrame, parameter: str, target: str) -> list[Estimate]:
     return [Estimate(float(s), float(e)) for s, e in zip(rows["s"], rows["standard_error"])]
 
 
-def _named(parameter: str, target: str) -> str:
+def _index_text(parameter: str, target: str) -> str:
     return f"S of {label(parameter).symbol}, {target}"
 
 
 def raises(table: pd.DataFrame, parameter: str, target: str) -> Finding:
     """Test whether S of a parameter is above zero."""
-    return positive(index(table, parameter, target), _named(parameter, target))
+    return positive(index(table, parameter, target), _index_text(parameter, target))
 
 
 def lowers(table: pd.DataFrame, parameter: str, target: str) -> Finding:
     """Test whether S of a parameter is below zero."""
-    return negative(index(table, parameter, target), _named(parameter, target))
+    return negative(index(table, parameter, target), _index_text(parameter, target))
 
 
 def hardly_matter(table: pd.DataFrame, target: str) -> Finding:
     """Test whether |S| of both hardening parameters is below `MAX_MINOR_INDEX`."""
     return all_of(
-        [small(index(table, parameter, target), MAX_MINOR_INDEX, _named(parameter, target))
+        [is_small(index(table, parameter, target), MAX_MINOR_INDEX, _index_text(parameter, target))
          for parameter in (HARDENING, MODULUS)]
     )  # fmt: skip
 
@@ -96,14 +96,14 @@ def cohesion_gains_with_mass(table: pd.DataFrame) -> Finding:
 
 
 def slope_needs_mass(table: pd.DataFrame) -> Finding:
-    """Test whether M matters for the height after the last event, and hardly after those before."""
+    """Test whether M matters for the height after the last event, but hardly before."""
     *before, last = indices(table, SLOPE, "height")
-    what = _named(SLOPE, "height")
+    what = _index_text(SLOPE, "height")
     beyond = _magnitude(last) - Estimate(MAX_MINOR_INDEX, 0.0)
     return all_of(
         [
             *(
-                small(estimate, MAX_MINOR_INDEX, f"{what}, event {event}")
+                is_small(estimate, MAX_MINOR_INDEX, f"{what}, event {event}")
                 for event, estimate in enumerate(before, 1)
             ),
             Finding(positive(beyond, "").verdict, f"after the last: {last.text()}"),
@@ -117,7 +117,7 @@ def length_effects_gain_with_mass(table: pd.DataFrame) -> Finding:
         [
             negative(
                 index(table, parameter, "length") - index(table, parameter, "length", last=False),
-                f"{_named(parameter, 'length')}, last event minus first",
+                f"{_index_text(parameter, 'length')}, last event minus first",
             )
             for parameter in (SLOPE, COHESION)
         ]

@@ -17,7 +17,7 @@ from reproductions.frischholz2023.tables import PANEL_FRICTION, SAVED_DPI, setti
 from snowshed._core import InputError
 from snowshed.analysis.calibration.comparison import read_simulated_stacks
 from snowshed.analysis.calibration.measurements import Measurement
-from snowshed.analysis.calibration.misfit import RANKED, statistics
+from snowshed.analysis.calibration.misfit import RANKING_QUANTITIES, statistics
 from snowshed.analysis.calibration.report import Calibration, calibrate, write
 from snowshed.base.formatting import number, percent
 from snowshed.plot.html_page import HtmlTable, Picture
@@ -27,7 +27,7 @@ from snowshed.study.table import read_table
 if TYPE_CHECKING:
     import pandas as pd
 
-#: Standard deviation of the synthetic measurements, relative, and the seed of their errors.
+#: Relative standard deviation of the synthetic measurements, and the seed of their errors.
 UNCERTAINTY, ERRORS_SEED = 0.05, 1
 TEXT = (
     "The thesis prints the measured stacks as figures only, so the snow of the laboratory "
@@ -91,7 +91,7 @@ def synthetic(truth: pd.DataFrame) -> list[Measurement]:
     Raises
     ------
     InputError
-        If it is not computed.
+        If the truth is not computed.
     """
     truth = truth.dropna(subset=["height_m", "length_m"])
     if truth.empty:
@@ -99,7 +99,7 @@ def synthetic(truth: pd.DataFrame) -> list[Measurement]:
     errors = np.random.default_rng(ERRORS_SEED)
     measured = []
     for row in truth.sort_values(["panel.tilt", "event"]).to_dict("records"):
-        for quantity in RANKED:
+        for quantity in RANKING_QUANTITIES:
             true = row[f"{quantity}_m"]
             value = true * (1 + UNCERTAINTY * errors.normal())
             tilt, event = float(row["panel.tilt"]), int(row["event"])
@@ -139,11 +139,18 @@ def ranges_grid(ranges: pd.DataFrame) -> HtmlTable:
     """Return the posterior's ranges beside the truth."""
     rows = []
     for row in ranges.to_dict("records"):
-        known = label(row["parameter"])
+        parameter_label = label(row["parameter"])
         values = [CALIBRATED[row["parameter"]], row["best_set"], row["median"]]
-        ends = [f"{known.value(row[low])} to {known.value(row[high])}"
+        ends = [f"{parameter_label.value(row[low])} to {parameter_label.value(row[high])}"
                 for low, high in (("lower_68", "upper_68"), ("lower_95", "upper_95"))]  # fmt: skip
-        rows.append([known.axis, *(known.value(value) for value in values), *ends, row["open"]])
+        rows.append(
+            [
+                parameter_label.axis,
+                *(parameter_label.value(value) for value in values),
+                *ends,
+                row["open"],
+            ]
+        )
     head = ["parameter", "truth", "best triplet", "median", "68 %", "95 %", "open"]
     return HtmlTable(head, rows, "lrrrrrl")
 

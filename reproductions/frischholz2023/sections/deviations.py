@@ -1,4 +1,4 @@
-"""Our settings and the thesis's: each deviation undone, all undone, and settings varied."""
+"""The deviations from the thesis: each one undone, all undone, and our settings varied."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 STACKS = "stacks.csv"
 #: Descriptions of the variations of our settings.
-WORDS: Mapping[str, str] = {
+VARIATION_LABELS: Mapping[str, str] = {
     "coarse-cells": "cells a third larger",
     "half-damping": f"damping {DAMPING_RATE / 2:g} 1/s instead of {DAMPING_RATE:g}",
     "double-damping": f"damping {DAMPING_RATE * 2:g} 1/s",
@@ -110,8 +110,8 @@ def changes_grid(stacks: pd.DataFrame) -> HtmlTable:
 
 def variations_grid(stacks: pd.DataFrame) -> HtmlTable:
     """Return the change of a stack by each variation of our settings."""
-    there = [name for name in VARIATIONS if name in set(stacks["variant"])]
-    rows = [[WORDS[name], *_changes(stacks, name)] for name in there]
+    present_names = [name for name in VARIATIONS if name in set(stacks["variant"])]
+    rows = [[VARIATION_LABELS[name], *_changes(stacks, name)] for name in present_names]
     return HtmlTable(["varied", *QUANTITIES.values()], rows, "l" + "r" * len(QUANTITIES))
 
 
@@ -173,9 +173,9 @@ def quartiles_grid(stacks: pd.DataFrame) -> HtmlTable:
 
 
 def _title(stacks: pd.DataFrame, variant: str) -> str:
-    """Return a variant's name; a deviation that changes nothing in the scene says so."""
+    """Return a variant's title, which tells if a deviation changes nothing in the scene."""
     if variant in VARIATIONS:
-        return WORDS[variant]
+        return VARIATION_LABELS[variant]
     if variant in (DEFAULTS, THESIS):
         return {DEFAULTS: "none", THESIS: "all: the preset thesis"}[variant]
     return f"{variant} (not switched)" if is_unswitched(stacks, variant) else variant

@@ -37,7 +37,7 @@ TEXT = (
     "only.",
     PANEL_FRICTION,
 )
-BORROWED = (
+INDEX_NOISE_TEXT = (
     "Every point has one seeding, so the noise is that of the index S (the same scene), "
     "relative to the stack.",
 )
@@ -49,8 +49,8 @@ def build(work: ThesisComputation) -> Content:
     runs, folder = work.folder.runs, work.folder.of_stage("fixation")
     table = evaluate_sensitivity(runs, folder, "fixation", study=FIXATION)
     stored = read_study_runs(runs, FIXATION)
-    own = work.settings.fixation_seeds > 1
-    noise = seeding_noise(stored if own else _other(work))
+    has_own_noise = work.settings.fixation_seeds > 1
+    noise = seeding_noise(stored if has_own_noise else _index_runs(work))
     table = with_noise(table, noise, work.settings.fixation_seeds)
     pictures = [
         Picture.read(
@@ -67,12 +67,12 @@ def build(work: ThesisComputation) -> Content:
         ("Table 3.2.1: settings", settings_grid(printed.SENSITIVITY, scenes)),
         ("Stacks at each value (mean ± deviation over the others, m)", fixation_grid(table)),
     ]
-    text = TEXT if own else (*TEXT, *BORROWED)
+    text = TEXT if has_own_noise else (*TEXT, *INDEX_NOISE_TEXT)
     claims = judge(CLAIMS, table)
     return Content(text, tables, pictures, claims)
 
 
-def _other(work: ThesisComputation) -> StudyRuns:
+def _index_runs(work: ThesisComputation) -> StudyRuns:
     try:
         return read_study_runs(work.folder.runs, INDEX)
     except InputError as error:
@@ -87,8 +87,8 @@ def with_noise(table: pd.DataFrame, noise: pd.DataFrame, seeds: int) -> pd.DataF
     table
         From `snowshed.analysis.sensitivity.fixation`.
     noise
-        From `snowshed.analysis.sensitivity.seeding_noise`, relative to the stack; any study like
-        that of the table will do.
+        From `snowshed.analysis.sensitivity.seeding_noise`, relative to the stack, from any study of
+        the same scene.
     seeds
         Seedings of each point.
     """
@@ -103,12 +103,12 @@ def fixation_grid(table: pd.DataFrame) -> HtmlTable:
     events = sorted(table["event"].unique())
     rows = []
     for (parameter, value, target), of_one in grouped(table, "parameter", "value", "target"):
-        known = label(parameter)
+        parameter_label = label(parameter)
         by_event = of_one.set_index("event")
         cells = [
             plus_minus(by_event.loc[event, "mean_m"], by_event.loc[event, "deviation_m"])
             for event in events
         ]
-        rows.append([known.symbol, known.quantity(value), target, *cells])
+        rows.append([parameter_label.symbol, parameter_label.quantity(value), target, *cells])
     head = ["parameter", "value", "of the", *(f"event {event:g}" for event in events)]
     return HtmlTable(head, rows, "lll" + "r" * len(events))

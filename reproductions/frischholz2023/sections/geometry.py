@@ -29,7 +29,7 @@ CAPTION = "As Figure 5.1.1: each input in turn, the others at the reference pane
 
 
 def build(work: ThesisComputation) -> Content:
-    """Return the content; raises InputError if the rows are not there."""
+    """Return the content; raises InputError if the rows are missing."""
     rows = work.rows.read()
     table = geometry_table(rows)
     drawn = pd.concat([table, *_more_tilts(work)], ignore_index=True)
@@ -51,7 +51,7 @@ def build(work: ThesisComputation) -> Content:
 
 
 def geometry_table(rows: StackRows) -> pd.DataFrame:
-    """Return rows as claims and figures take them."""
+    """Return rows as a table for claims and figures."""
     return pd.DataFrame(rows.inputs, columns=list(INPUTS)).assign(**rows.targets)
 
 

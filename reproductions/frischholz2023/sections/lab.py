@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from reproductions.common.hypothesis_tests import Judged, judge
+from reproductions.common.hypothesis_tests import JudgedClaim, judge
 from reproductions.common.section import Content
 from reproductions.frischholz2023 import printed
 from reproductions.frischholz2023.claims import lab as claims
@@ -56,7 +56,7 @@ def build(work: ThesisComputation) -> Content:
         ("The same claims for other dimensions and frictions", variants_grid(rows)),
     ]
     picture = Picture.drawn(growth_figure(rows), "lab-growth", "Growth of the stacks", CAPTION)
-    return Content(TEXT, tables, [picture], judged(rows, released))
+    return Content(TEXT, tables, [picture], judge_laboratory(rows, released))
 
 
 def lab_rows(work: ThesisComputation) -> pd.DataFrame:
@@ -83,8 +83,8 @@ def release_rows(table: pd.DataFrame) -> pd.DataFrame:
     return last[["friction", "seed", "event", "stayed", "ended", "height", "length"]]
 
 
-def judged(rows: pd.DataFrame, released: pd.DataFrame) -> list[Judged]:
-    """Return the findings: in 3D if there, at the lowest friction that the thesis measured."""
+def judge_laboratory(rows: pd.DataFrame, released: pd.DataFrame) -> list[JudgedClaim]:
+    """Return the findings in 3D, else in 2D, at the lowest friction that the thesis measured."""
     measured = rows["friction"][rows["friction"] >= MEASURED_FRICTION]
     friction = measured.min() if len(measured) else rows["friction"].max()
     three, two = (_variant(rows, dimension, friction) for dimension in (3, 2))

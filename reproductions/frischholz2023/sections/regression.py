@@ -57,7 +57,7 @@ def build(work: ThesisComputation) -> Content:
     if not state.finished:
         raise InputError(f"regression: {state.text()}")
     parts = work.regression.parts()
-    data = {rows_label(part.rows): _regressed(part) for part in parts}
+    data = {rows_label(part.rows): _part_results(part) for part in parts}
     single, scheme = next(iter(data.values())), parts[0].scheme
     numbers = {"rounds": scheme.rounds, "folds": scheme.folds, "inner": scheme.inner_folds}
     text = [line.format(rows=single.rows, thesis_rows=THESIS_ROWS, **numbers) for line in TEXT]
@@ -81,21 +81,21 @@ def build(work: ThesisComputation) -> Content:
 
 
 def rows_label(rows: StackRows) -> str:
-    """Return whether rows are of one seed, or means."""
+    """Return a label for rows of one seed, or for means."""
     return "rows of one seed" if rows.most_seeds == 1 else f"means of up to {rows.most_seeds} seeds"
 
 
-def _regressed(part: Part) -> RegressionResults:
-    return read_regressed(part.folder, len(part.rows), part.rows.panel_count)
+def _part_results(part: Part) -> RegressionResults:
+    return read_results(part.folder, len(part.rows), part.rows.panel_count)
 
 
-def read_regressed(folder: Path, rows: int, panels: int) -> RegressionResults:
-    """Read what `snowshed.analysis.regression.regress` has written.
+def read_results(folder: Path, rows: int, panels: int) -> RegressionResults:
+    """Return the results that `snowshed.analysis.regression.regress` has written.
 
     Raises
     ------
     InputError
-        If a table is damaged, naming it.
+        If a table is damaged.
     """
     scores = _by_model(folder / "scores.csv", ("development_score", "validation_score", "C"))
     errors = _by_model(folder / TARGET / "errors.csv", ERRORS)
@@ -115,7 +115,7 @@ def _by_model(file: Path, columns: Sequence[str], models: Sequence[str] = KINDS)
 
 
 def quartiles_grid(data: Mapping[str, RegressionResults]) -> HtmlTable:
-    """Return Table 5.3.1, which holds predictions, and the rows beside them."""
+    """Return the quartiles of the predictions (Table 5.3.1), and of the rows."""
     rows = []
     for model in KINDS:
         rows.append([f"{NAMES[model]}, thesis", "predictions", *_numbers(THESIS_QUARTILES[model])])
@@ -131,11 +131,11 @@ def rows_grid(file: Path) -> HtmlTable:
     """Return the quartiles of H/L of a table's rows by each measure that it has."""
     rows = []
     for measure in MEASURES.values():
-        if measure.name == "stack":  # one of the two that name their trimming rule
+        if measure.name == "stack":  # the same as one of the measures by trimming rule
             continue
         try:
             measured = read_rows(file, measure.name)
-        except InputError:  # a table from before there was this measure
+        except InputError:  # the table is older than the measure
             continue
         for of_one in (measured.of_one_seed(), *([measured] if measured.most_seeds > 1 else [])):
             numbers = _numbers(quartiles(of_one.targets[TARGET]))
@@ -144,7 +144,7 @@ def rows_grid(file: Path) -> HtmlTable:
 
 
 def errors_grid(data: Mapping[str, RegressionResults]) -> HtmlTable:
-    """Return Table 5.3.2, with parts of the median and scores on rows that were not trained on."""
+    """Return Table 5.3.2, with errors relative to the median and on rows not trained on."""
     rows = []
     for model in KINDS:
         score = f"about {VALIDATION_SCORE}" if model == "rbf" else ""

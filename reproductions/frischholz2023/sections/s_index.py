@@ -74,14 +74,14 @@ def index_grid(table: pd.DataFrame) -> HtmlTable:
     events = sorted(table["event"].unique())
     rows = []
     for (parameter, target), of_one in grouped(table, "parameter", "target"):
-        known = label(parameter)
+        parameter_label = label(parameter)
         first = of_one.iloc[0]
-        pair = known.change(first["nominal"], first["altered"])
+        pair = parameter_label.change(first["nominal"], first["altered"])
         by_event = of_one.set_index("event")
         cells = [
             plus_minus(by_event.loc[event, "s"], by_event.loc[event, "standard_error"])
             for event in events
         ]
-        rows.append([known.symbol, pair, target, *cells])
+        rows.append([parameter_label.symbol, pair, target, *cells])
     head = ["parameter", "from → to", "of the", *(f"event {event:g}" for event in events)]
     return HtmlTable(head, rows, "lll" + "r" * len(events))

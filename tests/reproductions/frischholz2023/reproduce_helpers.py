@@ -71,7 +71,7 @@ def stack(scene, event):
 def fill(found, stages=None, *, fail_one=False):
     """Put made-up stacks into the store, for some stages or all; the last run may have failed."""
     chosen = [found.study_stages[name] for name in stages or found.study_stages]
-    studies = [study for stage in chosen for study in stage._registered()]
+    studies = [study for stage in chosen for study in stage._register_studies()]
     with Store.open(found.folder.runs) as store:
         runs = {run.hash: run for study in studies for run in store.runs(study)}
         pending = [run for run in runs.values() if run.status == "pending"]

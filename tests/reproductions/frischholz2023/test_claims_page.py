@@ -4,15 +4,15 @@ import json
 
 import pytest
 from reproductions.common.claims_tables import claims_csv, read_claims
-from reproductions.common.hypothesis_tests import CONFIRMED, CONTRADICTED, Finding, Judged
+from reproductions.common.hypothesis_tests import CONFIRMED, CONTRADICTED, Finding, JudgedClaim
 from reproductions.frischholz2023 import claims_page
 from reproductions.frischholz2023.claims.causes import CAUSES
 
 from snowshed._core import InputError
 
 
-def judged(verdict, text="It grows."):
-    return Judged("5.1", text, "slope above zero", Finding(verdict, "slope, m: -1 ± 0.1"))
+def judged_claim(verdict, text="It grows."):
+    return JudgedClaim("5.1", text, "slope above zero", Finding(verdict, "slope, m: -1 ± 0.1"))
 
 
 @pytest.fixture
@@ -38,12 +38,12 @@ def test_causes_are_of_contradictions():
 
 def test_a_contradiction_without_a_cause_is_refused(data):
     with pytest.raises(InputError, match=r"no cause for 'It grows\.'"):
-        claims_page.page(data(judged(CONTRADICTED)))
-    assert "| confirmed | 5.1 | It grows. |" in claims_page.page(data(judged(CONFIRMED)))
+        claims_page.page(data(judged_claim(CONTRADICTED)))
+    assert "| confirmed | 5.1 | It grows. |" in claims_page.page(data(judged_claim(CONFIRMED)))
 
 
 def test_claims_are_read_as_they_were_written(data):
-    claims = [judged(CONFIRMED), judged(CONTRADICTED, 'It grows, as "they" say; ±')]
+    claims = [judged_claim(CONFIRMED), judged_claim(CONTRADICTED, 'It grows, as "they" say; ±')]
     assert read_claims(data(*claims) / "claims.csv") == claims
     with pytest.raises(InputError, match="not a table of claims"):
-        read_claims(data(judged("believed")) / "claims.csv")
+        read_claims(data(judged_claim("believed")) / "claims.csv")

@@ -1,4 +1,4 @@
-"""The preset ``thesis``: each deviation sets the values of its sentences, and nothing else."""
+"""The preset ``thesis``: each deviation sets the values that its sentences name, and no others."""
 
 import json
 

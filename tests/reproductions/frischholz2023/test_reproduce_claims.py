@@ -14,12 +14,12 @@ from reproductions.common.hypothesis_tests import (
     Estimate,
     Finding,
     all_of,
+    is_near,
+    is_small,
     judge,
     mean_of,
-    near,
     negative,
     positive,
-    small,
 )
 from reproductions.frischholz2023.claims import (
     calibration,
@@ -48,9 +48,9 @@ def test_two_deviations_decide():
 
 def test_hardly_and_about_have_bounds():
     values = [Estimate(-0.2, 0.1), Estimate(1.0, 0.1), Estimate(0.6, 0.1)]
-    assert tuple(small(one, 0.5, "").verdict for one in values) == ORDER
+    assert tuple(is_small(one, 0.5, "").verdict for one in values) == ORDER
     values = [Estimate(2.1, 0.1), Estimate(3.0, 0.1), Estimate(2.6, 0.1)]
-    assert tuple(near(one, 2.0, 0.5, "").verdict for one in values) == ORDER
+    assert tuple(is_near(one, 2.0, 0.5, "").verdict for one in values) == ORDER
 
 
 def test_claims_with_parts_hold_if_all_parts_do():
@@ -130,7 +130,7 @@ def test_ratio_of_dimensions():
 
 
 def test_noise_of_few_seedings_is_widened():
-    """Of pairs of means that differ by chance alone, five in a hundred are decided."""
+    """Five in a hundred pairs of means that differ by chance alone are decided."""
     generator = np.random.default_rng(3)
     rows = pd.DataFrame(itertools.product((40, 50), (1, 2)), columns=["tilt", "seed"])
     rows = rows.assign(event=1)
@@ -337,7 +337,7 @@ def test_a_dip_between_tilts_is_seen():
 # --- regression
 
 
-def regressed(
+def regression_results(
     rbf=0.005, linear=0.012, *, errors=(0.004, 0.015), spread=0.0002, off=1.0, rows=610, **changes
 ):
     models = {"linear": linear, "rbf": rbf}
@@ -366,24 +366,24 @@ def regressed(
 
 @pytest.mark.parametrize("claim", regression.REGRESSION, ids=lambda one: one.text)
 def test_regression(claim):
-    assert claim.judge(regressed()).verdict == CONFIRMED
+    assert claim.judge(regression_results()).verdict == CONFIRMED
     otherwise = [
-        regressed(0.02, 0.010),
-        regressed(errors=(0.05, 0.05)),
-        regressed(off=3.0),
-        regressed(overfit=1.1),
+        regression_results(0.02, 0.010),
+        regression_results(errors=(0.05, 0.05)),
+        regression_results(off=3.0),
+        regression_results(overfit=1.1),
     ]
     assert CONTRADICTED in verdicts(claim.judge, *otherwise)
-    tie = regressed()
+    tie = regression_results()
     tie.scores["C"] = 1.0
     undecided = [
         tie,
-        regressed(spread=0.1),
-        regressed(folds=1),
-        regressed(errors=(0.1, 0.1), off=1.3),
-        regressed(errors=(0.0101, 0.019)),
-        regressed(errors=(0.0051, 0.019)),
-        regressed(rows=27),
+        regression_results(spread=0.1),
+        regression_results(folds=1),
+        regression_results(errors=(0.1, 0.1), off=1.3),
+        regression_results(errors=(0.0101, 0.019)),
+        regression_results(errors=(0.0051, 0.019)),
+        regression_results(rows=27),
     ]
     assert UNDECIDED in verdicts(claim.judge, *undecided)
 

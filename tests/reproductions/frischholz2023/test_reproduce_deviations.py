@@ -41,7 +41,7 @@ def stacks(**factors):
 def test_the_sample_has_panels_of_all_sorts(settings):
     panels = studies.sampled_panels(settings)
     count = len(panels["panel.tilt"])
-    assert count >= 3 and max(panels["panel.length"]) <= settings.deviation_longest
+    assert count >= 3 and max(panels["panel.length"]) <= settings.deviation_max_length
     assert len(set(zip(*panels.values()))) == count
     if settings is not QUICK:
         assert set(panels["panel.tilt"]) == {40, 50, 60, 70}

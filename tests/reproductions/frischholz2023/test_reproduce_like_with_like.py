@@ -24,7 +24,7 @@ def several_seeds(file):
 
 
 @pytest.fixture(scope="module")
-def regressed(tmp_path_factory):
+def finished_work(tmp_path_factory):
     folder = tmp_path_factory.mktemp("like")
     table = several_seeds(folder / "rows.csv")
     found = ThesisComputation(folder / "out", TINY, table)
@@ -37,12 +37,12 @@ def grid_of(made, beginning):
     return next(grid for title, grid in made.tables if title.startswith(beginning))
 
 
-def test_one_seed_is_regressed_beside_the_means(regressed):
-    one, means = regressed.regression.parts()
+def test_one_seed_is_regressed_beside_the_means(finished_work):
+    one, means = finished_work.regression.parts()
     assert (one.rows.most_seeds, means.rows.most_seeds) == (1, 3)
     assert one.folder != means.folder and one.rows.digest != means.rows.digest
     np.testing.assert_allclose(one.rows.targets["ratio"], 1.1 * means.rows.targets["ratio"])
-    assert regressed.regression.state().finished
+    assert finished_work.regression.state().finished
 
 
 def test_rows_of_one_seed_are_regressed_once(tmp_path):
@@ -51,8 +51,8 @@ def test_rows_of_one_seed_are_regressed_once(tmp_path):
     assert len(found.regression.parts()) == 1
 
 
-def test_the_quartiles_of_the_thesis_stand_beside_predictions_and_rows_by_themselves(regressed):
-    rows = grid_of(section.build(regressed), "Table 5.3.1").rows
+def test_the_quartiles_of_the_thesis_stand_beside_predictions_and_rows_by_themselves(finished_work):
+    rows = grid_of(section.build(finished_work), "Table 5.3.1").rows
     assert [row[:2] for row in rows] == [
         [f"{model}, {who}", of]
         for model in ("linear", "RBF")
@@ -67,18 +67,18 @@ def test_the_quartiles_of_the_thesis_stand_beside_predictions_and_rows_by_themse
     np.testing.assert_allclose(of_one, 1.1 * of_means, atol=1e-3)
 
 
-def test_quartiles_of_rows_are_given_by_every_measure_that_the_table_has(regressed):
-    rows = grid_of(section.build(regressed), "Quartiles of the rows").rows
+def test_quartiles_of_rows_are_given_by_every_measure_that_the_table_has(finished_work):
+    rows = grid_of(section.build(finished_work), "Quartiles of the rows").rows
     assert {row[0] for row in rows} == {"97 % of the snow, trimmed equal pace"}
     assert [row[1] for row in rows] == ["rows of one seed", "means of up to 3 seeds"]
 
 
-def test_errors_are_given_as_parts_of_the_median_prediction(regressed):
-    grid = grid_of(section.build(regressed), "Table 5.3.2")
+def test_errors_are_given_as_parts_of_the_median_prediction(finished_work):
+    grid = grid_of(section.build(finished_work), "Table 5.3.2")
     place = grid.head.index("of the median prediction")
     printed = {row[0]: row[place] for row in grid.rows}
     assert printed["RBF, thesis"] == "4.3 %" and printed["linear, thesis"] == "15 %"
-    part = regressed.regression.parts()[0]
+    part = finished_work.regression.parts()[0]
     errors = pd.read_csv(part.folder / "ratio" / "errors.csv").set_index("model")
     quartiles = pd.read_csv(part.folder / "ratio" / "quartiles.csv").set_index("model")
     expected = errors["mean_absolute_error"] / quartiles["Q2"][["linear", "rbf"]]
@@ -88,9 +88,9 @@ def test_errors_are_given_as_parts_of_the_median_prediction(regressed):
     )
 
 
-def test_claims_are_judged_on_single_stacks(regressed):
-    made = section.build(regressed)
-    errors = pd.read_csv(regressed.regression.parts()[0].folder / "ratio" / "errors.csv")
+def test_claims_are_judged_on_single_stacks(finished_work):
+    made = section.build(finished_work)
+    errors = pd.read_csv(finished_work.regression.parts()[0].folder / "ratio" / "errors.csv")
     rbf = errors.set_index("model").loc["rbf", "mean_absolute_error"]
     found = next(one for one in made.claims if "RBF kernel's mean absolute error" in one.text)
     assert f"{rbf:.3g}" in found.finding.sentence

@@ -10,7 +10,7 @@ from reproduce_helpers import TINY, TINY_WITH_PANELS, few_fits, fill, geometry_t
 from reproductions.common.stage import State, StudyStage, choose, compute
 from reproductions.frischholz2023 import studies
 from reproductions.frischholz2023.publication import REPRODUCTION
-from reproductions.frischholz2023.sections.regression import read_regressed
+from reproductions.frischholz2023.sections.regression import read_results
 from reproductions.frischholz2023.settings import FULL, MIDDLE, PLANAR, QUICK
 from reproductions.frischholz2023.stages import ThesisComputation
 
@@ -151,10 +151,10 @@ def test_damaged_tables_of_the_regression_are_named(tmp_path, name, content, mes
     (tmp_path / "ratio").mkdir()
     for whole in ("scores.csv", "ratio/errors.csv", "ratio/quartiles.csv"):
         table.to_csv(tmp_path / whole, index=False)
-    assert read_regressed(tmp_path, 96, 32).errors.loc["rbf", "held_out_error"] == 1.0
+    assert read_results(tmp_path, 96, 32).errors.loc["rbf", "held_out_error"] == 1.0
     (tmp_path / name).write_bytes(content)
     with pytest.raises(InputError, match=rf"{re.escape(name)}(, line 1)?: {message}"):
-        read_regressed(tmp_path, 96, 32)
+        read_results(tmp_path, 96, 32)
 
 
 def tiny_studies():

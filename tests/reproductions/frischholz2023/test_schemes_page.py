@@ -2,18 +2,18 @@
 
 import pytest
 from reproductions.common.claims_tables import claims_csv
-from reproductions.common.hypothesis_tests import CONFIRMED, CONTRADICTED, Finding, Judged
+from reproductions.common.hypothesis_tests import CONFIRMED, CONTRADICTED, Finding, JudgedClaim
 from reproductions.frischholz2023 import schemes_page
 from reproductions.frischholz2023.claims.scheme_reasons import REASONS
 
 from snowshed._core import InputError
 
-#: A claim with a reason, whatever its verdicts.
+#: A claim for which the reasons have an entry.
 GROWS = next(iter(REASONS))
 
 
-def judged(verdict, text, source="3.3"):
-    return Judged(source, text, "slope above zero", Finding(verdict, f"slope, m: {verdict}"))
+def judged_claim(verdict, text, source="3.3"):
+    return JudgedClaim(source, text, "slope above zero", Finding(verdict, f"slope, m: {verdict}"))
 
 
 @pytest.fixture
@@ -39,9 +39,9 @@ def test_reasons_are_of_changed_verdicts():
 
 
 def test_claims_that_change_are_apart_from_those_that_stay(folders, tmp_path):
-    thesis = [judged(CONFIRMED, GROWS), judged(CONFIRMED, "It falls.")]
-    objective = [judged(CONTRADICTED, GROWS), judged(CONFIRMED, "It falls.")]
-    of_panels = judged(CONFIRMED, "It is long.", "5.1.2")
+    thesis = [judged_claim(CONFIRMED, GROWS), judged_claim(CONFIRMED, "It falls.")]
+    objective = [judged_claim(CONTRADICTED, GROWS), judged_claim(CONFIRMED, "It falls.")]
+    of_panels = judged_claim(CONFIRMED, "It is long.", "5.1.2")
     schemes_page.keep(folders([*thesis, of_panels], [*objective, of_panels]), tmp_path)
     before, changed, same = schemes_page.page(tmp_path).split("\n## ")
     assert "Of 2 claims, 1 have another verdict" in before
@@ -52,14 +52,16 @@ def test_claims_that_change_are_apart_from_those_that_stay(folders, tmp_path):
 
 
 def test_a_changed_verdict_without_a_reason_is_refused(folders, tmp_path):
-    made = folders([judged(CONFIRMED, "It falls.")], [judged(CONTRADICTED, "It falls.")])
+    made = folders(
+        [judged_claim(CONFIRMED, "It falls.")], [judged_claim(CONTRADICTED, "It falls.")]
+    )
     schemes_page.keep(made, tmp_path)
     with pytest.raises(InputError, match=r"no reason for 'It falls\.'"):
         schemes_page.page(tmp_path)
 
 
 def test_tables_of_other_claims_are_refused(folders, tmp_path):
-    made = folders([judged(CONFIRMED, GROWS)], [judged(CONFIRMED, "It falls.")])
+    made = folders([judged_claim(CONFIRMED, GROWS)], [judged_claim(CONFIRMED, "It falls.")])
     schemes_page.keep(made, tmp_path)
     with pytest.raises(InputError, match="list different claims"):
         schemes_page.page(tmp_path)

@@ -57,11 +57,11 @@ def course(case, ends, *, speed=0.0, width=1.0):
     return Course.of(case, snow)
 
 
-def as_claimed(**changed):
+def courses_as_claimed(**changed):
     """Courses of all cases in which the snow does what the paper says."""
 
     def falls(kept):
-        """A number of a hundred particles end above the obstacle; from 3 s to 4 s the outermost two
+        """The given number of a hundred particles ends above the obstacle; from 3 s to 4 s two more
         pass."""
 
         def ends(fraction):
@@ -74,7 +74,7 @@ def as_claimed(**changed):
 
         return ends
 
-    wooden = dict(zip(made.OBSTACLES, (falls(0), falls(40), falls(0), falls(30))))
+    wooden = dict(zip(made.OBSTACLE_NAMES, (falls(0), falls(40), falls(0), falls(30))))
     wooden.update(changed.get("wooden", {}))
     known = [
         course(made.wooden_case(name, QUICK), ends, width=0.22) for name, ends in wooden.items()
@@ -98,12 +98,14 @@ def verdicts(courses):
 
 
 def test_what_the_paper_says_is_confirmed_where_the_snow_does_it():
-    found = verdicts(as_claimed())
+    found = verdicts(courses_as_claimed())
     assert found == [CONFIRMED] * 6 + [UNDECIDED] + [CONFIRMED] * 3 + [UNDECIDED]
 
 
 def test_stakes_that_let_all_through_contradict():
-    free = as_claimed(wooden={made.NARROW_STAKES: lambda fraction: np.full(100, -5 + 6 * fraction)})
+    free = courses_as_claimed(
+        wooden={made.NARROW_STAKES: lambda fraction: np.full(100, -5 + 6 * fraction)}
+    )
     assert verdicts(free)[1] == CONTRADICTED
 
 
@@ -162,7 +164,7 @@ def test_the_page_of_all_cases_can_be_read_by_everyone(tmp_path, monkeypatch):
     monkeypatch.setattr(sections, "WOODEN_TIMES", (1.0, 4.0))
     monkeypatch.setattr(sections, "SLOPE_TIMES", (20.0,))
     found = AvalancheComputation(tmp_path, QUICK)
-    found.courses = as_claimed()
+    found.courses = courses_as_claimed()
     write_report(REPRODUCTION, REPRODUCTION.size("quick"), tmp_path, found)
     text = (tmp_path / "saito.html").read_text(encoding="utf-8")
     assert text.count("<img") + text.count("<svg") >= 2 and "confirmed" in text

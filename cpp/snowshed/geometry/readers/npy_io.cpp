@@ -51,17 +51,18 @@ std::vector<std::size_t> parse_shape(const std::string& tuple) {
 }
 
 /// Types and shapes that an array may have, as regular expressions and as text for messages.
-struct Allowed {
+struct AllowedArray {
   const char *type, *types, *shape, *shapes;
 };
 
-constexpr Allowed samples{"'<f[48]'", "'<f4' and '<f8'",
-                          R"(\( *\d{1,9}( *, *\d{1,9}){1,2} *,? *\))", "two or three counts"};
-constexpr Allowed labels{"'(\\||<)[iu]1'|'<[iu][248]'", "integers of 1 to 8 bytes, little-endian",
-                         R"(\( *\d{1,9}( *, *\d{1,9}){2} *,? *\))", "three counts (nz, ny, nx)"};
+constexpr AllowedArray samples{"'<f[48]'", "'<f4' and '<f8'",
+                               R"(\( *\d{1,9}( *, *\d{1,9}){1,2} *,? *\))", "two or three counts"};
+constexpr AllowedArray labels{
+    "'(\\||<)[iu]1'|'<[iu][248]'", "integers of 1 to 8 bytes, little-endian",
+    R"(\( *\d{1,9}( *, *\d{1,9}){2} *,? *\))", "three counts (nz, ny, nx)"};
 
 ArrayHeader parse_header(const std::filesystem::path& path, const std::string& bytes,
-                         const Allowed& allowed) {
+                         const AllowedArray& allowed) {
   if (bytes.compare(0, 6, "\x93NUMPY", 6) != 0) fail(path, 0, "not a .npy file");
   ByteReader reader(path, bytes, 6, ByteOrder::little);
   const int major = reader.read<std::uint8_t>();

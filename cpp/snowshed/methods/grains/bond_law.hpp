@@ -10,7 +10,7 @@ SNOWSHED_METHOD_VARIANT_BEGIN(grains)
 template <class V>
 struct ContactMotion {
   V gap;              // m, between the surfaces, now; negative where they overlap
-  V parting;          // m, growth of the gap in this step
+  V gap_growth;       // m, growth of the gap in this step
   SimdVec<V> normal;  // unit vector from the first to the second
   SimdVec<V> shear;   // m, displacement in this step normal to it
   V twist;            // rad, mean rotation of both about the normal in this step
@@ -59,18 +59,18 @@ struct BondLaw {
     f.normal_force = select(f.touching, spring, zero);
 
     const Mask slips = (holds == 0) & (V(ks * length) > cap);
-    const V least = broadcast<V>(1e-300);
-    const V share = select(slips, V(cap / max(V(ks * length), least)), broadcast<V>(1.0));
+    const V tiny_force = broadcast<V>(1e-300);
+    const V share = select(slips, V(cap / max(V(ks * length), tiny_force)), broadcast<V>(1.0));
     u = V(select(f.touching, share, zero)) * trial;
     f.shear_force = ks * u;
 
-    const V lost = V(0.5 * ks) * dot(before + u, trial - u);
-    const V gap_before = m.gap - m.parting;
-    const V work = 0.5 * (kn * gap_before - f.normal_force) * m.parting;
+    const V slip_work = V(0.5 * ks) * dot(before + u, trial - u);
+    const V gap_before = m.gap - m.gap_growth;
+    const V work = 0.5 * (kn * gap_before - f.normal_force) * m.gap_growth;
     const V stored = 0.5 * kn * (gap_before * gap_before) -
                      select(f.touching, V(0.5 * kn * (m.gap * m.gap)), zero);
-    f.heat = select(breaks, zero, lost);
-    f.broken_energy = select(breaks, V(lost + work + stored), zero);
+    f.heat = select(breaks, zero, slip_work);
+    f.broken_energy = select(breaks, V(slip_work + work + stored), zero);
     bonded = holds;
     return f;
   }

@@ -21,7 +21,7 @@ struct StoredPair {
 };
 
 /// Contents of an archive that the state holds in another form.
-struct Stored {
+struct CheckpointParts {
   std::vector<StoredPair> pairs;
   std::vector<Boundary> now, searched;  // one each
   std::int64_t grains = 0, flags = 0, searched_flags = 0;
@@ -124,7 +124,7 @@ std::vector<PairHistory> checked_pairs(const StateReader& archive,
   return past;
 }
 
-void check_counts(const StateReader& archive, const State& s, const Stored& stored,
+void check_counts(const StateReader& archive, const State& s, const CheckpointParts& stored,
                   const Model& model) {
   if (stored.grains != 0 && stored.grains != std::int64_t(model.grains.size()))
     archive.refuse(std::to_string(stored.grains) + " grains; the sample has " +
@@ -142,7 +142,7 @@ void check_counts(const StateReader& archive, const State& s, const Stored& stor
 
 void SolverImpl::save(BinaryWriter& out) const {
   soundness_.require();
-  Stored parts;
+  CheckpointParts parts;
   for (const PairHistory& h : state_.pairs.all()) parts.pairs.push_back(stored(h));
   parts.now = {state_.boundary};
   parts.searched = {state_.searched_boundary};
@@ -157,7 +157,7 @@ SolverImpl::LoadedState SolverImpl::read_state(const BinaryReader& in) const {
   const StateReader archive(in);
   LoadedState result;
   State& next = result.state;
-  Stored parts;
+  CheckpointParts parts;
   visit_state(archive, next, parts);
   check_counts(archive, next, parts, model_);
   check_poses(archive, next.bodies, model_);

@@ -26,15 +26,15 @@ PairGeometry pair_geometry(const Model& model, const Boundary& boundary, const P
     const Vec3 arm = from_a + (model.radius + 0.5 * met.gap) * met.normal;
     return {met.gap, met.normal, arm, Vec3::Zero()};
   }
-  Vec3 apart = (second ? second->position : boundary.plate[kind]) - position_a;
-  apart.x() += g.shift[0] * boundary.period(0);
-  apart.y() += g.shift[1] * boundary.period(1);
+  Vec3 centre_offset = (second ? second->position : boundary.plate[kind]) - position_a;
+  centre_offset.x() += g.shift[0] * boundary.period(0);
+  centre_offset.y() += g.shift[1] * boundary.period(1);
   const Vec3 offset_b = triple(list.bx, list.by, list.bz, p);
   const Vec3 from_b = second ? Vec3(second->orientation * offset_b) : offset_b;
-  const Vec3 separation = apart + from_b - from_a;
+  const Vec3 separation = centre_offset + from_b - from_a;
   const double distance = std::max(separation.norm(), 1e-30);
   const Vec3 arm = from_a + 0.5 * separation;
-  return {distance - 2 * model.radius, separation / distance, arm, arm - apart};
+  return {distance - 2 * model.radius, separation / distance, arm, arm - centre_offset};
 }
 
 }  // namespace snowshed::grains

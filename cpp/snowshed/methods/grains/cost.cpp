@@ -24,13 +24,14 @@ double loading_time(const std::vector<LoadingStage>& stages, double height) {
 }
 
 double loading_progress(const std::vector<LoadingStage>& stages, int stage, double strain) {
-  const auto done = std::min(std::size_t(stage), stages.size());
+  const auto finished_stages = std::min(std::size_t(stage), stages.size());
   const double all = loading_time(stages, 1.0);
-  if (done == stages.size()) return 1.0;
+  if (finished_stages == stages.size()) return 1.0;
   if (all <= 0) return 0.0;
   double passed = 0;
-  for (std::size_t i = 0; i < done; ++i) passed += slowness(stages[i]);
-  passed += slowness(stages[done]) * std::clamp(strain / stages[done].strain, 0.0, 1.0);
+  for (std::size_t i = 0; i < finished_stages; ++i) passed += slowness(stages[i]);
+  passed += slowness(stages[finished_stages]) *
+            std::clamp(strain / stages[finished_stages].strain, 0.0, 1.0);
   return passed / all;
 }
 

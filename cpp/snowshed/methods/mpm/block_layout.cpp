@@ -77,18 +77,18 @@ void BlockLayout<D>::find_meetings() {
   for (std::size_t g = 0; g < grid_blocks.size(); ++g)
     by_coord.push_back({block_coord<D>(grid_blocks[g]), std::int32_t(g)});
   std::sort(by_coord.begin(), by_coord.end());
-  meets.assign(grid_blocks.size(), 0);
+  has_meeting.assign(grid_blocks.size(), 0);
   for (std::size_t i = 0, end; i < by_coord.size(); i = end) {
     end = i + 1;
     while (end < by_coord.size() && by_coord[end].first == by_coord[i].first) ++end;
     if (end - i < 2) continue;
     for (std::size_t k = i; k < end; ++k) {
       meeting_blocks.push_back(by_coord[k].second);
-      meets[by_coord[k].second] = 1;
+      has_meeting[by_coord[k].second] = 1;
     }
     meeting_first.push_back(std::int32_t(meeting_blocks.size()));
   }
-  if (meeting_blocks.empty()) meets.clear();
+  if (meeting_blocks.empty()) has_meeting.clear();
 }
 
 template struct BlockLayout<2>;

@@ -70,10 +70,11 @@ struct BlockLayout {
   std::vector<Neighbours> around_nodes;
 
   /// Meetings are positions at which several fields have blocks of nodes. Meeting i has the grid
-  /// blocks meeting_blocks[k], meeting_first[i] <= k < meeting_first[i + 1]. `meets` has a flag for
-  /// each grid block: whether it belongs to a meeting. It is empty if there are no meetings.
+  /// blocks meeting_blocks[k], meeting_first[i] <= k < meeting_first[i + 1]. `has_meeting` has a
+  /// flag for each grid block: whether it belongs to a meeting. It is empty if there are no
+  /// meetings.
   std::vector<std::int32_t> meeting_first{0}, meeting_blocks;
-  std::vector<std::uint8_t> meets;
+  std::vector<std::uint8_t> has_meeting;
 
   /// Returns the layout of the given particle blocks.
   static BlockLayout of(std::vector<BlockKey> blocks, std::vector<std::int32_t> starts,

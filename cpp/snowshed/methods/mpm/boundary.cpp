@@ -149,17 +149,18 @@ bool Contacts<T, D>::moves(std::size_t block) const {
 }
 
 template <class T, int D>
-void Contacts<T, D>::find_pushing_shares(PushingShares<T>& result) const {
-  std::fill(result.pushed.begin(), result.pushed.end(), T(0));
+void Contacts<T, D>::find_friction_shares(FrictionShares<T>& result) const {
+  std::fill(result.positive_impulses.begin(), result.positive_impulses.end(), T(0));
   std::fill(result.shares.begin(), result.shares.end(), T(0));
   for (const Contact<T>& c : contacts_) {
     if (c.release != Release::never) continue;
-    result.pushed[c.obstacle] += std::max(c.next_normal_impulse, T(0));
+    result.positive_impulses[c.obstacle] += std::max(c.next_normal_impulse, T(0));
     result.shares[c.obstacle] += c.next_normal_impulse;
   }
   for (std::size_t i = 0; i < result.shares.size(); ++i)
-    result.shares[i] =
-        result.pushed[i] > 0 ? std::max(result.shares[i], T(0)) / result.pushed[i] : T(1);
+    result.shares[i] = result.positive_impulses[i] > 0
+                           ? std::max(result.shares[i], T(0)) / result.positive_impulses[i]
+                           : T(1);
 }
 
 template <class T, int D>

@@ -93,12 +93,14 @@ class Boundary {
   bool any_motion_ = false;
 };
 
-/// Shares of friction by obstacle, see Contacts::find_pushing_shares.
+/// The share of friction that remains and the sum of the positive impulses (N s) of each obstacle,
+/// see Contacts::find_friction_shares.
 template <class T>
-struct PushingShares {
-  explicit PushingShares(std::size_t obstacles) : shares(obstacles, T(1)), pushed(obstacles) {}
+struct FrictionShares {
+  explicit FrictionShares(std::size_t obstacles)
+      : shares(obstacles, T(1)), positive_impulses(obstacles) {}
 
-  std::vector<T> shares, pushed;
+  std::vector<T> shares, positive_impulses;
 };
 
 /// All contacts of a layout's grid blocks, with their stored impulses.
@@ -133,11 +135,11 @@ class Contacts {
       contacts_[i].next_normal_impulse = contacts_[i].normal_impulse;
   }
 
-  /// Finds the share of each obstacle: the sum of its stored impulses over the sum of the positive
-  /// ones. The share is 1 for obstacles that release snow. Slip holds some nodes of a body against
-  /// pull, while internal forces press other nodes more strongly onto the obstacle. Friction on the
-  /// pushed nodes alone would be too large.
-  void find_pushing_shares(PushingShares<T>& result) const;
+  /// Finds the share of friction that remains for each obstacle: the sum of its stored impulses
+  /// over the sum of the positive ones. The share is 1 for obstacles that release snow. Slip holds
+  /// some nodes of a body against pull, while internal forces press other nodes more strongly onto
+  /// the obstacle. Friction on the pushed nodes alone would be too large.
+  void find_friction_shares(FrictionShares<T>& result) const;
 
   /// A contact with stored impulse (N s), for checkpoints.
   struct StoredImpulse {

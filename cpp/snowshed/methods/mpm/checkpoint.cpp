@@ -11,7 +11,7 @@ namespace {
 
 /// Contents of a checkpoint about contacts and sleep, besides the particles and the numbers.
 template <class T, int D>
-struct Stored {
+struct CheckpointParts {
   std::vector<typename Contacts<T, D>::StoredImpulse> impulses;
   std::vector<typename Sleep<D>::State> sleep;
   std::vector<FieldContact<T>> meetings;
@@ -34,7 +34,7 @@ void visit_particles(Archive& archive, Particles& particles, std::size_t materia
 }
 
 template <class T, int D, class Archive, class Layout, class Totals>
-void visit_rest(Archive& archive, Layout& layout, Stored<T, D>& stored, Totals& p,
+void visit_rest(Archive& archive, Layout& layout, CheckpointParts<T, D>& stored, Totals& p,
                 const Settings& settings) {
   const std::size_t blocks = archive.size("blocks/keys", layout.particle_blocks);
   archive.array("blocks/keys", layout.particle_blocks, blocks);
@@ -117,8 +117,8 @@ template <class T, int D>
 void SolverImpl<T, D>::save(BinaryWriter& out) const {
   soundness_.require();
   StateWriter archive(out);
-  Stored<T, D> stored{state_.contacts.stored_impulses(), state_.sleep.states(),
-                      state_.field_contacts};
+  CheckpointParts<T, D> stored{state_.contacts.stored_impulses(), state_.sleep.states(),
+                               state_.field_contacts};
   visit_particles(archive, state_.particles, model_.materials.size());
   visit_rest<T, D>(archive, state_.layout, stored, state_.progress, model_.options.settings);
 }
@@ -127,7 +127,7 @@ template <class T, int D>
 State<T, D> SolverImpl<T, D>::read_state(const BinaryReader& in) const {
   const StateReader archive(in);
   State<T, D> next(model_);
-  Stored<T, D> stored;
+  CheckpointParts<T, D> stored;
   visit_particles(archive, next.particles, model_.materials.size());
   check_materials(archive, next.particles.material_id, model_.materials.size());
   visit_rest<T, D>(archive, next.layout, stored, next.progress, model_.options.settings);

@@ -76,9 +76,9 @@ double count_updates(const Settings& n, int events, const SnowMotion& motion,
   if (n.sleep_speed > 0.0)
     old_awake_share = woken_share * std::max(0.0, 1.0 - motion.first_landing / motion.event_time);
   double particles = 0.0, old = 0.0;
-  for (double fresh : estimate.particles) {
-    particles += fresh + old_awake_share * old;
-    old += fresh;
+  for (double added : estimate.particles) {
+    particles += added + old_awake_share * old;
+    old += added;
   }
   return particles * estimate.steps / events;
 }

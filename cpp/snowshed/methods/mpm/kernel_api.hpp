@@ -36,9 +36,9 @@ constexpr double base_offset(Basis basis) { return basis == Basis::quadratic ? 0
 /// Inverse of APIC's inertia D = sum_i w_i (x_i - x)^2, per cell squared.
 constexpr double apic_inverse_inertia(Basis basis) { return basis == Basis::quadratic ? 4.0 : 3.0; }
 
-/// Nodes along one edge of a block's tile: the block's own nodes, the nodes beyond that its
-/// particles reach, and one more on either side. Particles may thus stray by a cell before they
-/// must be sorted again.
+/// Nodes along one edge of a block's tile: the block's own nodes, the nodes outside the block that
+/// its particles reach, and one more node on either side. Particles may thus stray by a cell before
+/// they must be sorted again.
 template <int D>
 constexpr int tile_edge(Basis basis) {
   return block_edge<D> + support(basis) + 1;
@@ -97,8 +97,7 @@ struct StepParameters {
   T friction_rate_per_speed;  // s/m, the same per m/s of sliding speed
   T overstress;  // share of the stress beyond the yield surface that a step leaves, see CamClayLaw
   const MaterialConstants<T>* snows;  // indexed by material_id
-  const T* pushing;  // indexed by obstacle: part of the friction of pushed nodes that remains, see
-                     // Contacts::find_pushing_shares
+  const T* friction_shares;           // indexed by obstacle, see Contacts::find_friction_shares
 };
 
 /// Returns the share of its stored normal impulse for which a contact exerts friction in a step.
@@ -196,7 +195,7 @@ struct Kernels {
                   BlockStats&);
   /// Takes one step of a block's particles with the velocities of the 3^D blocks around it, and
   /// writes their sums for the next step to the tile. `BlockStats::reach` tells where the particles
-  /// are, before the step and after it. Beyond, the values of the tile are undefined. Velocities
+  /// are, before the step and after it. Elsewhere the values of the tile are undefined. Velocities
   /// are damped towards `average` unless this is null.
   void (*g2p2g)(const StepParameters<T>&, const ParticleView<T>&, int first, int count,
                 const T* const* velocities, const AverageTile<T>* average, T* tile, BlockStats&);

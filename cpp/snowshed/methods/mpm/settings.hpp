@@ -26,9 +26,9 @@ struct Settings {
   double crack_band_length = 0;        // m, see `softening`; 0: none
   double relaxation_time = 0;          // s, of stress beyond the yield surface; 0: none
   ContactRule contact = ContactRule::kernel;
-  double contact_radius = 0.6;  // radius of a touching particle, over half the particles' spacing
+  double contact_radius = 0.6;  // contact radius of particles, over half their spacing
   Fields fields = Fields::one;
-  double event_friction = 1;  // friction between the fields of events, over the snow's M/sqrt(3)
+  double event_friction = 1;  // friction between fields of events, over the snow's M/sqrt(3)
   Basis basis = Basis::quadratic;
   double courant_factor = 0.9;  // time step over the largest stable one
   double strain_limit = 0.2;    // largest |dt grad v| a step may impose on a particle

@@ -186,7 +186,7 @@ template class Sleep<3>;
 
 // --- how the solver lets snow sleep --------------------------------------------------------------
 
-/// Blocks that fall asleep come to rest: the rest of their motion is lost.
+/// Blocks that fall asleep stop: their remaining motion is lost.
 template <class T, int D>
 void SolverImpl<T, D>::update_sleep() noexcept {
   if (!state_.sleep.allowed() || counters().steps % steps_between_checks != 0) return;

@@ -39,7 +39,7 @@ StepParameters<T> SolverImpl<T, D>::parameters(double dt) const {
           T(dt / (friction_reach * n.dx)),
           T(n.overstress_share(dt)),
           model_.constants.data(),
-          work_.pushing.shares.data()};
+          work_.friction_shares.shares.data()};
 }
 
 template <class T, int D>
@@ -143,7 +143,7 @@ void SolverImpl<T, D>::gather_and_update(double dt) {
   state_.contacts.follow(model_.boundary, time(), threads());
   if (model_.touches())
     work_.touch.update(model_, state_, state_.progress.speed * state_.progress.dt, threads());
-  if (model_.boundary.any_slip()) state_.contacts.find_pushing_shares(work_.pushing);
+  if (model_.boundary.any_slip()) state_.contacts.find_friction_shares(work_.friction_shares);
   const StepParameters<T> step = parameters(dt);
   const std::vector<std::int32_t>& active = state_.sleep.active();
   parallel_for_dynamic(std::ptrdiff_t(active.size()), threads(), 8, [&](std::ptrdiff_t i) {
@@ -153,9 +153,9 @@ void SolverImpl<T, D>::gather_and_update(double dt) {
     const bool touched = work_.grid.tiles_reaching(state_.layout, g, tiles);
     work_.grid.touched[g] = touched;
     if (touched) model_.kernels.gather(tiles, work_.grid.sum(g));
-    if (!meets(g)) update_block(step, g);
+    if (!has_meeting(g)) update_block(step, g);
   });
-  if (state_.layout.meets.empty()) return;
+  if (state_.layout.has_meeting.empty()) return;
   for (FieldContact<T>& c : state_.field_contacts) c.impulse = c.next_impulse;
   work_.meetings.update(model_, state_, work_.grid, state_.progress.speed * state_.progress.dt,
                         threads());
@@ -167,9 +167,9 @@ void SolverImpl<T, D>::update(double dt) {
   const StepParameters<T> step = parameters(dt);
   const std::vector<std::int32_t>& active = state_.sleep.active();
   parallel_for_dynamic(std::ptrdiff_t(active.size()), threads(), 8, [&](std::ptrdiff_t i) {
-    if (!meets(active[i])) update_block(step, active[i]);
+    if (!has_meeting(active[i])) update_block(step, active[i]);
   });
-  if (!state_.layout.meets.empty()) update_meetings(step);
+  if (!state_.layout.has_meeting.empty()) update_meetings(step);
 }
 
 /// In a meeting, the fields act on each other after the forces and before the contact with

@@ -20,13 +20,13 @@ namespace snowshed::mpm {
 template <class T, int D>
 struct Workspace {
   Workspace(const Settings& n, std::size_t obstacles)
-      : grid(n.basis), pushing(obstacles), touch(n.basis), meetings(n.basis) {
+      : grid(n.basis), friction_shares(obstacles), touch(n.basis), meetings(n.basis) {
     if (n.damps_over_length()) average.emplace(n.damping_length, n.dx, n.basis);
   }
 
   Grid<T, D> grid;
   std::optional<VelocityAverage<T, D>> average;
-  PushingShares<T> pushing;
+  FrictionShares<T> friction_shares;
   Touch<T, D> touch;
   Meetings<T, D> meetings;
   std::vector<double> block_strain;  // 1/s, of the step being tried
@@ -78,8 +78,8 @@ class SolverImpl final : public Solver {
   void update(double dt);
   void update_block(const StepParameters<T>& step, std::ptrdiff_t block);
   void clear_block(std::ptrdiff_t block);
-  bool meets(std::int32_t grid_block) const {
-    return !state_.layout.meets.empty() && state_.layout.meets[grid_block];
+  bool has_meeting(std::int32_t grid_block) const {
+    return !state_.layout.has_meeting.empty() && state_.layout.has_meeting[grid_block];
   }
   void update_meetings(const StepParameters<T>& step);
   void update_meeting(const StepParameters<T>& step, std::ptrdiff_t meeting);

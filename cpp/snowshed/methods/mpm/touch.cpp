@@ -79,7 +79,7 @@ void Touch<T, D>::measure(const Model<T, D>& model, const State<T, D>& state, st
   const Settings& n = model.options.settings;
   const BlockKey key = state.layout.particle_blocks[b];
   Block& block = blocks_[b];
-  block.touchers.clear();
+  block.touching_particles.clear();
   // Reach around the block's centre, including the cell by which particles may stray.
   const double reach = (0.5 * block_edge<D> + 1) * std::sqrt(double(D)) * n.dx;
   VecD<D> centre;
@@ -102,15 +102,15 @@ void Touch<T, D>::measure(const Model<T, D>& model, const State<T, D>& state, st
         nearest = std::min(nearest, gap);
         continue;
       }
-      Toucher toucher{i, o, {}};
+      TouchingParticle toucher{i, o, {}};
       const VecD<D> normal = surface.normal(embed(x));
       for (int d = 0; d < D; ++d) toucher.normal[d] = T(normal[d]);
-      block.touchers.push_back(toucher);
+      block.touching_particles.push_back(toucher);
     }
   }
   // A particle may cease to touch before the next measurement. The short delay does not matter.
   block.next = travel_ + std::max(nearest, contact_tolerance * n.dx);
-  if (!block.touchers.empty()) block.next = travel_ + contact_tolerance * n.dx;
+  if (!block.touching_particles.empty()) block.next = travel_ + contact_tolerance * n.dx;
 }
 
 template <class T, int D>
@@ -151,7 +151,7 @@ std::vector<typename Touch<T, D>::Face> Touch<T, D>::faces(const State<T, D>& st
   for (const std::int32_t b : state.layout.around_nodes[g]) {
     if (b < 0) continue;
     const BlockCoord<D> from = block_coord<D>(state.layout.particle_blocks[b]);
-    for (const Toucher& t : blocks_[b].touchers) {
+    for (const TouchingParticle& t : blocks_[b].touching_particles) {
       if (t.obstacle != obstacle) continue;
       int begin[D];
       for (int d = 0; d < D; ++d)

@@ -31,7 +31,7 @@ class Touch {
 
  private:
   /// A particle that touches an obstacle.
-  struct Toucher {
+  struct TouchingParticle {
     std::int32_t particle, obstacle;
     T normal[D];  // normal of the obstacle where it touches
   };
@@ -41,8 +41,8 @@ class Touch {
     std::int32_t particles;
   };
   struct Block {
-    std::vector<Toucher> touchers;  // ordered by obstacle
-    double next = 0;                // travel (m) at which distances are measured again
+    std::vector<TouchingParticle> touching_particles;  // ordered by obstacle
+    double next = 0;  // travel (m) at which distances are measured again
   };
 
   void measure(const Model<T, D>& model, const State<T, D>& state, std::int32_t block);

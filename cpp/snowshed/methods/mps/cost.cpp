@@ -21,10 +21,10 @@ CostEstimate estimate_cost(const Settings& s, const SceneView& scene, const Scen
   cost.time_step = std::min(s.max_time_step, s.courant_factor * s.spacing / std::max(speed, 1e-9));
   cost.event_time = scene.events.max_time;
   cost.steps = scene.events.count * std::ceil(cost.event_time / cost.time_step);
-  double held = 0;
-  for (const double fresh : cost.particles) {
-    held += fresh;
-    cost.updates += held * std::ceil(cost.event_time / cost.time_step);
+  double particles_so_far = 0;
+  for (const double added : cost.particles) {
+    particles_so_far += added;
+    cost.updates += particles_so_far * std::ceil(cost.event_time / cost.time_step);
   }
   cost.bytes = bytes_per_particle[scene.dimension - 2] * cost.total_particles;
   return cost;

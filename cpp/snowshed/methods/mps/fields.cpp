@@ -85,8 +85,8 @@ std::size_t SolverImpl<D>::bytes() const {
   for (const auto* particles : {&state_.particles, &w.next.particles, &w.start.particles, &w.spare})
     particles->for_each_array([&](const char*, const auto& array) { total += bytes_of(array); });
   return total +
-         bytes_of(near.weight, near.slope, near.even_weight, near.snow_slope, near.moments,
-                  near.correction, near.spread, near.asymmetry, near.slip) +
+         bytes_of(near.weight, near.slope, near.isotropic_weight, near.snow_slope, near.moments,
+                  near.correction, near.weight_correction, near.asymmetry, near.slip) +
          bytes_of(w.rates.pair_rate, w.rates.correction, w.viscosity.coupling, w.viscosity.block,
                   w.viscosity.inverse_block, w.rates.gradient, w.spacing.concentration,
                   w.pressure.sum, w.spacing.impulse_share, w.pressure.base, w.pressure.diagonal,

@@ -14,11 +14,11 @@ constexpr double min_wall_distance = 0.25, max_push = 0.1;
 /// The least pressure among a particle and its neighbours, Pa.
 template <int D>
 double least_pressure(const Particles<D>& particles, const Neighbourhood<D>& near, std::size_t i) {
-  double least = particles.pressure[i];
+  double min_pressure = particles.pressure[i];
   for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
     if (particles.kind[near.lists.neighbour(e)] != Kind::dummy_wall)
-      least = std::min(least, particles.pressure[near.lists.neighbour(e)]);
-  return least;
+      min_pressure = std::min(min_pressure, particles.pressure[near.lists.neighbour(e)]);
+  return min_pressure;
 }
 
 /// Pressure that a gradient adds to the neighbours' pressures, Pa. `conservative`: the particle's
@@ -30,12 +30,12 @@ double least_pressure(const Particles<D>& particles, const Neighbourhood<D>& nea
 template <int D>
 double base_pressure(const Model<D>& model, const Particles<D>& particles,
                      const Neighbourhood<D>& near, std::size_t i) {
-  const double own = particles.pressure[i];
+  const double own_pressure = particles.pressure[i];
   switch (model.settings().gradient) {
     case Gradient::conservative:
-      return own;
+      return own_pressure;
     case Gradient::corrected:
-      return near.surface[i] ? own : -own;
+      return near.surface[i] ? own_pressure : -own_pressure;
     case Gradient::published:
       break;
   }

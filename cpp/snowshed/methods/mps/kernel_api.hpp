@@ -1,7 +1,7 @@
 // Interface between the MPS solver and its kernels: raw views, and a table of functions. The
 // kernels are compiled once for each instruction set (cmake/KernelVariants.cmake), so nothing here
-// depends on one. All take the rows [begin, end). A row is a particle, and its pairs are
-// consecutive. The order in which a row is summed depends on the instruction set only.
+// depends on the instruction set. All take the rows [begin, end). A row is a particle, and its
+// pairs are consecutive. The order in which a row is summed depends on the instruction set only.
 #pragma once
 
 #include <cstddef>
@@ -27,16 +27,17 @@ struct RowMoments {
 template <int D>
 struct Kernels {
   NeighbourSearch<D> search;
-  /// Weights r_e/r - 1, weights over r^2, and the sums of the weights and of filling_weight of each
-  /// row. `offset`: one array of separations per axis.
+  /// Finds the weights r_e/r - 1, the weights over r^2 (`slope`), and the sums of the weights and
+  /// of filling_weight of each row. `offset` has one array of separations per axis.
   void (*weigh)(const PairRows&, const float* const* offset, float reach, float* weight,
                 float* slope, float* sum, float* filling, std::ptrdiff_t begin, std::ptrdiff_t end);
   void (*sum_moments)(const PairRows&, const float* const* offset, const float* weight,
                       const float* slope, RowMoments<D>*, std::ptrdiff_t begin, std::ptrdiff_t end);
-  /// The weight times e.B e of each pair, 0.5 to 2; e is the direction of the separation and B the
-  /// mean of both particles' `spread`, upper halves by rows.
-  void (*even_weights)(const PairRows&, const float* const* offset, const float* weight,
-                       const float* spread, float* even, std::ptrdiff_t begin, std::ptrdiff_t end);
+  /// Multiplies the weight of each pair by e.B e, limited to 0.5 to 2. e is the direction of the
+  /// separation, and B the mean of both particles' `correction` (upper halves by rows).
+  void (*isotropic_weights)(const PairRows&, const float* const* offset, const float* weight,
+                            const float* correction, float* corrected, std::ptrdiff_t begin,
+                            std::ptrdiff_t end);
   /// q = diagonal p - sum of weight p; a row whose diagonal is zero is left out.
   void (*apply)(const PairRows&, const float* weight, const double* diagonal, const double* p,
                 double* q, std::ptrdiff_t begin, std::ptrdiff_t end);
@@ -60,9 +61,9 @@ struct Kernels {
   void (*sum_approaches)(const PairRows&, const float* const* offset, const double* velocity,
                          const double* share, double limit, double* sum, std::ptrdiff_t begin,
                          std::ptrdiff_t end);
-  /// The shear rate midway between the particles of each pair whose neighbour comes after the
-  /// particle, 1/s. It follows from the mean of both gradients, in which the difference of the
-  /// velocities replaces the part along the separation.
+  /// The shear rate (1/s) midway between the particles of each pair whose neighbour has the larger
+  /// index. It follows from the mean of both gradients, in which the difference of the velocities
+  /// replaces the part along the separation.
   void (*pair_rates)(const PairRows&, const float* const* offset, const double* velocity,
                      const double* gradient, float* rate, std::ptrdiff_t begin, std::ptrdiff_t end);
 };

@@ -48,13 +48,13 @@ template <int D, int C>
 void Multigrid<D, C>::make_first(const CellOrder<D>& cells, std::int32_t period_cells) {
   Level& level = levels_.front();
   level.period = period_cells;
-  level.at.resize(cells.cells());
+  level.coordinates.resize(cells.cells());
   level.child_first.resize(cells.cells() + 1);
   level.child.clear();  // the points of a cell are consecutive
   parent_.resize(size_);
   for (std::size_t c = 0; c < cells.cells(); ++c) {
-    level.at[c] = cells.coordinates(c);
-    --level.at[c][0];
+    level.coordinates[c] = cells.coordinates(c);
+    --level.coordinates[c][0];
     level.child_first[c] = cells.begin(c);
     for (std::uint32_t i = cells.begin(c); i < cells.end(c); ++i) parent_[i] = std::uint32_t(c);
   }
@@ -72,7 +72,7 @@ void Multigrid<D, C>::make_next() {
   for (std::uint32_t i = 0; i < below.size(); ++i) {
     std::uint64_t key = 0;
     for (int d = D - 1; d >= 0; --d)
-      key = (key << (D == 2 ? 31 : 21)) | std::uint64_t(below.at[i][std::size_t(d)] >> 1);
+      key = (key << (D == 2 ? 31 : 21)) | std::uint64_t(below.coordinates[i][std::size_t(d)] >> 1);
     keys_.emplace_back(key, i);
   }
   std::sort(keys_.begin(), keys_.end());
@@ -80,9 +80,9 @@ void Multigrid<D, C>::make_next() {
   for (std::size_t k = 0; k < keys_.size(); ++k) {
     const std::uint32_t i = keys_[k].second;
     if (k == 0 || keys_[k].first != keys_[k - 1].first) {
-      Coordinates at = below.at[i];
+      Coordinates at = below.coordinates[i];
       for (auto& c : at) c >>= 1;
-      level.at.push_back(at);
+      level.coordinates.push_back(at);
       level.child_first.push_back(std::uint32_t(k));
     }
     level.child.push_back(i);
@@ -104,19 +104,19 @@ void Multigrid<D, C>::fill(Level& level, const Visit& visit) {
     std::int32_t* const column = &level.column[c * stencil];
     std::fill_n(value, stencil, 0.0f);
     std::fill_n(column, stencil, std::int32_t(c));
-    float own = 0;
+    float diagonal_sum = 0;
     visit(
-        c, [&](float diagonal) { own += diagonal; },
+        c, [&](float diagonal) { diagonal_sum += diagonal; },
         [&](std::uint32_t other, float coupling) {
           if (other == c) {
-            own -= coupling;
+            diagonal_sum -= coupling;
             return;
           }
-          const int slot = slot_of(level.at[c], level.at[other], level.period);
+          const int slot = slot_of(level.coordinates[c], level.coordinates[other], level.period);
           value[slot] += coupling;
           column[slot] = std::int32_t(other);
         });
-    level.diagonal[c] = own;
+    level.diagonal[c] = diagonal_sum;
   });
 }
 

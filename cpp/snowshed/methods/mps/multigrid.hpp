@@ -46,7 +46,7 @@ class Multigrid {
 
   /// A level above the particles: rows of at most `stencil` entries, including the row's own.
   struct Level {
-    std::vector<Coordinates> at;
+    std::vector<Coordinates> coordinates;
     std::vector<std::uint32_t> child_first;  // ranges of `child` for the level below
     std::vector<std::uint32_t> child;
     std::vector<std::uint32_t> parent;   // in the level above
@@ -55,7 +55,7 @@ class Multigrid {
     AlignedVector<float> diagonal, inverse;
     AlignedVector<Value> x, b, r;
     std::int32_t period = 0;
-    std::size_t size() const { return at.size(); }
+    std::size_t size() const { return coordinates.size(); }
   };
 
   void make_first(const CellOrder<D>& cells, std::int32_t period_cells);

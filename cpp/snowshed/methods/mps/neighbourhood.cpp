@@ -107,9 +107,10 @@ void find_surface(const Model<D>& model, const Particles<D>& particles, Neighbou
 /// it gradients are exact for linear fields in any arrangement of the neighbours (Randles and
 /// Libersky 1996, doi:10.1016/S0045-7825(96)01090-0; in MPS Khayyer and Gotoh 2011,
 /// doi:10.1016/j.jcp.2011.01.009). It is the identity on a lattice, and if there are too few
-/// neighbours. `spread` is a matrix B. The factor e.B e of weights, with the direction e of a pair,
-/// is a first-order correction (ours): the sum of w r r^T, and with it Laplacians of quadratic
-/// fields, become those of a lattice. Dummy walls have no pressure, and are left out of gradients.
+/// neighbours. `weight_correction` is a matrix B. The factor e.B e of weights, with the direction e
+/// of a pair, is a first-order correction (ours): the sum of w r r^T, and with it Laplacians of
+/// quadratic fields, become those of a lattice. Dummy walls have no pressure, and are left out of
+/// gradients.
 template <int D>
 void find_corrections(const Model<D>& model, const Particles<D>& particles, Neighbourhood<D>& near,
                       int threads) {
@@ -117,7 +118,7 @@ void find_corrections(const Model<D>& model, const Particles<D>& particles, Neig
   const std::size_t n = near.lists.size();
   near.correction.resize(n);
   near.asymmetry.resize(n);
-  near.spread.resize(n);
+  near.weight_correction.resize(n);
   near.moments.resize(n);
   const float* const slope = slope_without(Kind::dummy_wall, model, particles, near);
   for_each_piece(n, threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -126,7 +127,7 @@ void find_corrections(const Model<D>& model, const Particles<D>& particles, Neig
   });
   for_each_particle(n, threads, [&](std::size_t i) {
     near.asymmetry[i].setZero();
-    near.spread[i] = upper_half<D>(Matrix::Identity());
+    near.weight_correction[i] = upper_half<D>(Matrix::Identity());
     near.correction[i].setIdentity();
     if (particles.is_wall(i)) return;
     Matrix moment = symmetric<D>(near.moments[i].slope);
@@ -140,7 +141,7 @@ void find_corrections(const Model<D>& model, const Particles<D>& particles, Neig
     }
     if (!near.below_surface[i]) {
       const Matrix missing = Matrix::Identity() - 0.5 * model.laplacian() * second;
-      near.spread[i] = upper_half<D>(
+      near.weight_correction[i] = upper_half<D>(
           Matrix::Identity() + 0.5 * ((D + 2) * missing - missing.trace() * Matrix::Identity()));
       near.asymmetry[i] = side;
     }
@@ -151,11 +152,12 @@ void find_corrections(const Model<D>& model, const Particles<D>& particles, Neig
 
 /// The weights of pairs in the Laplacians of velocities, see find_corrections.
 template <int D>
-void find_even_weights(const Model<D>& model, Neighbourhood<D>& near, int threads) {
-  near.even_weight.resize(near.lists.pairs());
+void find_isotropic_weights(const Model<D>& model, Neighbourhood<D>& near, int threads) {
+  near.isotropic_weight.resize(near.lists.pairs());
   for_each_piece(near.lists.size(), threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    model.kernels.even_weights(near.rows(), near.offsets().data(), near.weight.data(),
-                               near.spread.data()->data(), near.even_weight.data(), begin, end);
+    model.kernels.isotropic_weights(near.rows(), near.offsets().data(), near.weight.data(),
+                                    near.weight_correction.data()->data(),
+                                    near.isotropic_weight.data(), begin, end);
   });
 }
 
@@ -236,9 +238,9 @@ void find_neighbours(const Model<D>& model, Particles<D>& particles, double time
   if (model.has_wall_particles()) guess_wall_pressures(model, particles, near);
   if (model.settings().gradient == Gradient::corrected) {
     find_corrections(model, particles, near, threads);
-    find_even_weights(model, near, threads);
+    find_isotropic_weights(model, near, threads);
   } else {
-    near.even_weight = near.weight;
+    near.isotropic_weight = near.weight;
   }
 }
 

@@ -56,15 +56,15 @@ template <int D>
 double image_divergence(const Model<D>& model, const Particles<D>& particles,
                         const Neighbourhood<D>& near, const Eigen::Matrix<double, D, D>& correction,
                         std::size_t i) {
-  const VecD<D>& own = particles.velocity[i];
+  const VecD<D>& own_velocity = particles.velocity[i];
   double sum = 0, flow = 0;
   for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
-    VecD<D> along = particles.velocity[m->of] - own;
+    VecD<D> along = particles.velocity[m->of] - own_velocity;
     for (const int k : {0, 1}) {
       if (m->rise[k] == 0) continue;
       const WallContact<D>& wall = near.wall(*m, k);
       along -= along.dot(wall.normal) * wall.normal;
-      flow += double(m->weight) * m->rise[k] * (own - wall.velocity).dot(wall.normal);
+      flow += double(m->weight) * m->rise[k] * (own_velocity - wall.velocity).dot(wall.normal);
     }
     sum += double(m->slope) * (correction * m->separation).dot(along);
   }
@@ -264,13 +264,13 @@ SolveReport solve_pressure(const Model<D>& model, double dt, Particles<D>& parti
   const double weight = model.settings().density * model.gravity.norm() * model.settings().spacing;
   work.pressure.scale = std::max(std::sqrt(square), min_source * weight * std::sqrt(double(n)));
   const SolveReport report = solve(model, work);
-  const double least = work.pressure.enclosed
-                           ? *std::min_element(work.pressure.values.begin(),
-                                               work.pressure.values.begin() + std::ptrdiff_t(n))
-                           : 0.0;
+  const double min_value = work.pressure.enclosed
+                               ? *std::min_element(work.pressure.values.begin(),
+                                                   work.pressure.values.begin() + std::ptrdiff_t(n))
+                               : 0.0;
   for (std::size_t i = 0; i < n; ++i)
     particles.pressure[i] =
-        work.pressure.fixed[i] ? 0.0 : std::max(0.0, work.pressure.values[i] - least);
+        work.pressure.fixed[i] ? 0.0 : std::max(0.0, work.pressure.values[i] - min_value);
   return report;
 }
 

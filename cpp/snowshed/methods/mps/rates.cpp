@@ -69,12 +69,12 @@ Eigen::Matrix<double, D, D> rate_correction(const Model<D>& model, const Particl
 template <int D>
 double smooth_pressure(const Model<D>& model, const Particles<D>& particles,
                        const Neighbourhood<D>& near, std::size_t i) {
-  const double own = particles.pressure[i], n = near.density[i];
-  double sum = own, weight = 1 + n;
+  const double own_pressure = particles.pressure[i], n = near.density[i];
+  double sum = own_pressure, weight = 1 + n;
   for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
     const std::size_t j = near.lists.neighbour(e);
     sum += double(near.weight[e]) *
-           (particles.kind[j] == Kind::dummy_wall ? own : particles.pressure[j]);
+           (particles.kind[j] == Kind::dummy_wall ? own_pressure : particles.pressure[j]);
   }
   const double weight_of_snow = model.settings().density;
   for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
@@ -86,7 +86,7 @@ double smooth_pressure(const Model<D>& model, const Particles<D>& particles,
   }
   const double missing = near.surface[i] ? model.kernel.number_density - n : 0.0;
   if (missing > 0) {
-    sum -= missing * own;
+    sum -= missing * own_pressure;
     weight += missing;
   }
   return std::max(0.0, sum / weight);

@@ -84,11 +84,11 @@ struct Neighbourhood {
   RowLists<WallContact<D>> contacts;
   WallImages<D> images;
   // One value per pair of particles, in the order of the lists.
-  AlignedVector<float> weight;       // w(r)
-  AlignedVector<float> coupling;     // the sum of w over the neighbour and its images behind walls
-  AlignedVector<float> slope;        // w(r)/r^2, 1/m2
-  AlignedVector<float> snow_slope;   // the same, 0 if the neighbour is a wall particle
-  AlignedVector<float> even_weight;  // w(r), corrected for the spread of both, for viscosity
+  AlignedVector<float> weight;      // w(r)
+  AlignedVector<float> coupling;    // the sum of w over the neighbour and its images behind walls
+  AlignedVector<float> slope;       // w(r)/r^2, 1/m2
+  AlignedVector<float> snow_slope;  // the same, 0 if the neighbour is a wall particle
+  AlignedVector<float> isotropic_weight;  // w(r), corrected for both second moments, for viscosity
 
   // One value per particle, summed over its pairs.
   AlignedVector<float> weight_sum;       // sum of w(r)
@@ -99,7 +99,7 @@ struct Neighbourhood {
   AlignedVector<VecD<D>> asymmetry;      // sum of w(r) r, m; 0 at the free surface
   // Correction of gradients, see find_corrections.
   AlignedVector<Eigen::Matrix<double, D, D>> correction;
-  AlignedVector<std::array<float, RowMoments<D>::half>> spread;  // upper half of B, for Laplacians
+  AlignedVector<std::array<float, RowMoments<D>::half>> weight_correction;  // upper half of B
 
   // Classes of particles, and wall velocities.
   AlignedVector<std::uint8_t> surface;        // at the free surface

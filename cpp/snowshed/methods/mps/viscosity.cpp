@@ -103,7 +103,7 @@ void find_couplings(const Model<D>& model, double factor, const Particles<D>& pa
   };
   const auto set = [&](std::uint32_t e, double viscosity, bool is_wall) {
     work.viscosity.coupling[e] =
-        is_wall ? 0.0f : float(factor * viscosity * double(near.even_weight[e]));
+        is_wall ? 0.0f : float(factor * viscosity * double(near.isotropic_weight[e]));
   };
   if (law.is_newtonian()) {
     for_each_pair([&](std::size_t, std::size_t, std::uint32_t e, bool is_wall) {

@@ -18,20 +18,21 @@ std::size_t nearest_node(const Terrain& terrain, const CellPosition& p) {
 double entrain(const Model& model, double erodible, double stress, double area, double dt,
                double speed, double& mass, Vec3& u) {
   const Settings& s = model.settings;
-  double taken, worked;  // kg, m2
+  double entrained_mass, loosened_area;  // kg, m2
   if (s.erosion_energy > 0) {
-    taken = area * stress * speed * dt / s.erosion_energy;
-    worked = area;
+    entrained_mass = area * stress * speed * dt / s.erosion_energy;
+    loosened_area = area;
   } else {
-    taken = erodible * std::sqrt(area) * speed * dt;
-    worked = erodible / s.entrained_density;
+    entrained_mass = erodible * std::sqrt(area) * speed * dt;
+    loosened_area = erodible / s.entrained_density;
   }
-  if (!model.compatible()) taken = std::min(taken, erodible * area);  // no more than there is
-  const double energy = worked * s.entrainment_shear + taken * s.entrainment_work;
-  u *= mass / (mass + taken);
-  mass += taken;
+  if (!model.compatible())
+    entrained_mass = std::min(entrained_mass, erodible * area);  // no more than there is
+  const double energy = loosened_area * s.entrainment_shear + entrained_mass * s.entrainment_work;
+  u *= mass / (mass + entrained_mass);
+  mass += entrained_mass;
   if (energy > 0) u *= std::max(0.0, 1 - energy / (0.5 * mass * (speed * speed + min_speed)));
-  return taken;
+  return entrained_mass;
 }
 
 /// Entrainment by one particle; returns the entrained mass, kg.
@@ -44,14 +45,14 @@ double entrain_by(const Model& model, const State& state, View& v, Particles& p,
       v.drag[i] > 0 || pressing > 0 ? model.friction.stress(pressing * density * h, speed) : 0.0;
   Vec3 u{p.ux[i], p.uy[i], p.uz[i]};
   const Vec3 before = u;
-  const double taken = entrain(model, state.erodible[node], stress, p.mass[i] / (h * density), dt,
-                               speed, p.mass[i], u);
+  const double entrained_mass = entrain(model, state.erodible[node], stress,
+                                        p.mass[i] / (h * density), dt, speed, p.mass[i], u);
   p.ux[i] = u.x();
   p.uy[i] = u.y();
   p.uz[i] = u.z();
   double* predicted = v.predicted + 4 * i;
   for (int axis = 0; axis < 3; ++axis) predicted[axis] += dt * (u[axis] - before[axis]);
-  return taken;
+  return entrained_mass;
 }
 
 /// Applies entrainment, and the resistance of forest and buildings.

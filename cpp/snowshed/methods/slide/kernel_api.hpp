@@ -1,6 +1,6 @@
 // Interface between the slide's solver and its kernels: raw views, and a table of functions. The
 // kernels are compiled once for each instruction set (cmake/KernelVariants.cmake), so nothing here
-// depends on one.
+// depends on the instruction set.
 #pragma once
 
 #include <cstddef>

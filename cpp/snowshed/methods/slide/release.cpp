@@ -344,11 +344,12 @@ double lattice_spacing(const ParticleBatch& batch) {
   std::vector<double> nearest;
   for (std::size_t s = 0; s < samples; ++s) {
     const std::size_t i = s * n / samples;
-    double least = std::numeric_limits<double>::infinity();
+    double min_square = std::numeric_limits<double>::infinity();
     for (std::size_t j = 0; j < n; ++j)
       if (j != i)
-        least = std::min(least, (batch.positions[j] - batch.positions[i]).head<2>().squaredNorm());
-    nearest.push_back(std::sqrt(least));
+        min_square =
+            std::min(min_square, (batch.positions[j] - batch.positions[i]).head<2>().squaredNorm());
+    nearest.push_back(std::sqrt(min_square));
   }
   if (n < 2) return 0;
   std::nth_element(nearest.begin(), nearest.begin() + std::ptrdiff_t(samples / 2), nearest.end());

@@ -16,7 +16,7 @@ struct Settings {
   double cell = 0;                // m, of the computing grid; 0: that of the terrain
   double time_step = 0.01;        // s
   double density = 300;           // kg/m3, of the snow that slides
-  double layer_thickness = 0.25;  // m, of snow over a whole cell that makes one particle
+  double layer_thickness = 0.25;  // m, thickness of snow that makes one particle in a cell
 
   FrictionLaw friction_law = FrictionLaw::voellmy;
   double friction = 0.325;         // Coulomb coefficient mu

@@ -82,7 +82,7 @@ void SolverImpl::append(State& state, const ParticleBatch& batch, const StopRequ
   check_batch(batch, 1);
   Particles& p = state.particles;
   const std::size_t old = p.size();
-  const double fresh = mass_per_particle(model_.settings, model_.terrain.cell());
+  const double fresh_mass = mass_per_particle(model_.settings, model_.terrain.cell());
   p.resize(old + batch.positions.size());
   for (std::size_t k = 0; k < batch.positions.size(); ++k) {
     const Vec3& x = batch.positions[k];
@@ -98,7 +98,7 @@ void SolverImpl::append(State& state, const ParticleBatch& batch, const StopRequ
     p.uy[i] = batch.velocity.y();
     p.uz[i] = batch.velocity.z();
     p.mass[i] = batch.mass_of(k);
-    p.fresh_mass[i] = model_.compatible() ? fresh : p.mass[i];
+    p.fresh_mass[i] = model_.compatible() ? fresh_mass : p.mass[i];
     p.id[i] = state.next_id++;
     p.event[i] = std::uint16_t(batch.event);
   }

@@ -179,7 +179,7 @@ TEST_F(MeshIo, ConcavePolygonsAreWhatTheyLookLike) {
            {read("a.obj", obj.str()),
             read("a.ply", header.str() + ply_vertices.str() + ply_faces.str())}) {
         ASSERT_NEAR(enclosed_volume(mesh), c.area, 1e-12) << start;
-        double surface = 0;  // is too large if there are additional walls
+        double surface = 0;  // too large if there are additional walls
         for (const Triangle& t : mesh.triangles) {
           const Vec3& a = mesh.vertices[t[0]];
           surface += (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).norm() / 2;

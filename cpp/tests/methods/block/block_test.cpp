@@ -1,4 +1,4 @@
-// A fifth method, of which the program knows nothing but its descriptor: it is read from a scene,
+// A fifth method, which the program knows only by its descriptor: the method is read from a scene,
 // described in the schema, run, filmed, saved and resumed.
 #include <gtest/gtest.h>
 

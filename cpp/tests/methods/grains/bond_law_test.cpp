@@ -7,8 +7,9 @@ namespace {
 
 const BondLaw law{200, 50, 3, 2, 0.5};  // N/m, N/m, N, N, 1
 
-ContactMotion<double> motion(double gap, double parting, SimdVec<double> shear, double twist = 0) {
-  return {gap, parting, {0, 0, 1}, shear, twist};
+ContactMotion<double> motion(double gap, double gap_growth, SimdVec<double> shear,
+                             double twist = 0) {
+  return {gap, gap_growth, {0, 0, 1}, shear, twist};
 }
 
 TEST(BondLaw, LosesWithABondWhatItStoredAndTheWorkSince) {

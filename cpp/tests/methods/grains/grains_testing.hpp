@@ -91,9 +91,9 @@ inline void take_steps(Method& method, int steps) {
   for (int i = 0; i < steps; ++i) method.step();
 }
 
-/// Steps until all stages are done, at most `most` times.
-inline void load_all(Method& method, int most) {
-  for (int i = 0; i < most && !*method.at_rest(); ++i) method.step();
+/// Steps until all stages are done, at most `max_steps` times.
+inline void load_all(Method& method, int max_steps) {
+  for (int i = 0; i < max_steps && !*method.at_rest(); ++i) method.step();
 }
 
 inline std::map<std::string, double> energies_of(const Method& method) {

@@ -37,7 +37,7 @@ struct ScatteredGrains {
             model.periodic(), model.cone,
             1000000,          threads};
   }
-  /// All near pairs of grains' spheres, found by comparing each sphere with each other in all near
+  /// All near pairs of grains' spheres, found by comparing each sphere with all others in all near
   /// images.
   std::vector<PairKey> by_brute_force() const {
     std::vector<PairKey> found;

@@ -163,7 +163,7 @@ TEST(Grains, SlideOnAPlaneAsCoulombSays) {
 }
 
 TEST(Grains, RollOnAfterSlidingWithThreeFifthsOfTheirSpeed) {
-  // Voxels in a row along y, with I = m (2 r)^2 / 6 about it: the momentum about the line of
+  // Voxels in a row along y, with I = m (2 r)^2 / 6 about the row: the momentum about the line of
   // contact gives v = v0 / (1 + 2/3).
   for (const std::size_t length : {1, 4}) {
     Slider s(1, length, 1, 0.2, 0.1);

@@ -55,7 +55,8 @@ TEST_P(LongSlab, SlidesAsCoulombSays) {
               0.01 * by_coulomb(friction));
 }
 
-// Slip also cancels pulls. They must reduce the friction, which the usual rule does not do.
+// With slip an obstacle also holds snow against pulls. The pulls must reduce the friction, which
+// they do not by the usual rule.
 TEST_P(LongSlab, SlidesAsCoulombSaysWithSlipToo) {
   const double friction = GetParam();
   EXPECT_NEAR(acceleration({2.0, friction, Condition::slip}, 0.1, 0.3), by_coulomb(friction),
@@ -96,24 +97,24 @@ TEST(Friction, StopsASlidingSlab) {
   run_until(*solver, 0.05);
   const ParticleState start = solver->state();
   const double speed = weighted_mean(start, start.velocities).x();
-  const double left = speed / (0.5 * 9.81), begin = solver->time();
-  run_until(*solver, begin + 0.9 * left);
+  const double stopping_time = speed / (0.5 * 9.81), begin = solver->time();
+  run_until(*solver, begin + 0.9 * stopping_time);
   EXPECT_GT(mean_velocity(*solver).x(), 0.05 * speed);
-  run_until(*solver, begin + 1.1 * left);
+  run_until(*solver, begin + 1.1 * stopping_time);
   EXPECT_NEAR(mean_velocity(*solver).x(), 0.0, 1e-3 * speed);
   const ParticleState end = solver->state();
   EXPECT_NEAR(weighted_mean(end, end.positions).x() - weighted_mean(start, start.positions).x(),
-              speed * left / 2, 0.01 * speed * left / 2);
+              speed * stopping_time / 2, 0.01 * speed * stopping_time / 2);
 }
 
 struct Chunk {
   double cells, speed, tilt, friction;  // edge; m/s; degrees
 };
 
-/// A chunk of snow, at most five cells high, that slides down a ramp at some speed. Its
-/// friction must be Coulomb's, and friction must take as much energy. The delay of friction, half a
-/// cell of sliding, matters most for a chunk of two cells: it covers a node only while it slides
-/// four cells.
+/// Expects that a chunk of snow, at most five cells high, slides down a ramp with Coulomb's
+/// friction, and that friction takes the energy that it should. The delay of friction, half a cell
+/// of sliding, matters most for a chunk of two cells: it covers a node only while it slides four
+/// cells.
 void expect_coulomb(const Chunk& c, double tolerance) {
   SCOPED_TRACE(testing::Message() << c.cells << " cells, " << c.speed << " m/s, " << c.tilt);
   constexpr double dx = 0.01;
@@ -141,8 +142,9 @@ void expect_coulomb(const Chunk& c, double tolerance) {
   run_until(*solver, 0.12);
   const Sample to = sample();
   const double friction = c.friction * 9.81 * std::cos(a);  // m/s2
-  const double felt = 9.81 * std::sin(a) - (to.speed - from.speed) / (to.time - from.time);
-  EXPECT_NEAR(felt, friction, tolerance * friction);
+  const double measured_friction =
+      9.81 * std::sin(a) - (to.speed - from.speed) / (to.time - from.time);
+  EXPECT_NEAR(measured_friction, friction, tolerance * friction);
   const double work = total_mass(solver->state()) * friction * (to.position - from.position);
   EXPECT_NEAR(to.friction_energy - from.friction_energy, work, tolerance * work);
 }
@@ -319,7 +321,7 @@ TEST(Contact, StoredImpulsesSurviveRelocation) {
   contacts = contacts.relocated(boundary, more, 0.0);
   EXPECT_EQ(contacts.of_block(2)[3].normal_impulse, 2.5f);
 
-  contacts.of_block(2)[4].next_normal_impulse = -0.5f;  // a debt, with slip
+  contacts.of_block(2)[4].next_normal_impulse = -0.5f;  // negative, as with slip
   contacts.commit(2);
   EXPECT_EQ(contacts.stored_impulses().size(), 2u);
 

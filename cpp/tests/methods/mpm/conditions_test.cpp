@@ -77,7 +77,7 @@ TEST(Conditions, SnowThatSlipHoldsUpFeelsNoFriction) {
 /// A slab of elastic snow, 20 cm long, that lies on a level shelf and reaches 12 cm beyond its
 /// edge, so that its weight turns it over the edge unless its rear is held. Returns how far its
 /// middle has sunk after a third of a second, m.
-double sunk_over_the_edge(Condition condition) {
+double drop_over_the_edge(Condition condition) {
   Options o = options_for({2, Precision::float32}, cell);
   o.snows[0].model = SnowModel::elastic;
   const Shape shelf = make_box(Vec3(-0.5, 0, -0.05), Vec3(1, 1e9, 0.1));
@@ -89,12 +89,12 @@ double sunk_over_the_edge(Condition condition) {
 }
 
 TEST(Conditions, ASlabTipsOverAnEdgeWithSeparateOnly) {
-  EXPECT_GT(sunk_over_the_edge(Condition::separate), 0.1);
-  EXPECT_LT(sunk_over_the_edge(Condition::slip), 0.01);  // the slab bends
-  EXPECT_LT(sunk_over_the_edge(Condition::sticky), 0.01);
+  EXPECT_GT(drop_over_the_edge(Condition::separate), 0.1);
+  EXPECT_LT(drop_over_the_edge(Condition::slip), 0.01);  // the slab bends
+  EXPECT_LT(drop_over_the_edge(Condition::sticky), 0.01);
 }
 
-// Snow leaves a panel with slip only over its edge. There it must not be caught.
+// Snow leaves a panel with slip only over its edge. Nothing may hold the snow there.
 TEST(Conditions, WithSlipSnowLeavesAPanelOverItsEdge) {
   const double tilt = radians(40), length = 0.2;
   const Vec3 normal(std::sin(tilt), 0, std::cos(tilt)), slope(std::cos(tilt), 0, -std::sin(tilt));

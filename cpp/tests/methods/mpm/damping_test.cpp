@@ -1,4 +1,4 @@
-// The damping by PIC: at an equal rate it does not depend on the step, at an equal ratio it does.
+// Damping by PIC: with a given rate it does not depend on the step, with a given ratio it does.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -40,10 +40,10 @@ TEST(Damping, OverALengthLeavesNothingToPic) {
   EXPECT_EQ(s.flip_share(1e-3), 1.0);
 }
 
-/// Returns the part of its spin that a disc of elastic snow, two cells in radius, has left after a
-/// while. The grid does not resolve the spin of such a small disc completely, and PIC damps the
-/// unresolved part.
-double spin_left(const Settings& numerics) {
+/// Returns the share of its spin that a disc of elastic snow keeps over a while. The radius of the
+/// disc is two cells. The grid does not resolve the spin of such a small disc completely, and PIC
+/// damps the unresolved part.
+double remaining_spin(const Settings& numerics) {
   constexpr double radius = 0.02, spin = 20, duration = 0.02;
   Options o = options_for({2, Precision::float64});
   o.settings.flip_ratio = numerics.flip_ratio;
@@ -73,17 +73,17 @@ Settings with(double flip_ratio, std::optional<double> damping_rate, double cour
 }
 
 TEST(Damping, OfASpinDependsOnTheStepOnlyWhereGivenPerStep) {
-  const double undamped = spin_left(with(1.0, std::nullopt, 0.9));
-  const double by_rate = spin_left(with(0.99, 180.0, 0.9));
-  const double by_ratio = spin_left(with(0.99, std::nullopt, 0.9));
+  const double undamped = remaining_spin(with(1.0, std::nullopt, 0.9));
+  const double by_rate = remaining_spin(with(0.99, 180.0, 0.9));
+  const double by_ratio = remaining_spin(with(0.99, std::nullopt, 0.9));
   EXPECT_GT(undamped, 0.85);
   EXPECT_LT(by_rate, 0.8 * undamped);
   EXPECT_LT(by_ratio, 0.8 * undamped);
   for (const double courant_factor : {0.6, 0.3}) {
-    EXPECT_NEAR(std::log(spin_left(with(0.99, 180.0, courant_factor))), std::log(by_rate),
+    EXPECT_NEAR(std::log(remaining_spin(with(0.99, 180.0, courant_factor))), std::log(by_rate),
                 0.1 * std::abs(std::log(by_rate)))
         << courant_factor;
-    EXPECT_LT(std::log(spin_left(with(0.99, std::nullopt, courant_factor))),
+    EXPECT_LT(std::log(remaining_spin(with(0.99, std::nullopt, courant_factor))),
               1.3 * std::log(by_ratio))
         << courant_factor;
   }

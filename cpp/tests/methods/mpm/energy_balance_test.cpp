@@ -7,7 +7,8 @@
 namespace snowshed::mpm {
 namespace {
 
-/// Energy that was converted: the weight's work, or the energy at the start.
+/// Largest of the energies in play: the work of the weight, the kinetic energy, and the energy
+/// spent.
 double turnover(const EnergyBalance& now, double gravitational_at_start) {
   return std::max({gravitational_at_start - now.gravitational, now.kinetic, now.spent()});
 }
@@ -66,21 +67,22 @@ TEST(Energy, BooksOfASlidingSlabClose) {
     EXPECT_NEAR(last.residual(), 0.0, 0.01 * turnover(last, height));
     // Friction's work is mu m g cos(tilt) times the distance.
     const ParticleState end = solver->state();
-    const double way =
+    const double variant =
         (weighted_mean(end, end.positions) - weighted_mean(start, start.positions)).norm();
-    const double work = 0.3 * total_mass(end) * 9.81 * std::cos(tilt) * way;
+    const double work = 0.3 * total_mass(end) * 9.81 * std::cos(tilt) * variant;
     EXPECT_NEAR(last.friction, work, 0.03 * work);  // friction sets in a little late
     EXPECT_EQ(last.sticking, 0.0);
   }
 }
 
 TEST(Energy, BooksOfACollapsingColumnClose) {
-  for (const Way& way :
-       {Way{2, Precision::float32}, Way{2, Precision::float64, Transfer::apic},
-        Way{3, Precision::float32}, Way{2, Precision::float32, Transfer::affine_flip}}) {
-    Options o = options_for(way);
+  for (const SolverVariant& variant :
+       {SolverVariant{2, Precision::float32}, SolverVariant{2, Precision::float64, Transfer::apic},
+        SolverVariant{3, Precision::float32},
+        SolverVariant{2, Precision::float32, Transfer::affine_flip}}) {
+    Options o = options_for(variant);
     o.energy = true;
-    if (way.transfer == Transfer::affine_flip) {
+    if (variant.transfer == Transfer::affine_flip) {
       o.settings.damping_rate = 380;
       o.settings.damping_length = 0.01;
       o.settings.crack_band_length = 0.02;
@@ -89,21 +91,22 @@ TEST(Energy, BooksOfACollapsingColumnClose) {
     o.snows[0].cohesion = 0;
     const auto solver =
         make_solver(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
-    const double height = way.dimension == 2 ? 0.25 : 0.12;
-    ParticleBatch batch = filled_box(way.dimension, Vec3::Zero(), Vec3(0.05, 0.05, height), 0.005);
+    const double height = variant.dimension == 2 ? 0.25 : 0.12;
+    ParticleBatch batch =
+        filled_box(variant.dimension, Vec3::Zero(), Vec3(0.05, 0.05, height), 0.005);
     batch.velocity.x() = 0.5;
     solver->add(batch);
     const EnergyBalance start = solver->energy();
     EnergyBalance last = start;
-    while (solver->time() < (way.dimension == 2 ? 0.2 : 0.1)) {
+    while (solver->time() < (variant.dimension == 2 ? 0.2 : 0.1)) {
       run_steps(*solver, 200);
       const EnergyBalance now = solver->energy();
       expect_dissipation(last, now, turnover(now, start.gravitational));
       last = now;
     }
-    EXPECT_GT(last.plastic, 0.05 * turnover(last, start.gravitational)) << way.name();
+    EXPECT_GT(last.plastic, 0.05 * turnover(last, start.gravitational)) << variant.name();
     // Particles that soften to nothing within a step take their last elastic energy with them.
-    EXPECT_NEAR(last.residual(), 0.0, 0.02 * turnover(last, start.gravitational)) << way.name();
+    EXPECT_NEAR(last.residual(), 0.0, 0.02 * turnover(last, start.gravitational)) << variant.name();
   }
 }
 

@@ -58,7 +58,7 @@ void expect_same(const Observation& now, const Observation& before) {
 struct Case {
   int threads;
   double spacing;  // spacing of the particles, m
-  int steps;       // before the snow is hit; if they are many, it falls asleep
+  int steps;       // before the snow is hit; it falls asleep if there are many
   bool moving;     // whether an obstacle moves, which takes memory in each step
 };
 
@@ -202,9 +202,10 @@ TEST(Failure, OfABatchLeavesNothingOfTheOthers) {
 TEST(Failure, ToFindATimeStepLeavesTheSnowAsItWas) {
   const auto solver = make_solver(options_for({2, Precision::float32}), {});
   solver->add(filled_box(2, Vec3(0, 0, 0), Vec3(0.05, 0, 0.05), 0.005));
-  std::vector<Vec3> apart(solver->size(), Vec3(1e13, 0, 0));
-  for (std::size_t i = 0; i < apart.size(); i += 2) apart[i] = -apart[i];
-  solver->add_velocity(apart);
+  std::vector<Vec3> velocity_changes(solver->size(), Vec3(1e13, 0, 0));
+  for (std::size_t i = 0; i < velocity_changes.size(); i += 2)
+    velocity_changes[i] = -velocity_changes[i];
+  solver->add_velocity(velocity_changes);
   const ParticleState before = solver->state();
   for (int attempt = 0; attempt < 2; ++attempt) {
     EXPECT_THROW(solver->step(), SimulationError);

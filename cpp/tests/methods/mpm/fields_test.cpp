@@ -8,7 +8,7 @@
 namespace snowshed::mpm {
 namespace {
 
-class ParticleFields : public testing::TestWithParam<Way> {
+class ParticleFields : public testing::TestWithParam<SolverVariant> {
  protected:
   ParticleFields() : solver_(make_solver(options_for(GetParam()), {})) {
     solver_->add(
@@ -100,7 +100,7 @@ TEST_P(ParticleFields, OrderFollowsParticlesThatAreAdded) {
     ASSERT_EQ(*ids.at<std::uint32_t>(order[k]), std::uint32_t(k));
 }
 
-INSTANTIATE_TEST_SUITE_P(Ways, ParticleFields, testing::ValuesIn(all_ways()),
+INSTANTIATE_TEST_SUITE_P(Ways, ParticleFields, testing::ValuesIn(all_solver_variants()),
                          [](const auto& info) { return info.param.name(); });
 
 }  // namespace

@@ -19,7 +19,7 @@ namespace {
 
 /// The share of friction that remains is 1 for each of up to four obstacles.
 template <class T>
-constexpr T all_pushing[] = {1, 1, 1, 1};
+constexpr T full_friction[] = {1, 1, 1, 1};
 
 /// The range of a block's particles along each direction, in cells.
 struct Spread {
@@ -53,7 +53,8 @@ struct GridSums {
   }
 };
 
-/// The sums that the blocks around gather from one tile, as far as its particles reach.
+/// The sums that the surrounding blocks gather from one tile, at the nodes that its particles
+/// reach.
 template <class T, int D>
 GridSums<D> gathered(const Kernels<T>& kernels, const T* tile, int reach) {
   GridSums<D> result;
@@ -76,16 +77,17 @@ GridSums<D> gathered(const Kernels<T>& kernels, const T* tile, int reach) {
   return result;
 }
 
-/// Particles of one block with random state, scattered to a tile that the blocks around gather.
+/// Expects exact sums on the nodes after particles of one block, in a random state, are scattered
+/// to its tile and the surrounding blocks have gathered this tile.
 template <class T, int D>
-void expect_exact_sums(const Way& way, const Spread& spread) {
+void expect_exact_sums(const SolverVariant& variant, const Spread& spread) {
   constexpr int n = 37;  // not a multiple of any register's lanes
   Random random(5);
   const auto uniform = [&](double low, double high) {
     return T(low + (high - low) * random.uniform());
   };
   Particles<T, D> particles;
-  particles.has_affine = way.transfer != Transfer::flip;
+  particles.has_affine = variant.transfer != Transfer::flip;
   particles.has_plastic = true;
   particles.resize(n);
   double mass = 0, momentum[D] = {}, first_moment[D] = {};
@@ -102,47 +104,47 @@ void expect_exact_sums(const Way& way, const Spread& spread) {
       particles.velocity[d][i] = uniform(-1, 1);
       momentum[d] += double(particles.mass[i]) * particles.velocity[d][i];
       first_moment[d] +=
-          double(particles.mass[i]) * (particles.cell[d][i] + base_offset(way.basis) + 1);
+          double(particles.mass[i]) * (particles.cell[d][i] + base_offset(variant.basis) + 1);
     }
   }
   const Kernels<T> kernels =
-      select_kernels<T>({D, way.transfer, way.basis, SnowModel::cam_clay, false});
+      select_kernels<T>({D, variant.transfer, variant.basis, SnowModel::cam_clay, false});
   // Values that are not cleared must not be read.
   constexpr T unset = std::numeric_limits<T>::quiet_NaN();
-  AlignedVector<T> tile(std::size_t(tile_nodes<D>(way.basis)) * node_values, unset);
+  AlignedVector<T> tile(std::size_t(tile_nodes<D>(variant.basis)) * node_values, unset);
   const auto snow = material_constants<T>(Snow(), D);
-  const StepParameters<T> step{T(1e-4), T(0.01), T(9.81), T(0.99),       T(0.02),
-                               T(0),    T(0),    &snow,   all_pushing<T>};
+  const StepParameters<T> step{T(1e-4), T(0.01), T(9.81), T(0.99),         T(0.02),
+                               T(0),    T(0),    &snow,   full_friction<T>};
   BlockStats stats;
   kernels.scatter(step, particles.view(), 0, n, tile.data(), stats);
   ASSERT_FALSE(stats.escaped);
   for (int d = 0; d < D; ++d) EXPECT_EQ((stats.reach & below(d)) != 0, spread.low[d] < 0);
 
   const GridSums<D> grid = gathered<T, D>(kernels, tile.data(), stats.reach);
-  const double eps = way.epsilon();
+  const double eps = variant.epsilon();
   EXPECT_NEAR(grid.sums[0], mass, 16 * eps * mass);  // sum of some hundred nodes
   for (int d = 0; d < D; ++d) {
     EXPECT_NEAR(grid.sums[1 + d], momentum[d], 8 * eps * grid.absolute[1 + d]);
     EXPECT_NEAR(grid.sums[4 + d], 0.0, 8 * eps * grid.absolute[4 + d]);  // internal forces
     EXPECT_GT(grid.absolute[4 + d], 1.0);
-    EXPECT_NEAR(grid.moment[d], first_moment[d], 8 * eps * mass * tile_edge<D>(way.basis));
+    EXPECT_NEAR(grid.moment[d], first_moment[d], 8 * eps * mass * tile_edge<D>(variant.basis));
   }
 }
 
 template <int D>
-void expect_exact_sums_wherever_particles_are(const Way& way) {
+void expect_exact_sums_wherever_particles_are(const SolverVariant& variant) {
   for (const Spread& spread : spreads<D>()) {
     SCOPED_TRACE(testing::PrintToString(spread.low) + testing::PrintToString(spread.high));
-    way.precision == Precision::float32 ? expect_exact_sums<float, D>(way, spread)
-                                        : expect_exact_sums<double, D>(way, spread);
+    variant.precision == Precision::float32 ? expect_exact_sums<float, D>(variant, spread)
+                                            : expect_exact_sums<double, D>(variant, spread);
   }
 }
 
 TEST(Scatter, GivesTheGridExactlyTheParticlesMassMomentumAndCentre) {
-  for (const Way& way : all_ways()) {
-    SCOPED_TRACE(way.name());
-    way.dimension == 2 ? expect_exact_sums_wherever_particles_are<2>(way)
-                       : expect_exact_sums_wherever_particles_are<3>(way);
+  for (const SolverVariant& variant : all_solver_variants()) {
+    SCOPED_TRACE(variant.name());
+    variant.dimension == 2 ? expect_exact_sums_wherever_particles_are<2>(variant)
+                           : expect_exact_sums_wherever_particles_are<3>(variant);
   }
 }
 
@@ -160,7 +162,7 @@ TEST(Scatter, SaysWhenAParticleHasLeftTheTile) {
   AlignedVector<float> tile(std::size_t(tile_nodes<2>(Basis::quadratic)) * node_values);
   const auto snow = material_constants<float>(Snow(), 2);
   const StepParameters<float> step{
-      1e-4f, 0.01f, 9.81f, 0.99f, 0.02f, 0.0f, 0.0f, &snow, all_pushing<float>};
+      1e-4f, 0.01f, 9.81f, 0.99f, 0.02f, 0.0f, 0.0f, &snow, full_friction<float>};
   for (float cell : {-1.01f, 9.0f, std::nanf("")}) {
     particles.cell[1][2] = cell;
     BlockStats stats;

@@ -10,8 +10,8 @@
 namespace snowshed::mpm {
 namespace {
 
-Options event_options(const Way& way, double dx = 0.01) {
-  Options o = options_for(way, dx);
+Options event_options(const SolverVariant& variant, double dx = 0.01) {
+  Options o = options_for(variant, dx);
   o.settings.adopt(Scheme::objective);
   o.settings.fields = Fields::events;
   return o;
@@ -53,16 +53,16 @@ double height_of(const ParticleState& s, int event) {
 
 /// Mean distance (m) from one slab to the next in a stack of slabs of 2 cm that come down one after
 /// the other.
-double distance_of_slabs(const Way& way, double dx, Fields fields, int slabs) {
-  Options o = event_options(way, dx);
+double distance_of_slabs(const SolverVariant& variant, double dx, Fields fields, int slabs) {
+  Options o = event_options(variant, dx);
   o.settings.scheme = Scheme::thesis;
   o.settings.fields = fields;
   const auto solver = make_solver(o, {ground()});
   const double spacing = dx / std::sqrt(6.0);
   double top = 0;
   for (int event = 1; event <= slabs; ++event) {
-    solver->add(slab(way.dimension, event, Vec3(-0.05, 0, top + 0.01), Vec3(0.05, 0.03, top + 0.03),
-                     spacing));
+    solver->add(slab(variant.dimension, event, Vec3(-0.05, 0, top + 0.01),
+                     Vec3(0.05, 0.03, top + 0.03), spacing));
     run_until(*solver, solver->time() + 0.12);
     top = top_of(solver->state());
   }
@@ -108,8 +108,8 @@ ParticleBatch upper_block(int event) {
   return block;
 }
 
-/// Returns the speed (m/s) to which the upper block has accelerated the lower one, the snow of an
-/// event.
+/// Returns the speed (m/s) that the lower block, the snow of an event, has gained from the upper
+/// one.
 double speed_carried_along(Solver& solver, int event) {
   run_until(solver, solver.time() + 0.02);
   return momentum_of(solver.state(), event).z() / (0.06 * 0.03 * 210);
@@ -126,7 +126,7 @@ TEST(Meetings, SnowOfDifferentEventsDoesNotStick) {
   EXPECT_GT(speed_of_lower(Fields::one), 0.02);
 }
 
-/// With ten events the first three share a field.
+/// With ten events, the first three share a field.
 TEST(Meetings, TheNewestEventSharesNoField) {
   for (const int lower : {3, 9}) {
     const auto solver = weightless_solver();
@@ -177,9 +177,9 @@ TEST(Meetings, SleepingSnowCarriesThatOfAnotherEvent) {
   EXPECT_NEAR(height_of_block(0.02), height_of_block(0), 0.0003);
 }
 
-/// Returns the coefficient of friction between a block, at 1 m/s at first, and a layer of snow: the
-/// momentum that the block loses over the impulse that presses it on the layer.
-double coefficient_felt(int dimension, double dx, double event_friction, int seed) {
+/// Returns the coefficient of friction between a layer of snow and a block that starts at 1 m/s:
+/// the momentum that the block loses, divided by the impulse that presses it onto the layer.
+double friction_coefficient(int dimension, double dx, double event_friction, int seed) {
   Options o = event_options({dimension, Precision::float32}, dx);
   o.settings.event_friction = event_friction;
   const auto solver = make_solver(o, {ground()});
@@ -200,10 +200,10 @@ double coefficient_felt(int dimension, double dx, double event_friction, int see
   return -change.x() / (change.z() + block.total_mass() * 9.81 * (solver->time() - begin));
 }
 
-double mean_coefficient_felt(int dimension, double dx, double event_friction, int seeds) {
+double mean_friction_coefficient(int dimension, double dx, double event_friction, int seeds) {
   double sum = 0;
   for (int seed = 2; seed < 2 + seeds; ++seed)
-    sum += coefficient_felt(dimension, dx, event_friction, seed);
+    sum += friction_coefficient(dimension, dx, event_friction, seed);
   return sum / seeds;
 }
 
@@ -225,18 +225,18 @@ INSTANTIATE_TEST_SUITE_P(Meetings, BlockOnSnow,
 TEST_P(BlockOnSnow, FeelsItsFriction) {
   const FrictionOnGrid c = GetParam();
   const double coefficient = 0.5 / std::sqrt(3.0);
-  const double felt = mean_coefficient_felt(2, c.dx, c.event_friction, c.seeds);
+  const double measured_coefficient = mean_friction_coefficient(2, c.dx, c.event_friction, c.seeds);
   if (c.event_friction == 0)
-    EXPECT_LT(felt, 0.02);  // the block ploughs a little
+    EXPECT_LT(measured_coefficient, 0.02);  // the block ploughs a little
   else
-    EXPECT_NEAR(felt, c.event_friction * coefficient,
+    EXPECT_NEAR(measured_coefficient, c.event_friction * coefficient,
                 (c.event_friction == 1 ? 0.07 : 0.3) * coefficient);
 }
 
 /// A block comes to rest within the time that its friction implies, although some of its nodes stop
-/// before.
+/// earlier.
 TEST(Meetings, ABlockStopsInTime) {
-  double left = 0;
+  double remaining_speed = 0;
   for (int seed = 2; seed < 10; ++seed) {
     const auto solver = make_solver(event_options({2, Precision::float32}), {ground()});
     solver->add(slab(2, 1, Vec3(-0.02, 0, 0), Vec3(0.1, 0, 0.02), 0.004));
@@ -247,9 +247,9 @@ TEST(Meetings, ABlockStopsInTime) {
     block.velocity.x() = 0.2;
     solver->add(block);
     run_until(*solver, 0.03 + 0.2 / (9.81 * 0.5 / std::sqrt(3.0)));
-    left += momentum_of(solver->state(), 2).x() / block.total_mass() / 8;
+    remaining_speed += momentum_of(solver->state(), 2).x() / block.total_mass() / 8;
   }
-  EXPECT_LT(left, 0.01);
+  EXPECT_LT(remaining_speed, 0.01);
 }
 
 /// Blocks that meet fast do not enter each other.
@@ -279,14 +279,15 @@ TEST(Meetings, FastSnowDoesNotEnterThatOfAnotherEvent) {
 
 TEST(Meetings, ABlockFeelsItsFrictionInThreeDimensions) {
   const double coefficient = 0.5 / std::sqrt(3.0);
-  EXPECT_NEAR(mean_coefficient_felt(3, 0.01, 1, 2), coefficient, 0.07 * coefficient);
-  EXPECT_LT(mean_coefficient_felt(3, 0.01, 0, 2), 0.03);
+  EXPECT_NEAR(mean_friction_coefficient(3, 0.01, 1, 2), coefficient, 0.07 * coefficient);
+  EXPECT_LT(mean_friction_coefficient(3, 0.01, 0, 2), 0.03);
 }
 
 TEST(Meetings, KeepMomentumInPairsAndInThrees) {
-  for (const Way& way : {Way{2, Precision::float32}, Way{2, Precision::float64},
-                         Way{3, Precision::float32}, Way{3, Precision::float64}}) {
-    Options o = event_options(way);
+  for (const SolverVariant& variant :
+       {SolverVariant{2, Precision::float32}, SolverVariant{2, Precision::float64},
+        SolverVariant{3, Precision::float32}, SolverVariant{3, Precision::float64}}) {
+    Options o = event_options(variant);
     o.gravity = 0;
     o.energy = true;
     const auto solver = make_solver(o, {});
@@ -295,21 +296,21 @@ TEST(Meetings, KeepMomentumInPairsAndInThrees) {
     for (int event = 1; event <= 3; ++event) {
       const double x = event == 2 ? 0.032 : 0.0, z = event == 3 ? 0.032 : 0.0;
       ParticleBatch block =
-          slab(way.dimension, event, Vec3(x, 0, z), Vec3(x + 0.03, 0.03, z + 0.03), 0.005);
+          slab(variant.dimension, event, Vec3(x, 0, z), Vec3(x + 0.03, 0.03, z + 0.03), 0.005);
       block.velocity = Eigen::Map<const Vec3>(velocities[event - 1]);
-      if (way.dimension == 2) block.velocity.y() = 0;
+      if (variant.dimension == 2) block.velocity.y() = 0;
       speeds += block.total_mass() * block.velocity.norm();
       solver->add(block);
     }
     const Vec3 before = momentum(solver->state()), of_first = momentum_of(solver->state(), 1);
     run_steps(*solver, 120);
     const ParticleState s = solver->state();
-    EXPECT_LT((momentum(s) - before).norm(), 120 * way.epsilon() * speeds) << way.name();
-    EXPECT_GT((momentum_of(s, 1) - of_first).norm(), 0.1 * of_first.norm()) << way.name();
+    EXPECT_LT((momentum(s) - before).norm(), 120 * variant.epsilon() * speeds) << variant.name();
+    EXPECT_GT((momentum_of(s, 1) - of_first).norm(), 0.1 * of_first.norm()) << variant.name();
     const EnergyBalance e = solver->energy();
-    EXPECT_GT(e.impact, 0.01 * e.added) << way.name();
-    EXPECT_GE(e.friction, 0) << way.name();
-    EXPECT_NEAR(e.residual(), 0, 0.05 * e.added) << way.name();
+    EXPECT_GT(e.impact, 0.01 * e.added) << variant.name();
+    EXPECT_GE(e.friction, 0) << variant.name();
+    EXPECT_NEAR(e.residual(), 0, 0.05 * e.added) << variant.name();
   }
 }
 

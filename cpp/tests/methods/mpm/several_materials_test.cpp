@@ -19,18 +19,18 @@ Snow soft_snow() {
 
 /// Snow thrown onto a slippery slope, in two halves of the materials 0 and `upper`, with the energy
 /// balance.
-std::unique_ptr<Solver> thrown_halves(const Way& way, std::vector<Snow> snows, int upper,
-                                      int threads = 1, bool energy_balance = true) {
-  Options o = options_for(way);
+std::unique_ptr<Solver> thrown_halves(const SolverVariant& variant, std::vector<Snow> snows,
+                                      int upper, int threads = 1, bool energy_balance = true) {
+  Options o = options_for(variant);
   o.snows = std::move(snows);
   o.settings.threads = threads;
   o.energy = energy_balance;
   auto solver = make_solver(
       o, {fixed(make_plane(Vec3::Zero(), Vec3(0.5, 0, 1).normalized()), Condition::separate, 0.3)});
-  const double size = way.dimension == 2 ? 0.12 : 0.05;
+  const double size = variant.dimension == 2 ? 0.12 : 0.05;
   for (int half : {0, 1}) {
     const int material_id = half * upper;
-    ParticleBatch batch = filled_box(way.dimension, Vec3(0, 0, 0.01 + half * size / 2),
+    ParticleBatch batch = filled_box(variant.dimension, Vec3(0, 0, 0.01 + half * size / 2),
                                      Vec3(size, size, 0.01 + (half + 1) * size / 2), 0.005,
                                      o.snows[std::size_t(material_id)].density);
     batch.velocity = Vec3(1, 0, -3);
@@ -40,7 +40,7 @@ std::unique_ptr<Solver> thrown_halves(const Way& way, std::vector<Snow> snows, i
   return solver;
 }
 
-/// The largest difference of a quantity, over its largest value.
+/// The largest difference of a quantity, divided by its largest value.
 template <class Values>
 double relative_difference(const Values& a, const Values& b) {
   double difference = 0, size = 0;
@@ -58,13 +58,13 @@ double relative_difference(const Values& a, const Values& b) {
 
 TEST(MaterialPerParticle, ThatAreEqualMoveAsOneDoes) {
   for (SnowModel model : {SnowModel::cam_clay, SnowModel::elastic})
-    for (const Way& way : all_ways()) {
-      SCOPED_TRACE(way.name() + (model == SnowModel::elastic ? "_elastic" : ""));
+    for (const SolverVariant& variant : all_solver_variants()) {
+      SCOPED_TRACE(variant.name() + (model == SnowModel::elastic ? "_elastic" : ""));
       Snow snow;
       snow.model = model;
-      const auto one = thrown_halves(way, {snow}, 0, 1, false);
-      const auto first_of_two = thrown_halves(way, {snow, snow}, 0);
-      const auto both = thrown_halves(way, {snow, snow}, 1);
+      const auto one = thrown_halves(variant, {snow}, 0, 1, false);
+      const auto first_of_two = thrown_halves(variant, {snow, snow}, 0);
+      const auto both = thrown_halves(variant, {snow, snow}, 1);
       for (Method* solver : {one.get(), first_of_two.get(), both.get()}) run_steps(*solver, 40);
       const ParticleState a = one->state(), b = first_of_two->state(), c = both->state();
       expect_same_bits(b, c);
@@ -73,7 +73,7 @@ TEST(MaterialPerParticle, ThatAreEqualMoveAsOneDoes) {
                 std::ptrdiff_t(c.material_ids.size() / 2));
       // Without the balance, a single snow has kernels of its own, which may round differently.
       EXPECT_TRUE(a.material_ids.empty());
-      const double round_off = 1000 * way.epsilon();
+      const double round_off = 1000 * variant.epsilon();
       EXPECT_LT(relative_difference(a.positions, b.positions), round_off);
       EXPECT_LT(relative_difference(a.velocities, b.velocities), round_off);
       EXPECT_LT(relative_difference(a.pressures, b.pressures), 10 * round_off);
@@ -199,8 +199,9 @@ TEST(MaterialPerParticle, AColumnOfTwoSettlesPiecewise) {
 }
 
 TEST(MaterialPerParticle, EnergyBooksClose) {
-  for (const Way& way : {Way{2, Precision::float32}, Way{2, Precision::float64, Transfer::apic}}) {
-    Options o = options_for(way);
+  for (const SolverVariant& variant : {SolverVariant{2, Precision::float32},
+                                       SolverVariant{2, Precision::float64, Transfer::apic}}) {
+    Options o = options_for(variant);
     o.energy = true;
     o.snows = {Snow(), soft_snow()};
     for (Snow& snow : o.snows) snow.preconsolidation_pressure = 200;  // too weak to stand
@@ -220,8 +221,8 @@ TEST(MaterialPerParticle, EnergyBooksClose) {
     run_until(*solver, 0.2);
     const EnergyBalance end = solver->energy();
     const double turnover = start.gravitational - end.gravitational;
-    EXPECT_GT(end.plastic, 0.05 * turnover) << way.name();
-    EXPECT_NEAR(end.residual(), 0.0, 0.02 * turnover) << way.name();
+    EXPECT_GT(end.plastic, 0.05 * turnover) << variant.name();
+    EXPECT_NEAR(end.residual(), 0.0, 0.02 * turnover) << variant.name();
   }
 }
 
@@ -239,9 +240,9 @@ TEST(MaterialPerParticle, ElasticEnergyIsThatOfEachParticlesOwnSnow) {
 }
 
 TEST(MaterialPerParticle, GiveTheSameBitsOnAnyNumberOfThreads) {
-  const Way way{2, Precision::float32};
-  const auto one = thrown_halves(way, {Snow(), soft_snow()}, 1);
-  const auto two = thrown_halves(way, {Snow(), soft_snow()}, 1, 2);
+  const SolverVariant variant{2, Precision::float32};
+  const auto one = thrown_halves(variant, {Snow(), soft_snow()}, 1);
+  const auto two = thrown_halves(variant, {Snow(), soft_snow()}, 1, 2);
   run_steps(*one, 150);
   run_steps(*two, 150);
   EXPECT_GT(one->counters().sorts, 1);

@@ -1,5 +1,5 @@
-// The rules by which blocks fall asleep and wake, without a solver: two neighbouring blocks, of
-// which one is always awake.
+// The rules by which blocks fall asleep and wake, without a solver: one of two neighbouring blocks
+// is always awake.
 #include <gtest/gtest.h>
 
 #include "snowshed/methods/mpm/sleep.hpp"
@@ -69,12 +69,12 @@ TEST_F(TwoBlocks, StayAwakeWhileTheySetOff) {
 }
 
 TEST_F(TwoBlocks, StayAwakeWhileTheyLoseTheSpeedThatGravityTakes) {
-  const double lost = 9.81 * 0.5 * time_to_sleep;  // from one half to the other
+  const double lost_speed = 9.81 * 0.5 * time_to_sleep;  // from one half to the other
   for (const double part : {0.3, 0.7}) {
     wake_all();
-    QuietBlock block{0.5 * speed_limit, speed_limit, {}, VecD<2>(0.0, lost)};
+    QuietBlock block{0.5 * speed_limit, speed_limit, {}, VecD<2>(0.0, lost_speed)};
     sleeps_after(0.5 * time_to_sleep, block);
-    block.velocity[1] = (1 - part) * lost;
+    block.velocity[1] = (1 - part) * lost_speed;
     EXPECT_EQ(sleeps_after(0.55 * time_to_sleep, block), part < 0.5) << part;
   }
 }
@@ -88,8 +88,8 @@ TEST_F(TwoBlocks, WakeWhereTheirNeighbourWouldCarryThemFasterThanTheLimit) {
   }
 }
 
-/// A steady force that causes the acceleration a gives the velocity a t within the time t to fall
-/// asleep.
+/// Snow falls asleep after a time t. Within this time a steady force that causes the acceleration a
+/// gives it the velocity a t.
 TEST_F(TwoBlocks, WakeByForcesThatActForAsLongAsItTakesToFallAsleep) {
   for (const double part : {0.8, 1.2}) {
     fall_asleep();

@@ -11,10 +11,11 @@ namespace {
 
 constexpr double sleep_speed = 0.02;
 
-const Way two_d{2, Precision::float32}, three_d{3, Precision::float32};
+const SolverVariant two_d{2, Precision::float32}, three_d{3, Precision::float32};
 
-Options sleepy(const Way& way, double speed = sleep_speed, bool energy_balance = false) {
-  Options o = options_for(way);
+Options sleepy(const SolverVariant& variant, double speed = sleep_speed,
+               bool energy_balance = false) {
+  Options o = options_for(variant);
   o.snows[0].model = SnowModel::cam_clay;
   o.settings.sleep_speed = speed;
   o.energy = energy_balance;
@@ -24,26 +25,26 @@ Options sleepy(const Way& way, double speed = sleep_speed, bool energy_balance =
 Obstacle floor() { return fixed(make_plane(Vec3(0, 0, 0), Vec3(0, 0, 1)), Condition::sticky); }
 
 /// A low wall of snow, resting on the floor.
-ParticleBatch wall_of_snow(const Way& way) {
-  return filled_box(way.dimension, Vec3(0, 0, 0), Vec3(0.3, 0.06, 0.08), 0.005);
+ParticleBatch wall_of_snow(const SolverVariant& variant) {
+  return filled_box(variant.dimension, Vec3(0, 0, 0), Vec3(0.3, 0.06, 0.08), 0.005);
 }
 
-/// A lump in free fall above the middle of the wall, due on it after `time`.
-ParticleBatch falling_lump(const Way& way, double time) {
+/// A lump in free fall that lands on the middle of the wall after `time`.
+ParticleBatch falling_lump(const SolverVariant& variant, double time) {
   const double low = 0.085 + 3 * time;
   ParticleBatch batch =
-      filled_box(way.dimension, Vec3(0.13, 0, low), Vec3(0.17, 0.06, low + 0.04), 0.005);
+      filled_box(variant.dimension, Vec3(0.13, 0, low), Vec3(0.17, 0.06, low + 0.04), 0.005);
   batch.velocity = Vec3(0, 0, -3 + 9.81 * time / 2);
   return batch;
 }
 
-std::unique_ptr<Solver> wall_under_lump(const Way& way, double speed, int threads = 1,
+std::unique_ptr<Solver> wall_under_lump(const SolverVariant& variant, double speed, int threads = 1,
                                         bool energy_balance = false) {
-  Options o = sleepy(way, speed, energy_balance);
+  Options o = sleepy(variant, speed, energy_balance);
   o.settings.threads = threads;
   auto solver = make_solver(o, {floor()});
-  solver->add(wall_of_snow(way));
-  solver->add(falling_lump(way, 0.15));
+  solver->add(wall_of_snow(variant));
+  solver->add(falling_lump(variant, 0.15));
   return solver;
 }
 
@@ -56,9 +57,9 @@ double largest_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) 
 class SleepFiles : public TemporaryFolder {};
 
 TEST(Sleep, SnowAtRestCostsNothingAndStaysWhereItIs) {
-  for (const Way& way : {two_d, three_d}) {
-    const auto solver = make_solver(sleepy(way), {floor()});
-    solver->add(wall_of_snow(way));
+  for (const SolverVariant& variant : {two_d, three_d}) {
+    const auto solver = make_solver(sleepy(variant), {floor()});
+    solver->add(wall_of_snow(variant));
     run_until(*solver, 0.2);
     const ParticleState before = solver->state();
     const StepCounters counters = solver->counters();
@@ -190,17 +191,18 @@ TEST(Sleep, SnowThatTurnsInTheAirGoesOn) {
 }
 
 TEST(Sleep, AnImpactWakes) {
-  for (const Way& way : {two_d, three_d}) {
-    const auto sleeping = wall_under_lump(way, sleep_speed), awake = wall_under_lump(way, 0.0);
+  for (const SolverVariant& variant : {two_d, three_d}) {
+    const auto sleeping = wall_under_lump(variant, sleep_speed),
+               awake = wall_under_lump(variant, 0.0);
     run_until(*sleeping, 0.12);
     EXPECT_GT(sleeping->slept_updates(), sleeping->counters().particle_updates / 4);
     const ParticleState before = sleeping->state();
-    const double end = way.dimension == 2 ? 0.5 : 0.3;
+    const double end = variant.dimension == 2 ? 0.5 : 0.3;
     run_until(*sleeping, end);
     run_until(*awake, end);
     const auto a = sleeping->state().positions, b = awake->state().positions;
     EXPECT_GT(largest_distance(before.positions, a), 0.01);
-    // The mean height and length hardly differ, and no particle by more than a cell or two.
+    // The mean height hardly differs, and no particle lies farther off than two cells.
     EXPECT_NEAR(weighted_mean(sleeping->state(), a)[2], weighted_mean(awake->state(), b)[2], 5e-4);
     EXPECT_LT(largest_distance(a, b), 0.02);
     EXPECT_LT(sleeping->counters().particle_updates, awake->counters().particle_updates * 3 / 4);

@@ -11,17 +11,18 @@
 namespace snowshed::mpm {
 namespace {
 
-class InEveryWay : public testing::TestWithParam<Way> {};
-INSTANTIATE_TEST_SUITE_P(Method, InEveryWay, testing::ValuesIn(all_ways()),
+class InEveryWay : public testing::TestWithParam<SolverVariant> {};
+INSTANTIATE_TEST_SUITE_P(Method, InEveryWay, testing::ValuesIn(all_solver_variants()),
                          [](const auto& info) { return info.param.name(); });
 
 /// A swarm of particles with velocities of their own, a few of which share each cell.
-void add_swarm(Method& solver, const Way& way, int particles, double size, double speed) {
+void add_swarm(Method& solver, const SolverVariant& variant, int particles, double size,
+               double speed) {
   Random random(11);
   for (int i = 0; i < particles; ++i) {
     ParticleBatch one;
-    one.positions = {random_vector(random, way.dimension, size)};
-    one.velocity = random_vector(random, way.dimension, speed);
+    one.positions = {random_vector(random, variant.dimension, size)};
+    one.velocity = random_vector(random, variant.dimension, speed);
     one.mass = 1e-3 * (0.5 + random.uniform());
     solver.add(one);
   }
@@ -34,26 +35,26 @@ double sum_of_speeds(const ParticleState& s) {
 }
 
 TEST_P(InEveryWay, FreeFlightKeepsMassAndMomentum) {
-  const Way way = GetParam();
-  Options o = options_for(way);
+  const SolverVariant variant = GetParam();
+  Options o = options_for(variant);
   o.gravity = 0;
   const auto solver = make_solver(o, {});
-  add_swarm(*solver, way, 80, 0.025, 1.0);
+  add_swarm(*solver, variant, 80, 0.025, 1.0);
   const ParticleState before = solver->state();
   run_steps(*solver, 70);  // past a sort
   const ParticleState after = solver->state();
   EXPECT_EQ(after.masses, before.masses);
   // Every step rounds each particle's momentum a few times; the errors do not all add up.
-  const double round_off = 70 * way.epsilon() * sum_of_speeds(before);
+  const double round_off = 70 * variant.epsilon() * sum_of_speeds(before);
   EXPECT_LT((momentum(after) - momentum(before)).norm(), round_off);
   EXPECT_GT((after.velocities[0] - before.velocities[0]).norm(),
             0.01);  // the particles did interact
 }
 
 TEST_P(InEveryWay, FreeFallIsExact) {
-  const Way way = GetParam();
-  const auto solver = make_solver(options_for(way), {});
-  ParticleBatch batch = filled_box(way.dimension, Vec3(0, 0, 1), Vec3(0.03, 0.03, 1.03), 0.005);
+  const SolverVariant variant = GetParam();
+  const auto solver = make_solver(options_for(variant), {});
+  ParticleBatch batch = filled_box(variant.dimension, Vec3(0, 0, 1), Vec3(0.03, 0.03, 1.03), 0.005);
   batch.velocity = Vec3(0.5, 0, 1);
   solver->add(batch);
   const ParticleState before = solver->state();
@@ -67,7 +68,7 @@ TEST_P(InEveryWay, FreeFallIsExact) {
   const double t = solver->time();
   EXPECT_NEAR(speed, 1 - 9.81 * t, 1e-12);
   // Positions are sums of 300 displacements, rounded to a block of 8 cells.
-  const double rounding = 300 * way.epsilon();
+  const double rounding = 300 * variant.epsilon();
   for (std::size_t i = 0; i < after.positions.size(); ++i) {
     const Vec3 moved = after.positions[i] - before.positions[i];
     ASSERT_NEAR(moved.x(), 0.5 * t, 0.08 * rounding);
@@ -98,55 +99,56 @@ class SolverFiles : public TemporaryFolder {
   }
   /// Angular momentum about the origin, including that of the affine velocities (inertia dx^2/4 or
   /// dx^2/3).
-  Vec3 angular_momentum(const Method& solver, const Way& way, double dx) {
+  Vec3 angular_momentum(const Method& solver, const SolverVariant& variant, double dx) {
     const ParticleState s = solver.state();
     Vec3 sum = Vec3::Zero();
     for (std::size_t i = 0; i < s.masses.size(); ++i)
       sum += s.masses[i] * s.positions[i].cross(s.velocities[i]);
-    if (way.transfer != Transfer::flip)
-      sum += dx * dx / (way.basis == Basis::quadratic ? 4 : 3) * affine_spin(solver, way.dimension);
+    if (variant.transfer != Transfer::flip)
+      sum += dx * dx / (variant.basis == Basis::quadratic ? 4 : 3) *
+             affine_spin(solver, variant.dimension);
     return sum;
   }
 };
 
 TEST_F(SolverFiles, ApicKeepsAngularMomentum) {
-  for (const Way& way : all_ways()) {
-    if (way.transfer != Transfer::apic || way.precision != Precision::float64) continue;
-    Options o = options_for(way);
+  for (const SolverVariant& variant : all_solver_variants()) {
+    if (variant.transfer != Transfer::apic || variant.precision != Precision::float64) continue;
+    Options o = options_for(variant);
     o.gravity = 0;
     const auto solver = make_solver(o, {});
-    add_swarm(*solver, way, 80, 0.025, 1.0);
-    const Vec3 before = angular_momentum(*solver, way, 0.01);
+    add_swarm(*solver, variant, 80, 0.025, 1.0);
+    const Vec3 before = angular_momentum(*solver, variant, 0.01);
     run_steps(*solver, 70);
-    const Vec3 after = angular_momentum(*solver, way, 0.01);
+    const Vec3 after = angular_momentum(*solver, variant, 0.01);
     // Round-off as for the momentum, times arms of some 3 cm.
-    const double round_off = 70 * way.epsilon() * 0.05 * sum_of_speeds(solver->state());
-    EXPECT_LT((after - before).norm(), round_off) << way.name();
-    EXPECT_GT(before.norm(), 1e-5) << way.name();
+    const double round_off = 70 * variant.epsilon() * 0.05 * sum_of_speeds(solver->state());
+    EXPECT_LT((after - before).norm(), round_off) << variant.name();
+    EXPECT_GT(before.norm(), 1e-5) << variant.name();
   }
 }
 
 /// Affine FLIP keeps the angular momentum if the affine velocities fit the particles' velocities,
 /// as in a spin.
 TEST_F(SolverFiles, AffineFlipKeepsTheAngularMomentumOfASpin) {
-  const Way way{2, Precision::float64, Transfer::affine_flip};
-  Options o = options_for(way);
+  const SolverVariant variant{2, Precision::float64, Transfer::affine_flip};
+  Options o = options_for(variant);
   o.gravity = 0;
   o.settings.flip_ratio = 1;
   const auto solver = make_solver(o, {});
   add_spinning_disc(*solver, 0.02, 10, 0.004);
   run_until(*solver, 0.01);
-  const Vec3 before = angular_momentum(*solver, way, 0.01);
+  const Vec3 before = angular_momentum(*solver, variant, 0.01);
   run_until(*solver, 0.11);
-  const Vec3 after = angular_momentum(*solver, way, 0.01);
+  const Vec3 after = angular_momentum(*solver, variant, 0.01);
   EXPECT_NEAR(after.y(), before.y(), 0.005 * before.y());  // FLIP loses four fifths, at 16 1/s
 }
 
 TEST_F(SolverFiles, ADiscKeepsSpinning) {
   constexpr double radius = 0.05, spin = 20, duration = 0.04;
   for (Transfer transfer : {Transfer::flip, Transfer::apic, Transfer::affine_flip}) {
-    const Way way{2, Precision::float64, transfer};
-    Options o = options_for(way);
+    const SolverVariant variant{2, Precision::float64, transfer};
+    Options o = options_for(variant);
     o.gravity = 0;
     o.settings.flip_ratio = 1;  // each percent of PIC damps a spin of so few cells visibly
     o.snows[0].model = SnowModel::elastic;
@@ -169,7 +171,7 @@ TEST_F(SolverFiles, ADiscKeepsSpinning) {
       worst = std::max(worst, (after.positions[i] - turn * before.positions[i]).norm());
     // The limit is relative to the distance that the rim has moved. FLIP's rim lags a little,
     // because it is not quite affine there.
-    EXPECT_LT(worst, (transfer == Transfer::flip ? 0.03 : 0.01) * angle * radius) << way.name();
+    EXPECT_LT(worst, (transfer == Transfer::flip ? 0.03 : 0.01) * angle * radius) << variant.name();
   }
 }
 
@@ -264,13 +266,15 @@ TEST(Method, AColumnCarriesItsWeight) {
 // --- the same bits ----------------------------------------------------------------------------
 
 /// Snow thrown onto a slippery slope: contact, plasticity, blocks that come and go.
-std::unique_ptr<Solver> thrown_snow(Way way, int threads, double size, bool energy_balance) {
-  Options o = options_for(way);
+std::unique_ptr<Solver> thrown_snow(SolverVariant variant, int threads, double size,
+                                    bool energy_balance) {
+  Options o = options_for(variant);
   o.settings.threads = threads;
   o.energy = energy_balance;
   auto solver = make_solver(
       o, {fixed(make_plane(Vec3::Zero(), Vec3(0.5, 0, 1).normalized()), Condition::separate, 0.3)});
-  ParticleBatch batch = filled_box(way.dimension, Vec3(0, 0, 0.01), Vec3(size, size, size), 0.005);
+  ParticleBatch batch =
+      filled_box(variant.dimension, Vec3(0, 0, 0.01), Vec3(size, size, size), 0.005);
   batch.velocity = Vec3(1, 0, -3);
   solver->add(batch);
   return solver;
@@ -281,18 +285,19 @@ class SameBits : public SolverFiles, public testing::WithParamInterface<bool> {}
 
 TEST_P(SameBits, OnAnyNumberOfThreads) {
   const bool energy_balance = GetParam();
-  for (const Way& way : {Way{2, Precision::float32}, Way{3, Precision::float32},
-                         Way{2, Precision::float64, Transfer::apic, Basis::cubic},
-                         Way{2, Precision::float64, Transfer::affine_flip, Basis::cubic}}) {
-    const double size = way.dimension == 2 ? 0.25 : 0.08;
-    const int steps = way.dimension == 2 ? 150 : 80;
-    const auto one = thrown_snow(way, 1, size, energy_balance);
+  for (const SolverVariant& variant :
+       {SolverVariant{2, Precision::float32}, SolverVariant{3, Precision::float32},
+        SolverVariant{2, Precision::float64, Transfer::apic, Basis::cubic},
+        SolverVariant{2, Precision::float64, Transfer::affine_flip, Basis::cubic}}) {
+    const double size = variant.dimension == 2 ? 0.25 : 0.08;
+    const int steps = variant.dimension == 2 ? 150 : 80;
+    const auto one = thrown_snow(variant, 1, size, energy_balance);
     run_steps(*one, steps);
     EXPECT_GT(one->counters().sorts, 1);
     for (int threads : {2, 4}) {
-      const auto many = thrown_snow(way, threads, size, energy_balance);
+      const auto many = thrown_snow(variant, threads, size, energy_balance);
       run_steps(*many, steps);
-      SCOPED_TRACE(way.name() + " on " + std::to_string(threads) + " threads");
+      SCOPED_TRACE(variant.name() + " on " + std::to_string(threads) + " threads");
       expect_same_bits(many->state(), one->state());
       EXPECT_EQ(many->time(), one->time());
       EXPECT_EQ(many->energy().friction, one->energy().friction);
@@ -303,19 +308,19 @@ TEST_P(SameBits, OnAnyNumberOfThreads) {
 
 TEST_P(SameBits, FromACheckpoint) {
   const bool energy_balance = GetParam();
-  for (Way way : all_ways()) {
-    if (way.dimension == 3 && way.precision == Precision::float64) continue;
-    const auto whole = thrown_snow(way, 1, 0.05, energy_balance);
+  for (SolverVariant variant : all_solver_variants()) {
+    if (variant.dimension == 3 && variant.precision == Precision::float64) continue;
+    const auto whole = thrown_snow(variant, 1, 0.05, energy_balance);
     run_steps(*whole, 40);
     while (!whole->at_safe_point()) whole->step();
     BinaryWriter out;
     whole->save(out);
-    out.save(path(way.name()));
-    const auto resumed = thrown_snow(way, 1, 0.05, energy_balance);
-    resumed->load(BinaryReader::load(path(way.name())));
+    out.save(path(variant.name()));
+    const auto resumed = thrown_snow(variant, 1, 0.05, energy_balance);
+    resumed->load(BinaryReader::load(path(variant.name())));
     run_steps(*whole, 70);
     run_steps(*resumed, 70);
-    SCOPED_TRACE(way.name());
+    SCOPED_TRACE(variant.name());
     expect_same_bits(resumed->state(), whole->state());
     EXPECT_EQ(resumed->time(), whole->time());
     EXPECT_EQ(resumed->counters().steps, whole->counters().steps);
@@ -397,17 +402,18 @@ TEST(Method, GivesUpWithAClearErrorWhereNoStepIsSmallEnough) {
 
 TEST(Method, ParticlesOnAndNextToNodesDoNoHarm) {
   // Their farthest nodes receive next to no mass.
-  for (const Way& way : all_ways())
+  for (const SolverVariant& variant : all_solver_variants())
     for (double dx : {1e-3, 0.01, 1.0}) {
-      SCOPED_TRACE(way.name() + ", dx " + std::to_string(dx));
-      const auto solver = make_solver(options_for(way, dx), {});
-      const double node = base_offset(way.basis) * dx;
+      SCOPED_TRACE(variant.name() + ", dx " + std::to_string(dx));
+      const auto solver = make_solver(options_for(variant, dx), {});
+      const double node = base_offset(variant.basis) * dx;
       ParticleBatch batch;
       int k = 0;
       for (double off : {0.0, 1.2e-16, 1e-12, 1e-9, 1e-7})
         batch.positions.push_back(Vec3(node + (k++ + off) * dx,
-                                       way.dimension == 2 ? 0 : node + off * dx, node + off * dx));
-      batch.mass = 210 * std::pow(dx, way.dimension) / 8;
+                                       variant.dimension == 2 ? 0 : node + off * dx,
+                                       node + off * dx));
+      batch.mass = 210 * std::pow(dx, variant.dimension) / 8;
       solver->add(batch);
       ASSERT_NO_THROW(run_steps(*solver, 20));
       for (const Vec3& v : solver->state().velocities)

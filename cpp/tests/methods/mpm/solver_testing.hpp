@@ -16,8 +16,8 @@
 
 namespace snowshed::mpm {
 
-/// One way of running the solver, for parameterised tests.
-struct Way {
+/// A variant of the solver, for parameterised tests.
+struct SolverVariant {
   int dimension;
   Precision precision;
   Transfer transfer = Transfer::flip;
@@ -32,23 +32,23 @@ struct Way {
 };
 
 /// All combinations of dimension, precision, transfer and basis.
-inline std::vector<Way> all_ways() {
-  std::vector<Way> ways;
+inline std::vector<SolverVariant> all_solver_variants() {
+  std::vector<SolverVariant> variants;
   for (int dimension : {2, 3})
     for (Precision precision : {Precision::float32, Precision::float64})
       for (Transfer transfer : {Transfer::flip, Transfer::apic, Transfer::affine_flip})
         for (Basis basis : {Basis::quadratic, Basis::cubic})
-          ways.push_back({dimension, precision, transfer, basis});
-  return ways;
+          variants.push_back({dimension, precision, transfer, basis});
+  return variants;
 }
 
-inline Options options_for(const Way& way, double dx = 0.01) {
+inline Options options_for(const SolverVariant& variant, double dx = 0.01) {
   Options o;
-  o.dimension = way.dimension;
+  o.dimension = variant.dimension;
   o.settings.dx = dx;
-  o.settings.precision = way.precision;
-  o.settings.transfer = way.transfer;
-  o.settings.basis = way.basis;
+  o.settings.precision = variant.precision;
+  o.settings.transfer = variant.transfer;
+  o.settings.basis = variant.basis;
   o.settings.threads = 1;
   o.settings.sleep_speed = 0;  // most of these tests are about small motions
   return o;
@@ -99,7 +99,7 @@ inline void add_spinning_disc(Method& solver, double radius, double rate, double
   }
 }
 
-/// A vector of components within [-size, size], in the plane y = 0 in 2D.
+/// A vector with components within [-size, size], in the plane y = 0 in 2D.
 inline Vec3 random_vector(Random& random, int dimension, double size) {
   Vec3 v;
   for (int d = 0; d < 3; ++d) v[d] = size * (2 * random.uniform() - 1);

@@ -52,8 +52,8 @@ TEST(TimeStep, FastSnowMovesLessThanHalfACell) {
   }
 }
 
-/// Largest pressure of a lone elastic particle after some hundred steps from nothing but
-/// round-off. A lone particle has the highest frequency that a grid can give snow.
+/// Largest pressure of a lone elastic particle after some hundred steps, which comes from round-off
+/// alone. A lone particle has the highest frequency that a grid can give snow.
 double pressure_from_round_off(Transfer transfer, Basis basis, double fraction, double factor) {
   Options o = options_for({2, Precision::float64, transfer, basis});
   o.gravity = 0;

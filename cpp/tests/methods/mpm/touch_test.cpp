@@ -9,8 +9,8 @@
 namespace snowshed::mpm {
 namespace {
 
-Options touching_options(const Way& way, double dx = 0.01) {
-  Options o = options_for(way, dx);
+Options touching_options(const SolverVariant& variant, double dx = 0.01) {
+  Options o = options_for(variant, dx);
   o.settings.transfer = Transfer::affine_flip;
   o.settings.damping_length = 0.01;
   o.settings.damping_rate = 380;
@@ -25,13 +25,13 @@ double lowest(const ParticleState& s) {
 }
 
 /// Gap (in cells) between the ground and a slab that came down on it.
-double resting_gap(const Way& way, double dx, ContactRule contact, const Obstacle& ground,
-                   double surface) {
-  Options o = touching_options(way, dx);
+double resting_gap(const SolverVariant& variant, double dx, ContactRule contact,
+                   const Obstacle& ground, double surface) {
+  Options o = touching_options(variant, dx);
   o.settings.contact = contact;
   const auto solver = make_solver(o, {ground});
   const double spacing = dx / 2.5, thickness = 2 * dx;
-  solver->add(filled_box(way.dimension, Vec3(0, 0, surface + 2.3 * dx),
+  solver->add(filled_box(variant.dimension, Vec3(0, 0, surface + 2.3 * dx),
                          Vec3(6 * dx, 4 * dx, surface + 2.3 * dx + thickness), spacing));
   run_until(*solver, std::sqrt(6 * dx / 9.81) + 0.08);
   return (lowest(solver->state()) - 0.5 * spacing - surface) / dx;
@@ -50,11 +50,12 @@ TEST_P(RestingGap, IsLessThanATenthOfACell) {
       const Obstacle ground = fixed(make_plane(Vec3(0, 0, surface), Vec3::UnitZ()), condition, 0.3);
       const Obstacle plate =
           fixed(make_box(Vec3(0, 0, surface - dx / 4), Vec3(2, 2, dx / 2)), condition, 0.3);
-      const Way way{2, Precision::float32};
+      const SolverVariant variant{2, Precision::float32};
       for (const Obstacle& obstacle : {ground, plate})
-        EXPECT_NEAR(resting_gap(way, dx, ContactRule::touch, obstacle, surface), 0, 0.11)
+        EXPECT_NEAR(resting_gap(variant, dx, ContactRule::touch, obstacle, surface), 0, 0.11)
             << dx << " m, " << surface;
-      if (surface == 0) EXPECT_GT(resting_gap(way, dx, ContactRule::kernel, ground, surface), 0.8);
+      if (surface == 0)
+        EXPECT_GT(resting_gap(variant, dx, ContactRule::kernel, ground, surface), 0.8);
     }
 }
 
@@ -134,8 +135,8 @@ TEST(Touch, FrictionIsCoulombs) {
     }
 }
 
-/// Acceleration, over Coulomb's, of a slab that starts at rest and covers a tilted plate from end
-/// to end.
+/// Acceleration of a slab that starts at rest and covers a tilted plate from end to end, divided by
+/// that with Coulomb's friction.
 double acceleration_on_plate(double dx, double along, double thickness, Condition condition) {
   constexpr double tilt = radians(50), friction = 0.6, length = 0.245;
   const Vec3 normal(std::sin(tilt), 0, std::cos(tilt)), slope(std::cos(tilt), 0, -std::sin(tilt));

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double length = 0.01, rate = 380;  // m, 1/s
 
-Options damped_options(const Way& way, double dx = 0.01) {
-  Options o = options_for(way, dx);
+Options damped_options(const SolverVariant& variant, double dx = 0.01) {
+  Options o = options_for(variant, dx);
   o.settings.transfer = Transfer::affine_flip;
   o.settings.damping_length = length;
   o.settings.damping_rate = rate;
@@ -98,31 +98,32 @@ double exact_decay_rate(double w) {
         mass[node] += weight;
         momentum[node] += weight * velocity(x);
       });
-    double whole = 0, left = 0;
+    double total_spin = 0, averaged_spin = 0;
     for (const Vec3& x : points) {
-      whole += x.cross(velocity(x)).y();
+      total_spin += x.cross(velocity(x)).y();
       weights(x, [&](int node, double weight) {
-        left += weight * x.cross(Vec3(momentum[node] / mass[node])).y();
+        averaged_spin += weight * x.cross(Vec3(momentum[node] / mass[node])).y();
       });
     }
-    sum += rate * (1 - left / whole);
+    sum += rate * (1 - averaged_spin / total_spin);
   }
   return sum / 8;
 }
 
 TEST(VelocityAverage, AChunkStopsTurningAsFastOnAnyGrid) {
   for (const double w : {0.02, 0.04, 0.08}) {
-    double least = 1e9, most = 0;
+    double min_rate = 1e9, max_rate = 0;
     for (const double dx : {0.02, 0.01, 0.007, 0.005, 0.0025}) {
-      // A cell by half a cell holds three particles. Their affine velocities have five sixths of
-      // the angular momentum, which the average lacks.
+      // A chunk of one cell by half a cell has three particles. Their affine velocities have five
+      // sixths of the angular momentum, which the average lacks.
       if (w < 1.5 * dx || w > 16 * dx) continue;
-      const double found = decay_rate(2, w, dx);
-      least = std::min(least, found);
-      most = std::max(most, found);
-      if (w == 16 * dx || w == 8 * dx) EXPECT_NEAR(found, exact_decay_rate(w), 0.08 * found) << w;
+      const double rate = decay_rate(2, w, dx);
+      min_rate = std::min(min_rate, rate);
+      max_rate = std::max(max_rate, rate);
+      if (w == 16 * dx || w == 8 * dx) EXPECT_NEAR(rate, exact_decay_rate(w), 0.08 * rate) << w;
     }
-    EXPECT_LT(most / least, 1.1 / 0.9) << w << " m: " << least << " to " << most << " 1/s";
+    EXPECT_LT(max_rate / min_rate, 1.1 / 0.9)
+        << w << " m: " << min_rate << " to " << max_rate << " 1/s";
   }
 }
 
@@ -138,7 +139,7 @@ TEST(VelocityAverage, OnCoarseGridsDampsALargeChunkAsFast) {
 }
 
 TEST(VelocityAverage, IsNotOfTheStep) {
-  const auto left = [](double courant_factor) {
+  const auto decay_rate_at = [](double courant_factor) {
     Options o = damped_options({2, Precision::float64});
     o.settings.courant_factor = courant_factor;
     const auto solver = make_solver(o, {});
@@ -148,9 +149,9 @@ TEST(VelocityAverage, IsNotOfTheStep) {
     run_until(*solver, 0.03);
     return std::log(before / spin_momentum(*solver, 0.01)) / (solver->time() - begin);
   };
-  const double expected = left(0.9);
+  const double expected = decay_rate_at(0.9);
   for (const double courant_factor : {0.45, 0.2})
-    EXPECT_NEAR(left(courant_factor), expected, 0.06 * expected) << courant_factor;
+    EXPECT_NEAR(decay_rate_at(courant_factor), expected, 0.06 * expected) << courant_factor;
 }
 
 /// A particle with random position, velocity and mass.
@@ -163,16 +164,17 @@ ParticleBatch swarm_particle(Random& random, int dimension) {
 }
 
 TEST(VelocityAverage, KeepsMomentumAndTakesEnergyThatIsBalanced) {
-  for (const Way& way : {Way{2, Precision::float32}, Way{2, Precision::float64},
-                         Way{3, Precision::float32}, Way{3, Precision::float64}}) {
+  for (const SolverVariant& variant :
+       {SolverVariant{2, Precision::float32}, SolverVariant{2, Precision::float64},
+        SolverVariant{3, Precision::float32}, SolverVariant{3, Precision::float64}}) {
     for (const double dx : {0.004, 0.01, 0.03}) {
-      Options o = damped_options(way, dx);
+      Options o = damped_options(variant, dx);
       o.energy = true;
       const auto solver = make_solver(o, {});
       Random random(7);
       double speeds = 0;
       for (int i = 0; i < 120; ++i) {
-        const ParticleBatch one = swarm_particle(random, way.dimension);
+        const ParticleBatch one = swarm_particle(random, variant.dimension);
         solver->add(one);
         speeds += one.mass * one.velocity.norm();
       }
@@ -180,10 +182,10 @@ TEST(VelocityAverage, KeepsMomentumAndTakesEnergyThatIsBalanced) {
       const EnergyBalance start = solver->energy();
       run_steps(*solver, 80);
       const Vec3 change = momentum(solver->state()) - before;
-      EXPECT_LT(change.norm(), 80 * way.epsilon() * speeds) << way.name() << " " << dx;
+      EXPECT_LT(change.norm(), 80 * variant.epsilon() * speeds) << variant.name() << " " << dx;
       const EnergyBalance end = solver->energy();
-      EXPECT_GT(end.damping, 0.01 * start.kinetic) << way.name() << " " << dx;
-      EXPECT_NEAR(end.residual(), 0, 0.02 * start.kinetic) << way.name() << " " << dx;
+      EXPECT_GT(end.damping, 0.01 * start.kinetic) << variant.name() << " " << dx;
+      EXPECT_NEAR(end.residual(), 0, 0.02 * start.kinetic) << variant.name() << " " << dx;
     }
   }
 }

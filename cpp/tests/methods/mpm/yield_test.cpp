@@ -1,5 +1,5 @@
-// Snow that the whole solver brings to yield, compared with closed forms. Constants, kernels and
-// transfer must all be right if it breaks where the law says.
+// Snow that the whole solver brings to yield, compared with closed forms. It breaks where the law
+// says only if constants, kernels and transfer are all right.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -10,7 +10,7 @@
 namespace snowshed::mpm {
 namespace {
 
-/// Snow whose law the tests know as closed form: no lateral strain under uniaxial stress.
+/// Snow whose law has a closed form, because uniaxial stress causes no lateral strain.
 Snow test_snow() {
   Snow snow;
   snow.poissons_ratio = 0;
@@ -39,7 +39,7 @@ double tensile_strength(const Snow& snow, int dimension) {
 constexpr double column_length = 0.2;
 
 /// Fall of the lower half of a column that hangs from a sticky ceiling. Its weight grows slowly
-/// until it strains the ceiling with a part of the column's strength, and then stays.
+/// until the pull on the ceiling is a part of the column's strength, and then stays constant.
 double fall_of_column(int dimension, double part_of_strength) {
   Options o = options_for({dimension, Precision::float32});
   Snow& snow = o.snows[0] = test_snow();

@@ -91,21 +91,23 @@ TYPED_TEST(KernelsOf, WeighPairsByTheirDirection) {
   constexpr int D = TypeParam::value;
   constexpr std::size_t half = RowMoments<D>::half;
   const Cloud<D> cloud(150);
-  AlignedVector<std::array<float, half>> spread(150);
+  AlignedVector<std::array<float, half>> correction(150);
   for (std::size_t i = 0; i < 150; ++i)
     for (std::size_t k = 0; k < half; ++k)
-      spread[i][k] = 0.4f + 0.01f * float((7 * i + 13 * k) % 60);
-  AlignedVector<float> even(cloud.lists.pairs());
-  chosen_kernels<D>().even_weights(cloud.rows, cloud.offset.data(), cloud.weight.data(),
-                                   spread.data()->data(), even.data(), 0, cloud.size());
+      correction[i][k] = 0.4f + 0.01f * float((7 * i + 13 * k) % 60);
+  AlignedVector<float> corrected(cloud.lists.pairs());
+  chosen_kernels<D>().isotropic_weights(cloud.rows, cloud.offset.data(), cloud.weight.data(),
+                                        correction.data()->data(), corrected.data(), 0,
+                                        cloud.size());
   std::array<int, 3> within{};  // factors at the lower limit, between, at the upper one
   cloud.for_each_pair([&](std::size_t i, std::size_t j, std::size_t e) {
     const VecD<D> separation = cloud.separation(i, j).normalized();
     const double factor =
-        0.5 * separation.dot((symmetric<D>(spread[i].data()) + symmetric<D>(spread[j].data())) *
-                             separation);
+        0.5 *
+        separation.dot((symmetric<D>(correction[i].data()) + symmetric<D>(correction[j].data())) *
+                       separation);
     ++within[factor < 0.5 ? 0 : factor < 2 ? 1 : 2];
-    EXPECT_NEAR(even[e], double(cloud.weight[e]) * std::clamp(factor, 0.5, 2.0),
+    EXPECT_NEAR(corrected[e], double(cloud.weight[e]) * std::clamp(factor, 0.5, 2.0),
                 1e-4 * (1 + double(cloud.weight[e])));
   });
   EXPECT_GT(within[0], 10);
@@ -168,7 +170,7 @@ TYPED_TEST(KernelsOf, MultiplyRows) {
   }
 }
 
-TYPED_TEST(KernelsOf, SumWaysAndApproaches) {
+TYPED_TEST(KernelsOf, SumSeparationsAndApproaches) {
   constexpr int D = TypeParam::value;
   const Cloud<D> cloud(150);
   constexpr double limit = 1.3;
@@ -191,14 +193,14 @@ TYPED_TEST(KernelsOf, SumWaysAndApproaches) {
   AlignedVector<VecD<D>> expected(150, VecD<D>::Zero()), expected_weighted = expected,
                                                          expected_approaches = expected;
   AlignedVector<double> sizes(150, 0.0);
-  int apart = 0, receding = 0;
+  int distant = 0, receding = 0;
   cloud.for_each_pair([&](std::size_t i, std::size_t j, std::size_t e) {
     const VecD<D> r = cloud.separation(i, j), change = cloud.velocity[j] - cloud.velocity[i];
     expected[i] += double(cloud.slope[e]) * r;
     expected_weighted[i] += double(cloud.slope[e]) * (value[j] + base[i]) * r;
     sizes[i] += double(cloud.slope[e]) * r.norm();
     const double approach = -change.dot(r.normalized());
-    apart += r.norm() >= limit;
+    distant += r.norm() >= limit;
     receding += approach < 0;
     if (r.norm() < limit && approach > 0)
       expected_approaches[i] += share[j] * approach * r.normalized();
@@ -208,7 +210,7 @@ TYPED_TEST(KernelsOf, SumWaysAndApproaches) {
     EXPECT_LT((weighted[i] - expected_weighted[i]).norm(), 1e-6 * (1 + sizes[i]));
     EXPECT_LT((approaches[i] - expected_approaches[i]).norm(), 1e-5);
   }
-  EXPECT_GT(apart, 100);
+  EXPECT_GT(distant, 100);
   EXPECT_GT(receding, 100);
 }
 

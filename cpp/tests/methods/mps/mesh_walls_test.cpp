@@ -64,7 +64,7 @@ Options bumpy_tank(double width) {
   return o;
 }
 
-/// A block of which no particle is nearer to the obstacles than half a spacing.
+/// A block without the particles that would be nearer to the obstacles than half a spacing.
 ParticleBatch block_outside(const Options& o, const Vec3& low, const Vec3& high) {
   ParticleBatch batch = block_of(o, low, high);
   const auto inside = [&](const Vec3& x) {
@@ -79,10 +79,11 @@ ParticleBatch block_outside(const Options& o, const Vec3& low, const Vec3& high)
 
 /// The least distance of a particle from an obstacle, m.
 double least_distance(const Method& method, const Options& o) {
-  double least = HUGE_VAL;
+  double min_distance = HUGE_VAL;
   for (const Vec3& x : method.state().positions)
-    for (const Obstacle& one : o.obstacles) least = std::min(least, one.shape->distance(x));
-  return least;
+    for (const Obstacle& one : o.obstacles)
+      min_distance = std::min(min_distance, one.shape->distance(x));
+  return min_distance;
 }
 
 // The depth of the water follows from its volume, because the ground's mean height is zero.
@@ -115,12 +116,12 @@ TEST(MpsMeshWalls, LetNoSnowThrough) {
   ParticleBatch snow = block_outside(o, {0, 0.1, 0}, {0.14, 0.3, 0.2});
   snow.velocity = {2, 0, 0};
   mps->add({snow});
-  double least = HUGE_VAL;
+  double min_distance = HUGE_VAL;
   while (mps->time() < 0.15) {
     mps->step();
-    least = std::min(least, least_distance(*mps, o));
+    min_distance = std::min(min_distance, least_distance(*mps, o));
   }
-  EXPECT_GT(least, 0);
+  EXPECT_GT(min_distance, 0);
   EXPECT_EQ(mps->size(), snow.positions.size());
 }
 

@@ -43,8 +43,8 @@ TEST(MpsVolume, AStiffSlumpKeepsItsVolume) {
   }
 }
 
-/// The mean space of the particles deeper than three spacings below the surface, over that on a
-/// lattice. The space of a particle consists of the points that are nearest to it. The heap lies on
+/// The mean space per particle, relative to a lattice, deeper than three spacings below the
+/// surface. The space of a particle consists of the points that are nearest to it. The heap lies on
 /// z = 0, beside x = 0.
 double mean_room(const Method& method, double spacing) {
   const std::vector<Vec3> points = method.state().positions;
@@ -75,7 +75,7 @@ double mean_room(const Method& method, double spacing) {
 }
 
 // At the same density disordered particles have a higher number density than a lattice. When the
-// compensation used it, the heap took up 1.8 % more space while it flowed.
+// compensation used the number density, the heap took up 1.8 % more space while it flowed.
 TEST(MpsVolume, ABinghamHeapKeepsItsVolume) {
   for (const Walls walls : {Walls::mirrors, Walls::particles}) {
     Options o = tank(2, 10, 0.01);

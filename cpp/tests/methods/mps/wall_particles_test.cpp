@@ -27,7 +27,7 @@ Particles<D> at_rest(const std::vector<Vec3>& positions) {
   return p;
 }
 
-/// The smallest and the largest number density over that of a lattice, of snow and inner walls.
+/// The smallest and the largest number density of snow and inner walls, relative to a lattice.
 template <int D>
 std::pair<double, double> densities(const Options& o, Particles<D> p) {
   const Model<D> model(o);
@@ -35,13 +35,13 @@ std::pair<double, double> densities(const Options& o, Particles<D> p) {
   work.walls = WallParticles<D>(model.options.obstacles, o.settings.spacing, model.reach());
   work.walls.append_near(0, o.period, model.particle_mass(), p);
   find_neighbours(model, p, 0.0, work);
-  double low = HUGE_VAL, high = 0;
+  double min_density = HUGE_VAL, max_density = 0;
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (p.kind[i] == Kind::dummy_wall) continue;
-    low = std::min(low, work.near.density[i] / model.kernel.number_density);
-    high = std::max(high, work.near.density[i] / model.kernel.number_density);
+    min_density = std::min(min_density, work.near.density[i] / model.kernel.number_density);
+    max_density = std::max(max_density, work.near.density[i] / model.kernel.number_density);
   }
-  return {low, high};
+  return {min_density, max_density};
 }
 
 // Wall particles continue a lattice of snow in a corner: no point is missing, and none is occupied
@@ -59,7 +59,7 @@ TEST(MpsWallParticles, ContinueTheLatticeOfTheSnow) {
   }
 }
 
-// The lattice of a plane follows it.
+// The wall particles of a plane form a lattice that is aligned with it.
 TEST(MpsWallParticles, CoverAnInclineEvenly) {
   Options o = tank(2, 1, 0.01);
   o.settings.walls = Walls::particles;
@@ -93,16 +93,16 @@ TEST(MpsWallParticles, OfABallStandApartInTheMiddleOfLayers) {
   Particles<3> p = at_rest<3>(snow);
   WallParticles<3> walls(o.obstacles, spacing, 2.1 * spacing);
   walls.append_near(0, 0, 1, p);
-  double least = HUGE_VAL;
+  double min_separation = HUGE_VAL;
   for (std::size_t i = snow.size(); i < p.size(); ++i) {
     const double depth = (radius - p.position[i].norm()) / spacing;
     EXPECT_NEAR(depth - std::floor(depth), 0.5, 1e-9);
     for (std::size_t j = i + 1; j < p.size(); ++j)
-      least = std::min(least, (p.position[i] - p.position[j]).norm());
+      min_separation = std::min(min_separation, (p.position[i] - p.position[j]).norm());
   }
   const double area = 4 * 3.14159265358979 * (radius - 0.5 * spacing) * (radius - 0.5 * spacing);
   const auto inner = std::count(p.kind.begin(), p.kind.end(), Kind::inner_wall);
-  EXPECT_GT(least, 0.7 * spacing);
+  EXPECT_GT(min_separation, 0.7 * spacing);
   EXPECT_NEAR(double(inner) * spacing * spacing, area, 0.1 * area);
 }
 

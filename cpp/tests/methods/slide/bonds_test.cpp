@@ -7,7 +7,7 @@
 namespace snowshed::slide {
 namespace {
 
-/// Points of a triangular lattice of side 1, `columns` in each of `rows`.
+/// Points of a triangular lattice of side 1, `columns` in each of `rows` rows.
 Particles lattice(int columns, int rows, double fall = 0) {
   Particles p;
   for (int j = 0; j < rows; ++j)
@@ -124,7 +124,7 @@ struct Roll {
     slide = released_slide(o);
     while (slide->time() < 1.5) slide->step();
   }
-  /// Standard deviation of the speeds, over their mean.
+  /// Standard deviation of the speeds, divided by their mean.
   double spread() const {
     double mean = 0, square = 0;
     const ParticleState s = slide->state();

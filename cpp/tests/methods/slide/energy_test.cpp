@@ -33,7 +33,7 @@ std::map<std::string, double> energies(const Method& method) {
   return found;
 }
 
-/// The residual over the drop of potential energy.
+/// The residual of the energy balance, divided by the drop of potential energy.
 double gap(const std::map<std::string, double>& e, double potential_before) {
   return std::abs(e.at("residual_j")) / (potential_before - e.at("potential_j"));
 }

@@ -60,10 +60,11 @@ TEST(Slide, PeakSpeedIsThatOfTheSnowAndFadesBeyondItsRim) {
   o.settings.artificial_viscosity = 0;
   const auto slide = make_solver(o);
   std::vector<ParticleBatch> snow = slide->seed();
-  const double speed = 100;  // m/s; pressure changes it by little within a step
+  const double speed = 100;  // m/s; pressure hardly changes it within a step
   snow[0].velocity = speed * Vec3(std::cos(radians(35)), 0, -std::sin(radians(35)));
   slide->add(snow);
-  // All snow has the same velocity, so that a node's speed shows only how much mass is around it.
+  // All snow has the same velocity, so that the peak speed at a node depends only on the mass
+  // around it.
   const std::vector<double>& peaks = slide->peaks().speed;
   const auto at = [&](int column) { return peaks[slide->terrain().index(column, 15)] / speed; };
   EXPECT_NEAR(at(17), 1, 1e-3);

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 WIDTHS = (1.0, 2**0.5, 2.0)
 SEEDS = (1, 2, 3)
 #: Measures that are compared, by their columns.
-COMPARED: Mapping[str, str] = {
+COMPARED_QUANTITIES: Mapping[str, str] = {
     "height": "height_m",
     "length": "length_m",
     "centre of mass": "centre_height_m",
@@ -130,7 +130,7 @@ def measured_errors(
     Returns
     -------
     list of MeasuredError
-        One for each of `COMPARED`.
+        One for each of `COMPARED_QUANTITIES`.
 
     Raises
     ------
@@ -142,7 +142,7 @@ def measured_errors(
     if failed:
         raise InputError(f"{folder}: {len(failed)} of the companions failed: {failed[0]}")
     last = table[table["event"] == table["event"].max()]
-    return [errors_of(name, last, column) for name, column in COMPARED.items()]
+    return [errors_of(name, last, column) for name, column in COMPARED_QUANTITIES.items()]
 
 
 def errors_of(name: str, table: pd.DataFrame, column: str) -> MeasuredError:

@@ -142,7 +142,7 @@ class MeasuredSolution:
             if not valid or name in (*IDENTITY, *RESULTS):
                 raise InputError(f"{where}: damaged: /settings/{shortened(name)}: not a setting")
         measured = [
-            _measured(result, f"{where}: /measured/{i}")
+            _read_measured(result, f"{where}: /measured/{i}")
             for i, result in enumerate(data["measured"])
         ]
         settings = {FORMER_NAMES.get(k, k): v for k, v in data["settings"].items()}
@@ -205,7 +205,7 @@ def _finite(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def _measured(data: Any, where: str) -> Measured:
+def _read_measured(data: Any, where: str) -> Measured:
     check_values(data, {"quantity": str}, where)
     given = [name for name in NUMBERS_MEASURED if data.get(name, math.nan) is not None]
     check_values(data, dict.fromkeys(given, float), where)

@@ -22,7 +22,7 @@ SCHEME = "scheme"
 #: The scheme of recorded runs that do not name it.
 FIRST_SCHEME = "thesis"
 #: Settings that a scheme decides unless they are given.
-DECIDED = MpmSettings.ADOPTS[SCHEME]
+SCHEME_SETTINGS = MpmSettings.ADOPTS[SCHEME]
 #: Decided settings that are lengths, which do not depend on the slab.
 LENGTHS = ("damping_length", "crack_band_length")
 
@@ -71,7 +71,7 @@ class Mechanisms:
         decided = decided_by(scheme)
         departures = {
             name: settings[name]
-            for name in DECIDED
+            for name in SCHEME_SETTINGS
             if settings.get(name) is not None and settings[name] != decided.get(name)
         }
         return cls(scheme, departures)
@@ -160,7 +160,7 @@ def decided_by(scheme: str) -> CaseSettings:
     """
     scene = Scene.preset(PRESET).with_({f"{SETTINGS_KEY}.{SCHEME}": scheme})
     numerics = scene.resolve().data[SETTINGS_KEY]
-    return {name: numerics[name] for name in DECIDED if name in numerics}
+    return {name: numerics[name] for name in SCHEME_SETTINGS if name in numerics}
 
 
 def _value(text: str) -> Optional[Value]:

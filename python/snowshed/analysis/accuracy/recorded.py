@@ -18,7 +18,7 @@ from snowshed.analysis.accuracy.measurements import MeasuredSolution
 from snowshed.io.atomic import write_text
 from snowshed.io.json_file import check_values, read_object
 
-PACKAGED = Path(__file__).with_name("recorded.json")
+PACKAGED_FILE = Path(__file__).with_name("recorded.json")
 
 
 def load_recorded(path: Optional[Path] = None) -> list[MeasuredSolution]:
@@ -34,7 +34,7 @@ def load_recorded(path: Optional[Path] = None) -> list[MeasuredSolution]:
     >>> load_recorded(Path("nowhere.json"))
     []
     """
-    path = path or PACKAGED
+    path = path or PACKAGED_FILE
     if not path.exists():
         return []
     data = read_object(path)

@@ -12,7 +12,7 @@ from typing import Any, Optional
 
 from snowshed.analysis.accuracy.measurements import CaseSettings, MeasuredSolution, Value, to_table
 from snowshed.analysis.accuracy.solutions import (
-    SAMPLING,
+    SEEDING_SETTINGS,
     assured_errors,
     rows_of,
     settings_key,
@@ -73,7 +73,7 @@ def recorded_stacks(measurements: Iterable[MeasuredSolution]) -> list[RecordedSt
     errors = [by_settings(name, ORDER_IN) for name in QUANTITIES]
     spreads = [by_settings(f"{name}_spread", None) for name in QUANTITIES]
     biases = _biases(mine)
-    machines = {settings_key(m.settings, without=SAMPLING): m.machine for m in mine}
+    machines = {settings_key(m.settings, without=SEEDING_SETTINGS): m.machine for m in mine}
     return [
         RecordedStack(
             settings=solution.settings,
@@ -90,7 +90,7 @@ def recorded_stacks(measurements: Iterable[MeasuredSolution]) -> list[RecordedSt
 
 def _biases(measurements: Iterable[MeasuredSolution]) -> dict[Hashable, dict[str, float]]:
     return {
-        settings_key(measurement.settings, without=SAMPLING): {
+        settings_key(measurement.settings, without=SEEDING_SETTINGS): {
             m.quantity: m.value / m.exact - 1 for m in measurement.measured if m.exact
         }
         for measurement in measurements

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 #: Settings that only select another random sample.
-SAMPLING = ("seed", "seedings")
+SEEDING_SETTINGS = ("seed", "seedings")
 
 
 class SolutionRow(NamedTuple):
@@ -36,7 +36,7 @@ class Solution:
     Attributes
     ----------
     settings
-        All settings except those in `SAMPLING`.
+        All settings except those in `SEEDING_SETTINGS`.
     error
         Root mean square of the errors.
     wall_s
@@ -75,7 +75,7 @@ def solutions(rows: pd.DataFrame) -> list[Solution]:
     """
     groups: dict[Hashable, list[SolutionRow]] = {}
     for row in records(rows[rows["error"].notna()]):
-        groups.setdefault(settings_key(row.settings, without=SAMPLING), []).append(row)
+        groups.setdefault(settings_key(row.settings, without=SEEDING_SETTINGS), []).append(row)
     return [_solution(group) for group in groups.values()]
 
 
@@ -90,7 +90,7 @@ def settings_key(settings: CaseSettings, *, without: Collection[str] = ()) -> Ha
     return tuple(sorted((name, v) for name, v in settings.items() if name not in without))
 
 
-def alike(solved: Iterable[Solution], order_in: str) -> list[list[Solution]]:
+def convergence_series(solved: Iterable[Solution], order_in: str) -> list[list[Solution]]:
     """Return groups of solutions that differ in one setting only, each from coarse to fine."""
     groups: dict[Hashable, list[Solution]] = {}
     for solution in solved:
@@ -118,7 +118,7 @@ def assured_errors(solved: Sequence[Solution], order_in: Optional[str]) -> list[
         The setting that refines a solution as it falls; None: the errors are used directly.
     """
     assured = {id(solution): abs(solution.error) for solution in solved}
-    for group in alike(solved, order_in) if order_in else []:
+    for group in convergence_series(solved, order_in) if order_in else []:
         worst = 0.0
         for finer in reversed(group):
             worst = assured[id(finer)] = max(worst, abs(finer.error))
@@ -141,7 +141,7 @@ def quickest(costs: Sequence[float], errors: Sequence[float], wanted: float) -> 
 
 def _solution(group: Sequence[SolutionRow]) -> Solution:
     return Solution(
-        settings={k: v for k, v in group[0].settings.items() if k not in SAMPLING},
+        settings={k: v for k, v in group[0].settings.items() if k not in SEEDING_SETTINGS},
         error=float(np.sqrt(np.mean([row.error**2 for row in group]))),
         wall_s=float(np.mean([row.wall_s for row in group])),
     )

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Optional, Union
 
 from snowshed.analysis.accuracy.measurements import CaseSettings, MeasuredSolution
-from snowshed.analysis.accuracy.mechanisms import DECIDED, SCHEME, Mechanisms
+from snowshed.analysis.accuracy.mechanisms import SCHEME, SCHEME_SETTINGS, Mechanisms
 from snowshed.analysis.accuracy.recorded import load_recorded
 from snowshed.analysis.accuracy.recorded_stacks import (
     ORDER_IN,
@@ -31,7 +31,7 @@ from snowshed.running.scene_notes import MIN_CELLS_ACROSS
 from snowshed.scene.scene import ResolvedScene, Scene
 
 #: Settings that plain recorded runs may have; their other settings are defaults.
-_PLAIN = {"dimension", "between", "events", ORDER_IN, SCHEME, *DECIDED}
+_PLAIN = {"dimension", "between", "events", ORDER_IN, SCHEME, *SCHEME_SETTINGS}
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ class StackError:
     @property
     def sentence(self) -> str:
         """The error in a sentence, with the recorded scene and scheme that it comes from."""
-        bias = ", ".join(f"{name} {_signed(self.bias[name])}" for name in QUANTITIES)
+        bias = ", ".join(f"{name} {_bias_text(self.bias[name])}" for name in QUANTITIES)
         scatter = " and ".join(f"{100 * self.scatter[name]:.0f} %" for name in self.scatter)
         cells = f"{number(self.recorded_cells, 2)} cell{'' if self.recorded_cells == 1 else 's'}"
         mechanisms = Mechanisms.of_settings(self.settings)
@@ -243,5 +243,5 @@ def _span(low: float, high: float) -> str:
     return f"from {-low:.0f} % too low to {high:.0f} % too high"
 
 
-def _signed(share: float) -> str:
+def _bias_text(share: float) -> str:
     return f"{100 * abs(share):.0f} % too {'large' if share > 0 else 'small'}"

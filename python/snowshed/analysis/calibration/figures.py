@@ -13,7 +13,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from snowshed.analysis.calibration.comparison import SET
-from snowshed.analysis.calibration.misfit import RANKED
+from snowshed.analysis.calibration.misfit import RANKING_QUANTITIES
 from snowshed.analysis.calibration.posterior import LEVELS, Posterior
 from snowshed.analysis.calibration.surrogate import EXTRA
 from snowshed.base.arrays import Booleans
@@ -43,7 +43,7 @@ def relative_error_figure(ranked: pd.DataFrame, parameters: Sequence[str]) -> Fi
     """
     panels = [
         (f"stack {quantity}", f"{quantity}_relative_error")
-        for quantity in RANKED
+        for quantity in RANKING_QUANTITIES
         if f"{quantity}_relative_error" in ranked
     ]
     return _bars(
@@ -67,7 +67,7 @@ def rmse_figure(ranked: pd.DataFrame, parameters: Sequence[str]) -> Figure:
     """
     panels = [
         (f"stack {quantity}: RMSE, m", f"{quantity}_rmse_m")
-        for quantity in RANKED
+        for quantity in RANKING_QUANTITIES
         if f"{quantity}_rmse_m" in ranked
     ]
     panels.append(("mean of both, rescaled to 0 to 1", "rescaled_rmse"))

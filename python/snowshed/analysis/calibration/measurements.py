@@ -18,7 +18,7 @@ from snowshed.snow.stack.quantities import QUANTITIES
 if TYPE_CHECKING:
     import pandas as pd
 
-POSITIVE = ("height", "length")
+POSITIVE_QUANTITIES = ("height", "length")
 KEYS = ("tilt_deg", "event")
 ROUND = "round"
 MAX_TILT = 90.0  # degrees; a tilt must be smaller
@@ -214,7 +214,7 @@ class _Row:
                 raise self._error(f"{uncertain}: an uncertainty, although {column} is empty")
             return None
         value = self._number(column)
-        if quantity in POSITIVE and value <= 0:
+        if quantity in POSITIVE_QUANTITIES and value <= 0:
             raise self._error(f"{column}: {value:g} is not positive")
         if abs(value) > MAX_DISTANCE:
             raise self._error(f"{column}: {value:g} m; at most {MAX_DISTANCE:g} m are allowed")

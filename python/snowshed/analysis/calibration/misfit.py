@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 #: Quantities that rank the sets in the thesis; head and tail are only scored.
-RANKED = ("height", "length")
+RANKING_QUANTITIES = ("height", "length")
 
 
 def rank_sets(stacks: SimulatedStacks, comparison: pd.DataFrame) -> pd.DataFrame:
@@ -45,12 +45,12 @@ def rank_sets(stacks: SimulatedStacks, comparison: pd.DataFrame) -> pd.DataFrame
     """
     import pandas as pd
 
-    measured = [q for q in RANKED if (comparison["quantity"] == q).any()]
+    measured = [q for q in RANKING_QUANTITIES if (comparison["quantity"] == q).any()]
     if not measured:
         raise InputError("neither height_m nor length_m was measured; the sets are ranked by these")
     scores = pd.DataFrame({"chi_square": _chi_square(comparison)})
     for quantity, rows in comparison.groupby("quantity", sort=False):
-        for name, values in _scores(rows, relative=quantity in RANKED).items():
+        for name, values in _scores(rows, relative=quantity in RANKING_QUANTITIES).items():
             scores[f"{quantity}_{name}"] = values
     for quantity in measured:
         scores[f"{quantity}_rescaled"] = rescaled(_column(scores, f"{quantity}_rmse_m"))
@@ -63,7 +63,7 @@ def rank_sets(stacks: SimulatedStacks, comparison: pd.DataFrame) -> pd.DataFrame
 
 def statistics(ranked: pd.DataFrame) -> pd.DataFrame:
     """Return minimum, maximum, mean and median of the RMSE over the sets, as Table 4.2.1."""
-    columns = [f"{q}_rmse_m" for q in RANKED if f"{q}_rmse_m" in ranked]
+    columns = [f"{q}_rmse_m" for q in RANKING_QUANTITIES if f"{q}_rmse_m" in ranked]
     return ranked[columns].agg(["min", "max", "mean", "median"]).T.rename_axis("score")
 
 

@@ -14,7 +14,7 @@ from snowshed.analysis.calibration.comparison import (
     read_simulated_stacks,
 )
 from snowshed.analysis.calibration.measurements import Measurement
-from snowshed.analysis.calibration.misfit import RANKED, rank_sets, statistics
+from snowshed.analysis.calibration.misfit import RANKING_QUANTITIES, rank_sets, statistics
 from snowshed.analysis.calibration.posterior import STEPS, Posterior, outputs_of, sample_posterior
 from snowshed.analysis.calibration.surrogate import EXTRA, Surrogate
 from snowshed.base.extras import require
@@ -65,7 +65,7 @@ def calibrate(
     measurements: Sequence[Measurement],
     stacks: SimulatedStacks,
     *,
-    quantities: Sequence[str] = RANKED,
+    quantities: Sequence[str] = RANKING_QUANTITIES,
     steps: int = STEPS,
     seed: int = 1,
 ) -> Calibration:
@@ -90,7 +90,7 @@ def calibrate(
     InputError
         If no quantity was measured, a measured stack was not simulated, or a library is missing.
     """
-    used = _used(measurements, quantities)
+    used = _select_measurements(measurements, quantities)
     comparison = compare_stacks(stacks, measurements)
     ranked = rank_sets(stacks, comparison)
     surrogate = Surrogate.fitted(stacks, outputs_of(used))
@@ -99,7 +99,9 @@ def calibrate(
     )
 
 
-def _used(measurements: Sequence[Measurement], quantities: Sequence[str]) -> list[Measurement]:
+def _select_measurements(
+    measurements: Sequence[Measurement], quantities: Sequence[str]
+) -> list[Measurement]:
     for quantity in quantities:
         if quantity not in QUANTITIES:
             allowed = ", ".join(QUANTITIES)
@@ -128,7 +130,7 @@ def evaluate_calibration(
     *,
     study: Optional[str] = None,
     measure: str = "stack",
-    quantities: Sequence[str] = RANKED,
+    quantities: Sequence[str] = RANKING_QUANTITIES,
 ) -> Calibration:
     """Calibrate with the computed runs of a stored study, and write tables and figures.
 

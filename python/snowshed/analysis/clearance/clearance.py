@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Optional
 
 from snowshed.analysis.clearance.answer import ClearanceResult, required_clearance
 from snowshed.analysis.clearance.panel_design import Design, Ranges
-from snowshed.analysis.clearance.winters import counted
+from snowshed.analysis.clearance.winters import counted_winters
 from snowshed.base.json_values import JsonValue
 from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
@@ -103,7 +103,7 @@ def clearance(
         issue_note(note)
     return required_clearance(
         Design(slope_length, tilt),
-        counted(winter_list),
+        counted_winters(winter_list),
         heights,
         folder,
         ranges=ranges,

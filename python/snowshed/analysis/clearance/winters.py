@@ -59,13 +59,13 @@ def split_winters(season: Sequence[Weather], coverage: float = COVERAGE) -> list
     ['2001/02', '2002/03']
     """
     record = SeasonRecord(season).winters(coverage)
-    winters = counted(record)
+    winters = counted_winters(record)
     for note in record.notes:
         issue_note(note)
     return winters
 
 
-def counted(winter_list: WinterList) -> list[Winter]:
+def counted_winters(winter_list: WinterList) -> list[Winter]:
     """Return the winters that count.
 
     Parameters

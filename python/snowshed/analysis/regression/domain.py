@@ -57,11 +57,11 @@ class DataDomain:
         objections = [text for question in questions for text in self._ranges(question)]
         if not objections:
             # Most events have the same panels, which are checked once.
-            asked: dict[tuple[bytes, bytes], tuple[Floats, Floats]] = {}
+            cases: dict[tuple[bytes, bytes], tuple[Floats, Floats]] = {}
             for question in questions:
                 panels = self._by_event.get(question[0], self.inputs[:0, 1:])
-                asked.setdefault((question[1:].tobytes(), panels.tobytes()), (question, panels))
-            objections = [text for group in asked.values() for text in self._misplaced(*group)]
+                cases.setdefault((question[1:].tobytes(), panels.tobytes()), (question, panels))
+            objections = [text for group in cases.values() for text in self._misplaced(*group)]
         return list(dict.fromkeys(objections))
 
     def _ranges(self, question: Floats) -> list[str]:

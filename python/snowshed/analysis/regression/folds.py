@@ -14,7 +14,7 @@ from snowshed.analysis.regression.rows import StackRows
 from snowshed.base.arrays import Integers
 
 Split = tuple[Integers, Integers]
-BY = ("rows", "panels")
+SPLIT_UNITS = ("rows", "panels")
 
 
 @dataclass(frozen=True)
@@ -105,8 +105,8 @@ class CrossValidation:
         for name, least in (("rounds", 1), ("folds", 2), ("inner_folds", 2), ("seed", 0)):
             if getattr(self, name) < least:
                 raise InputError(f"{name}: {getattr(self, name)} is below {least}")
-        if self.by not in BY:
-            raise InputError(f"by: {self.by!r} is unknown; allowed: {', '.join(BY)}")
+        if self.by not in SPLIT_UNITS:
+            raise InputError(f"by: {self.by!r} is unknown; allowed: {', '.join(SPLIT_UNITS)}")
 
     def check(self, rows: StackRows) -> None:
         """Raise an InputError if there are too few rows or panels for the number of folds."""

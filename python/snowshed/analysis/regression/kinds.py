@@ -62,7 +62,7 @@ class Kind(Protocol):
 
 
 def kinds() -> dict[str, Kind]:
-    """Return all kinds by name, those of the thesis first.
+    """Return all kinds by name; the kinds of the thesis come first.
 
     Raises
     ------

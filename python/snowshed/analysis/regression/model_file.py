@@ -166,11 +166,11 @@ class _ModelReader:
         inputs = self._array("inputs", ("n", len(names)))
         described = _entry(facts, "members", dict)
         members = {}
-        for name, facts_of in described.items():
+        for name, member_facts in described.items():
             target, _, kind = name.partition("/")
             if target not in TARGETS or kind not in STORED_KINDS:
                 raise InputError(f"members.{name}: unknown target or kind of model")
-            members[target, kind] = self._member(name, facts_of, inputs)
+            members[target, kind] = self._member(name, member_facts, inputs)
         if not members:
             raise InputError("members: none")
         measure = _entry(facts, "measure", str)

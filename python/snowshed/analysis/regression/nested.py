@@ -89,7 +89,7 @@ def cross_validate(
     tracker = _Tracker(missing, len(tasks), kinds, progress)
     with holding(folder, _make), deferred_interrupts() as request:
         remove_leftovers(folder)
-        for task in _computed(missing, rows, scheme, folder, jobs, request):
+        for task in _compute_tasks(missing, rows, scheme, folder, jobs, request):
             results[task] = FoldResult.load(folder / task.file, points)
             tracker.advance(task)
         if request.requested:
@@ -144,7 +144,7 @@ def _claim(folder: Path, rows: StackRows, scheme: CrossValidation) -> None:
     claim_folder(folder, IDENTITY, identity, "regression", others)
 
 
-def _computed(
+def _compute_tasks(
     tasks: Sequence[FoldTask],
     rows: StackRows,
     scheme: CrossValidation,

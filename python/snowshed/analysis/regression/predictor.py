@@ -149,7 +149,7 @@ def predict(
     (3, 5)
     """
     if not isinstance(model, StackModel):
-        model = _shipped() if model is None else load_model(model)
+        model = _packaged_model() if model is None else load_model(model)
     named = {"height": height, "length": length, "tilt": tilt, "events": events, **(inputs or {})}
     questions = Questions.of(panels, named, model.names)
     kind = model.kinds[0] if kind is None else kind
@@ -166,7 +166,7 @@ def predict(
 
 
 @cache
-def _shipped() -> StackModel:
+def _packaged_model() -> StackModel:
     return load_model(MODEL)
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 Numbers = Union[float, Sequence[float], Floats, Integers, "pd.Series[float]", "pd.Series[int]"]
 
 #: Short names of inputs in tables and options; the names of other inputs are their paths.
-SHORT: Mapping[str, str] = {
+SHORT_NAMES: Mapping[str, str] = {
     "panel.height": "height", "panel.length": "length", "panel.tilt": "tilt"
 }  # fmt: skip
 EVENTS = "events"
@@ -77,7 +77,7 @@ class Questions:
         """
         import pandas as pd
 
-        names = [*(SHORT.get(name, name) for name in inputs[1:]), EVENTS]
+        names = [*(SHORT_NAMES.get(name, name) for name in inputs[1:]), EVENTS]
         given = [name for name, value in columns.items() if value is not None]
         if table is not None:
             if given:
@@ -85,7 +85,7 @@ class Questions:
                     f"{given[0]}: not allowed beside a table of panels, which has it as a column"
                 )
             columns = _table_columns(table, names)
-        panels = _stacked(columns, names)
+        panels = _panel_rows(columns, names)
         labels = pd.RangeIndex(panels.shape[1]) if table is None else table.index
         _check(dict(zip(names, panels)), labels)
         counts = panels[-1].astype(int)
@@ -114,7 +114,7 @@ def _table_columns(table: pd.DataFrame, allowed: Sequence[str]) -> dict[str, Opt
     return {name: table.get(name) for name in allowed}
 
 
-def _stacked(columns: Mapping[str, Optional[Numbers]], names: Sequence[str]) -> Floats:
+def _panel_rows(columns: Mapping[str, Optional[Numbers]], names: Sequence[str]) -> Floats:
     """Return the columns as rows of an array, numbers repeated for each panel."""
     arrays = {}
     for name, value in columns.items():

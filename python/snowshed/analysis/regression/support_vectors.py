@@ -25,7 +25,7 @@ class NotConvergedError(InputError):
 
 
 def fit_along_c(
-    kernel: Floats, y: Floats, epsilon: float, bounds: Sequence[float]
+    kernel: Floats, y: Floats, epsilon: float, c_values: Sequence[float]
 ) -> Iterator[SupportVectors]:
     """Fit an epsilon-SVR for each of several C, cheaper than one by one.
 
@@ -41,7 +41,7 @@ def fit_along_c(
         Targets, shape (n,).
     epsilon
         Half width of the tube.
-    bounds
+    c_values
         Values of C, ascending.
 
     Yields
@@ -51,10 +51,10 @@ def fit_along_c(
     """
     if np.ptp(y) <= 2 * epsilon:
         middle = SupportVectors(np.zeros(len(y)), float(y.min() + y.max()) / 2)
-        yield from [middle] * len(bounds)
+        yield from [middle] * len(c_values)
         return
     quick, fit, earlier = True, None, 0.0
-    for c in bounds:
+    for c in c_values:
         if fit is None or not np.abs(fit.coefficients).max() <= (1 - AT_BOUND) * earlier:
             solution = _libsvm(kernel, y, c, epsilon) if quick else None
             quick = solution is not None

@@ -102,8 +102,8 @@ def sensitivity_study(
         raise InputError(f"seeds: not for {method}, where the seed is one of the inputs")
     if not sampled and samples is not None:
         raise InputError(f"samples: not for {method}, whose points are those of the thesis")
-    seeds = _checked("seeds", seeds, size.seeds)
-    samples = _checked("samples", samples, size.samples)
+    seeds = _positive_or_default("seeds", seeds, size.seeds)
+    samples = _positive_or_default("samples", samples, size.samples)
     scene = Scene.preset("sensitivity").update({"snow": Snow.preset("reference").to_data()})
     return Study(
         scene.update(QUICK_SCENE if quick else FULL_SCENE),
@@ -122,7 +122,7 @@ def _parts(method: str, samples: int) -> list[Part]:
     return [[axis(path, VALUES[path]) for path in group] for group in GROUPS.values()]
 
 
-def _checked(name: str, given: Optional[int], default: int) -> int:
+def _positive_or_default(name: str, given: Optional[int], default: int) -> int:
     if given is not None and given < 1:
         raise InputError(f"{name}: {given} is not positive")
     return default if given is None else given

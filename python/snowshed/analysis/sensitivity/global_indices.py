@@ -67,7 +67,7 @@ def sobol_indices(stored: StudyRuns) -> pd.DataFrame:
             "total_interval": indices["ST_conf"],
         }
 
-    return _analyzed(stored, design, analyze)
+    return _index_table(stored, design, analyze)
 
 
 def morris_effects(stored: StudyRuns) -> pd.DataFrame:
@@ -113,7 +113,7 @@ def morris_effects(stored: StudyRuns) -> pd.DataFrame:
             "spread": effects["sigma"] * scale,
         }
 
-    return _analyzed(stored, design, analyze)
+    return _index_table(stored, design, analyze)
 
 
 @dataclass(frozen=True)
@@ -157,7 +157,7 @@ class _Design:
         return cls(names, points, len(names) + more)
 
 
-def _analyzed(
+def _index_table(
     stored: StudyRuns,
     design: _Design,
     analyze: Callable[[Booleans, Floats], dict[str, Floats]],

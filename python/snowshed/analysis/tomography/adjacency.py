@@ -136,18 +136,18 @@ class _PairValues:
         """Add pairs in any order, with normal, faces and saddle as columns; `values` is changed."""
         low, high = np.minimum(first, second), np.maximum(first, second)
         values[first > second, :3] *= -1.0
-        keys, values = _reduced(low.astype(np.int64) * self.count + high, values)
+        keys, values = _unique_keys(low.astype(np.int64) * self.count + high, values)
         self.keys.append(keys)
         self.values.append(values)
 
     def adjacency(self, air: Floats) -> Adjacency:
         """Return the adjacency of all added pairs."""
-        keys, values = _reduced(np.concatenate(self.keys), np.concatenate(self.values))
+        keys, values = _unique_keys(np.concatenate(self.keys), np.concatenate(self.values))
         pairs = np.stack(np.divmod(keys, self.count), axis=1)
         return Adjacency(air, pairs, values[:, :3], values[:, 3].astype(np.int64), values[:, 4])
 
 
-def _reduced(keys: Integers, values: Floats) -> tuple[Integers, Floats]:
+def _unique_keys(keys: Integers, values: Floats) -> tuple[Integers, Floats]:
     """Return every key once, with the sums of its normals and faces and its largest saddle."""
     if not len(keys):
         return keys, values

@@ -113,7 +113,7 @@ class _Histogram:
         return seen >= MIN_LABELS and above.max() < MAX_SHARE_OF_LABEL * above.sum()
 
     def otsu(self) -> float:
-        """Return Otsu's threshold; it is found in bins, where values may be of any size."""
+        """Return Otsu's threshold, which is searched in bins, so that values may have any size."""
         filters = require("skimage.filters", "images", "Otsu's threshold")
         place = float(filters.threshold_otsu(hist=(self.counts, np.arange(float(self.bins)))))
         return float(self.lowest) + self.width * (place + (0.0 if self.is_integer else 0.5))

@@ -81,7 +81,9 @@ def gaussian_snow(
     noise = _Noise(shape, anisotropy, seed)
     if correlation_length is not None and specific_surface is None:
         wavelength = positive("correlation_length", correlation_length) / voxel_size
-        ice = _cut(noise.field(_resolved(wavelength, voxel_size, shape)), fraction, connected)
+        ice = _cut(
+            noise.field(_checked_wavelength(wavelength, voxel_size, shape)), fraction, connected
+        )
     else:
         surface = one_of(
             "specific_surface", specific_surface, "correlation_length", correlation_length
@@ -139,7 +141,7 @@ def _search(
     best: Optional[tuple[Booleans, float]] = None
     least = MAX_SURFACE_ERROR
     for attempt in range(MAX_TRIES):
-        field = noise.field(_resolved(wavelength, voxel_size, noise.shape))
+        field = noise.field(_checked_wavelength(wavelength, voxel_size, noise.shape))
         ice = _cut(field, fraction, connected)
         density = surface_density(ice) * ice.size * fraction / np.count_nonzero(ice)
         if abs(density / target - 1) < least:
@@ -156,7 +158,7 @@ def _search(
     )
 
 
-def _resolved(wavelength: float, voxel_size: float, shape: tuple[int, int, int]) -> float:
+def _checked_wavelength(wavelength: float, voxel_size: float, shape: tuple[int, int, int]) -> float:
     """Return a wavelength in voxels if voxels resolve it and the sample holds it."""
     longest = max(shape)
     if not 4 <= wavelength <= longest:

@@ -45,7 +45,7 @@ def asked_fraction(ice_fraction: Optional[float], density: Optional[float]) -> f
 def one_of(
     name: str, value: Optional[float], other: str, instead: Optional[float], factor: float = 1.0
 ) -> float:
-    """Return the one of two positive values that is given, the second times a factor.
+    """Return the given one of two positive values; the second is multiplied by a factor.
 
     Examples
     --------

@@ -59,10 +59,10 @@ def _draw(axes: Axes, cut: Labels, voxel_size: float, size: tuple[int, int]) -> 
     every = -(-max(cut.shape) // MAX_PIXELS)
     extent = (0.0, 1e3 * size[0] * voxel_size, 0.0, 1e3 * size[1] * voxel_size)
     axes.grid(visible=False)
-    axes.imshow(_coloured(cut[::every, ::every]), origin="lower", extent=extent)
+    axes.imshow(_slice_colours(cut[::every, ::every]), origin="lower", extent=extent)
 
 
-def _coloured(cut: Labels) -> Floats:
+def _slice_colours(cut: Labels) -> Floats:
     """Return the colours of a slice, with lines where grains touch."""
     scale = max(1, 400 // max(cut.shape))  # so that lines are thinner than a voxel
     fine = np.kron(cut, np.ones((scale, scale), dtype=cut.dtype))

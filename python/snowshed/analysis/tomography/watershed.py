@@ -36,7 +36,7 @@ class Basins:
 
 
 def distance_from(there: Booleans, threads: int) -> SingleFloats:
-    """Return the distance of each voxel to the nearest one that is not `there`, in voxels.
+    """Return the distance of each voxel to the nearest voxel that is not `there`, in voxels.
 
     The sides of the image do not count.
     """

@@ -12,7 +12,7 @@ import click
 from snowshed.cli.commands.designed_study import (
     check_options,
     chosen_study,
-    computed,
+    compute_missing_runs,
     design_options,
 )
 from snowshed.cli.common_options import PATH
@@ -73,7 +73,7 @@ def calibrate(
     """  # noqa: D301 - click wants the control character
     from snowshed.analysis.calibration import measurements as reading
     from snowshed.analysis.calibration.grid_study import calibration_study
-    from snowshed.analysis.calibration.misfit import RANKED
+    from snowshed.analysis.calibration.misfit import RANKING_QUANTITIES
     from snowshed.analysis.calibration.report import check_libraries, evaluate_calibration
     from snowshed.io.atomic import write_text
 
@@ -88,7 +88,7 @@ def calibrate(
         check_libraries()
     if stored is None:
         design = partial(calibration_study, measured, quick=quick, seeds=seeds)
-        runs = computed(context, chosen_study(context, folder, design), folder)
+        runs = compute_missing_runs(context, chosen_study(context, folder, design), folder)
         if runs is None:
             return
         stored, name = runs
@@ -98,7 +98,7 @@ def calibrate(
         folder,
         study=name,
         measure=measure,
-        quantities=quantities or RANKED,
+        quantities=quantities or RANKING_QUANTITIES,
     )
     if not quiet:
         print_calibration(calibration)
@@ -121,11 +121,11 @@ def print_calibration(calibration: Calibration) -> None:
 
 
 def _ranking(calibration: Calibration) -> Table:
-    from snowshed.analysis.calibration.misfit import RANKED
+    from snowshed.analysis.calibration.misfit import RANKING_QUANTITIES
     from snowshed.plot.labels import label
 
     paths = calibration.stacks.parameters
-    measured = [q for q in RANKED if f"{q}_rmse_m" in calibration.ranked]
+    measured = [q for q in RANKING_QUANTITIES if f"{q}_rmse_m" in calibration.ranked]
     headings = ["rank", *(label(path).axis for path in paths)]
     headings += [f"{q}\nRMSE, m" for q in measured] + [f"{q}\nerror" for q in measured]
     table = plain_table(

@@ -96,7 +96,7 @@ def clearance(
     from snowshed.analysis.clearance.answer import forecast
     from snowshed.analysis.clearance.panel_design import DEFAULT_RANGES, Design, Ranges
     from snowshed.analysis.clearance.report import write_report
-    from snowshed.analysis.clearance.winters import counted
+    from snowshed.analysis.clearance.winters import counted_winters
 
     ranges = Ranges({**DEFAULT_RANGES, **dict(map(_span, spans))}, draws, seed)
     designs = [
@@ -110,7 +110,7 @@ def clearance(
     notes = [*record.notes, *winter_list.notes]
     for note in () if quiet else notes:
         say(f"note: {note}")
-    winters = counted(winter_list)
+    winters = counted_winters(winter_list)
     if dry_run or not quiet:
         costs = [
             forecast(design, winters, candidates, ranges=ranges, jobs=jobs) for design in designs

@@ -28,7 +28,7 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 STUDY = "study.toml"
 RUNS = "runs"
 #: Options without effect beside another one, by the names of their parameters.
-USELESS: Mapping[str, Sequence[str]] = {
+IGNORED_OPTIONS: Mapping[str, Sequence[str]] = {
     "stored": ["file", "dry_run", "quick", "seeds", "samples", "jobs"],
     "file": ["quick", "seeds", "samples"],
 }
@@ -78,7 +78,7 @@ def check_options(context: click.Context) -> Path:
     folder: Optional[Path] = context.params["folder"]
     if folder is None:
         raise click.UsageError("give -o DIR, the folder of the results")
-    for option, useless in USELESS.items():
+    for option, useless in IGNORED_OPTIONS.items():
         if context.params[option] is not None:
             _refuse(context, useless, f"has no effect with {_flag(context, option)}")
     if context.params["stored"] is None:
@@ -108,7 +108,9 @@ def chosen_study(context: click.Context, folder: Path, design: Callable[[], Stud
     return study
 
 
-def computed(context: click.Context, study: Study, folder: Path) -> Optional[tuple[Path, str]]:
+def compute_missing_runs(
+    context: click.Context, study: Study, folder: Path
+) -> Optional[tuple[Path, str]]:
     """Compute the missing runs of a study; return the folder of its store, and its name there.
 
     Returns None after a dry run. If runs fail or are interrupted, the command ends with the exit

@@ -37,7 +37,7 @@ def run(
       snowshed run scene.json --dry-run
       snowshed run scene.json -o results
     """  # noqa: D301 - click wants the control character
-    resolved = _resolved(scene, accuracy, quiet=quiet)
+    resolved = _resolve_file(scene, accuracy, quiet=quiet)
     run_or_cost(resolved, folder, resume=resume, dry_run=dry_run, quiet=quiet, check=check)
 
 
@@ -46,10 +46,10 @@ def run(
 @accuracy_option
 def plan(scene: Path, accuracy: Optional[float]) -> None:
     """Print the features and the cost of a scene file; see ``run --dry-run``."""
-    print_cost(_resolved(scene, accuracy, quiet=False))
+    print_cost(_resolve_file(scene, accuracy, quiet=False))
 
 
-def _resolved(file: Path, accuracy: Optional[float], *, quiet: bool) -> ResolvedScene:
+def _resolve_file(file: Path, accuracy: Optional[float], *, quiet: bool) -> ResolvedScene:
     if accuracy is None:
         return ResolvedScene.load(file)
     return with_accuracy(Scene.load(file), accuracy, quiet=quiet).resolve()

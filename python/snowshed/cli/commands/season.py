@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 DEFAULTS = SeasonSettings()
 
 #: Placeholders for values that the season file determines.
-DETERMINED = {"slab.thickness": 0.1}
+PLACEHOLDERS = {"slab.thickness": 0.1}
 
 SEASON_TABLE = {
     "date": ("date", "{}"),
@@ -57,7 +57,7 @@ SEASON_TABLE = {
     "to crest\nm": ("crest_clearance_m", "{:.2f}"),
 }
 MAX_ROWS = 60  # rows; a longer table shows releases only
-SETTLED = {"settled\nheight, m": ("settled_height_m", "{:.2f}")}
+SETTLED_COLUMN = {"settled\nheight, m": ("settled_height_m", "{:.2f}")}
 
 
 @click.command()
@@ -212,19 +212,19 @@ def _scene(
 ) -> ResolvedScene:
     if file is not None and (preset or snow_preset):
         raise click.UsageError("--scene cannot be combined with --preset or --snow")
-    given = _given(options)
+    given = _given_options(options)
     scene = Scene.load(file) if file else scene_from_options(preset, snow_preset, {})
     if scene.slab is not None:
         scene.slab.layers = None
     try:
-        return scene.update({**DETERMINED, **given}).resolve()
+        return scene.update({**PLACEHOLDERS, **given}).resolve()
     except InputError as error:
         if file is not None and path_of(error) not in given:
             raise InputError(f"{file}: {error}") from None
         raise in_terms_of_options(error) from None
 
 
-def _given(options: dict[str, Any]) -> dict[str, Any]:
+def _given_options(options: dict[str, Any]) -> dict[str, Any]:
     """Return the given options by their paths in a scene."""
     return {
         name.replace("__", "."): value
@@ -284,7 +284,7 @@ def print_season(result: SeasonResult, folder: Path, scene: ResolvedScene) -> No
     console = wide_console(120)
     columns = dict(SEASON_TABLE)
     if (result.table["settled_height_m"] < result.table["stack_height_m"]).any():
-        columns.update(SETTLED)
+        columns.update(SETTLED_COLUMN)
     table = plain_table("Season", columns, padding=0)
     rows, left_out = _rows(result)
     for row in rows:

@@ -12,7 +12,7 @@ import click
 from snowshed.cli.commands.designed_study import (
     check_options,
     chosen_study,
-    computed,
+    compute_missing_runs,
     design_options,
 )
 from snowshed.cli.terminal import plain_table, say, wide_console
@@ -64,7 +64,7 @@ def sensitivity(
     folder = check_options(context)
     if stored is None:
         design = partial(sensitivity_study, method, quick=quick, seeds=seeds, samples=samples)
-        runs = computed(context, chosen_study(context, folder, design), folder)
+        runs = compute_missing_runs(context, chosen_study(context, folder, design), folder)
         if runs is None:
             return
         stored, name = runs
@@ -80,7 +80,7 @@ def _local(row: Any) -> str:
     return f"{row['s']:+.3f} ± {row['standard_error']:.3f}{' ?' if doubtful else '  '}"
 
 
-def _fixed(row: Any) -> str:
+def _fixation_text(row: Any) -> str:
     return f"{row['mean_m']:.3f} ± {row['deviation_m']:.3f}"
 
 
@@ -94,7 +94,7 @@ def _effects(row: Any) -> str:
 
 CELLS: Mapping[str, tuple[str, Callable[[Any], str]]] = {
     "s": ("Index S ± standard error from seeding noise", _local),
-    "fixation": ("Mean ± standard deviation over the others, m", _fixed),
+    "fixation": ("Mean ± standard deviation over the others, m", _fixation_text),
     "sobol": ("First order / total Sobol index", _shares),
     "morris": ("Strength μ* of effects ± 95 %, relative to the mean", _effects),
 }

@@ -19,7 +19,7 @@ class Constants(NamedTuple):
     hardening_factor: float
 
 
-def calibrated() -> tuple[Constants, float]:
+def calibrated_snow() -> tuple[Constants, float]:
     """Return the thesis's calibrated snow, and its initial p0, Pa."""
     snow: dict[str, Any] = Snow.preset("calibrated").to_data()
     return Constants(*(snow[name] for name in Constants._fields)), snow["preconsolidation_pressure"]
@@ -36,7 +36,7 @@ def hardening_error() -> float:
     tension, where p0 = K sinh(xi max(-e_v, 0)). A trial stress that lies beyond it by K times a
     change of e_v must return to it with that change.
     """
-    constants, strength = calibrated()
+    constants, strength = calibrated_snow()
     law = _core.CamClay(*constants)
     initial = -math.asinh(strength / law.bulk) / constants.hardening_factor
     errors = [law.preconsolidation(initial) / strength - 1]
@@ -54,7 +54,7 @@ def critical_state_error() -> float:
     At the centre of the yield ellipse, p = (1 - beta) p0/2, flow is purely deviatoric: p and e_v
     stay, and q returns to the ellipse's height M (p + beta p0)/sqrt(1 + 2 beta).
     """
-    constants, strength = calibrated()
+    constants, strength = calibrated_snow()
     law = _core.CamClay(*constants)
     initial = law.initial_plastic_strain(strength)
     centre = (1 - constants.cohesion) / 2 * strength

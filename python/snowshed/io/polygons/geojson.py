@@ -36,7 +36,7 @@ CODES = re.compile(
 )
 DEGREES = "OGC:CRS84"
 NUMBERS = {int, float}
-HOW = (
+REMEDY = (
     'write it in metres with a member "crs", or as a GeoPackage or shapefile (QGIS: Export, Save '
     "Features As)"
 )
@@ -182,7 +182,7 @@ def _crs(content: Mapping[str, Any], farthest: Floats, path: Path) -> str:
         if farthest[0] > 180 or farthest[1] > 90:
             raise InputError(
                 f"{path}: has no coordinate system; its numbers are not degrees, which GeoJSON "
-                f"requires without one; {HOW}"
+                f"requires without one; {REMEDY}"
             )
         return DEGREES
     system = content["crs"]
@@ -191,9 +191,9 @@ def _crs(content: Mapping[str, Any], farthest: Floats, path: Path) -> str:
     kind = system.get("type") if isinstance(system, dict) else None
     properties = system.get("properties") if isinstance(system, dict) else None
     if not isinstance(properties, dict):
-        raise InputError(f"{path}: crs: not as GeoJSON has it; {HOW}")
+        raise InputError(f"{path}: crs: not as GeoJSON has it; {REMEDY}")
     if kind == "link":
-        raise InputError(f"{path}: crs: a link, which is not followed; {HOW}")
+        raise InputError(f"{path}: crs: a link, which is not followed; {REMEDY}")
     name = properties.get("name" if kind == "name" else "code")
     description = f"EPSG:{name}" if kind == "EPSG" else str(name)
     code = CODES.fullmatch(description)

@@ -52,7 +52,7 @@ ENVELOPES = {0: 8, 1: 40, 2: 56, 3: 56, 4: 72}
 def read_geopackage(path: Path, layer: Optional[str], option: str) -> PolygonLayer:
     """Return the polygons of a layer; see `snowshed.io.polygons.read_layer`."""
     try:
-        with _opened(path) as connection:
+        with _open_read_only(path) as connection:
             return _Package(path, connection).read(layer, option)
     except (sqlite3.Error, UnicodeError, OverflowError) as error:
         why = "reading it takes too long" if "interrupt" in str(error) else str(error)
@@ -60,7 +60,7 @@ def read_geopackage(path: Path, layer: Optional[str], option: str) -> PolygonLay
 
 
 @contextmanager
-def _opened(path: Path) -> Iterator[sqlite3.Connection]:
+def _open_read_only(path: Path) -> Iterator[sqlite3.Connection]:
     """Open a file, with the changes in its log, without writing beside it."""
     with TemporaryDirectory() as folder:
         log = _companion(path, "-wal", LOG)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 #: Fields are read if their names begin with these words.
-WANTED = ("name", "thick", "d0")
+FIELD_PREFIXES = ("name", "thick", "d0")
 
 
 @dataclass(frozen=True)
@@ -40,4 +40,4 @@ def is_wanted(field: str) -> bool:
     >>> is_wanted("Thickness_cm"), is_wanted("photo")
     (True, False)
     """
-    return field.strip().lower().startswith(WANTED)
+    return field.strip().lower().startswith(FIELD_PREFIXES)

@@ -11,7 +11,7 @@ from snowshed._core import InputError
 
 POLYGON, MULTIPOLYGON = 3, 6
 #: Curves: CircularString, CompoundCurve, CurvePolygon, MultiCurve, MultiSurface.
-CURVED = (8, 9, 10, 11, 12)
+CURVED_TYPES = (8, 9, 10, 11, 12)
 
 
 def count_corners(wkb: bytes, where: str) -> int:
@@ -30,7 +30,7 @@ def count_corners(wkb: bytes, where: str) -> int:
     """
     try:
         kind, place, order, _ = _head(wkb, 0)
-        if kind in CURVED:
+        if kind in CURVED_TYPES:
             raise InputError(
                 f"{where}: has curved edges; draw it with straight ones (QGIS: Segmentize)"
             )

@@ -74,27 +74,27 @@ def read_geotiff(path: Path, band: Optional[int] = None) -> PlacedHeights:
     """
     content = read_regular(path)
     extra = _sidecars(path)
-    with _opened(path, content, extra) as source:
+    with _open_geotiff(path, content, extra) as source:
         number = _checked_band(source, path, band)
         _check_size(source, path, number)
         facts = _facts(source, number)
         _note_on_sidecar(path, content, extra, number, facts)
         values, missing = source.read(number), _missing(source, number)
-        system, per_height = ("", None)
+        system, metres_per_unit = ("", None)
         if source.crs is not None:
             if source.crs.is_geographic:
                 raise InputError(
                     f"{path}: its map is in degrees ({source.crs}); project it to metres first"
                 )
-            system, per_height = split_system(source.crs, str(path))
+            system, metres_per_unit = split_system(source.crs, str(path))
         transform, has_points = source.transform, bool(source.gcps[0])
-    heights = _in_metres(values, facts, _factor(facts, per_height, path), path)
+    heights = _in_metres(values, facts, _factor(facts, metres_per_unit, path), path)
     heights[missing] = np.nan
-    return _placed(heights, transform, system, values.dtype.name, path, has_points)
+    return _place_on_map(heights, transform, system, values.dtype.name, path, has_points)
 
 
 @contextmanager
-def _opened(path: Path, content: bytes, extra: dict[str, bytes]) -> Iterator[Any]:
+def _open_geotiff(path: Path, content: bytes, extra: dict[str, bytes]) -> Iterator[Any]:
     """Open the bytes of a GeoTIFF and of files beside it, by their suffixes."""
     rasterio: Any = require("rasterio", "terrain", "reading a GeoTIFF")
 
@@ -169,8 +169,8 @@ def _checked_band(source: Any, path: Path, band: Optional[int]) -> int:
         raise InputError(f"{path}: has no band {band}; allowed: {', '.join(map(str, bands))}")
     if band is None and len(bands) != 1:
         raise InputError(
-            f"{path}: has {len(bands)} bands ({_named(source, bands)}); say which to read (--band; "
-            "for a raster of thickness --thickness-band)"
+            f"{path}: has {len(bands)} bands ({_band_names(source, bands)}); say which to read "
+            "(--band; for a raster of thickness --thickness-band)"
         )
     chosen = bands[0] if band is None else band
     if source.colorinterp[chosen - 1].name == "palette":
@@ -178,12 +178,12 @@ def _checked_band(source: Any, path: Path, band: Optional[int]) -> int:
     if np.dtype(source.dtypes[chosen - 1]).kind not in "iuf":
         raise InputError(f"{path}: holds {source.dtypes[chosen - 1]} values, which are not heights")
     if len(bands) > 1:
-        title = _named(source, [chosen])
+        title = _band_names(source, [chosen])
         issue_note(f"{path.name}: band {chosen} of {len(bands)} is read ({title})")
     return chosen
 
 
-def _named(source: Any, bands: list[int]) -> str:
+def _band_names(source: Any, bands: list[int]) -> str:
     names = [
         f"{number}: {source.descriptions[number - 1] or source.dtypes[number - 1]}"
         for number in bands[:8]
@@ -226,7 +226,7 @@ def _note_on_sidecar(
     if FACTS not in extra:
         return
     without = {name: data for name, data in extra.items() if name != FACTS}
-    with _opened(path, content, without) as source:
+    with _open_geotiff(path, content, without) as source:
         alone = _facts(source, band)
     changed = [name for name, a, b in zip(BandFacts._fields, facts, alone) if repr(a) != repr(b)]
     if changed:
@@ -244,19 +244,19 @@ def _missing(source: Any, band: int) -> Booleans:
     return missing
 
 
-def _factor(facts: BandFacts, per_height: Optional[float], path: Path) -> float:
+def _factor(facts: BandFacts, metres_per_unit: Optional[float], path: Path) -> float:
     """Return the length in m of a band's unit, or, without one, of the map's unit of height."""
     own = metres_of(facts.unit, str(path)) if facts.unit.strip() else None
     if (
         own is not None
-        and per_height is not None
-        and not math.isclose(own, per_height, rel_tol=1e-5)
+        and metres_per_unit is not None
+        and not math.isclose(own, metres_per_unit, rel_tol=1e-5)
     ):
         raise InputError(
             f"{path}: its band is in {quoted(facts.unit)}, the heights of its coordinate system in "
-            f"units of {per_height:.6g} m; correct one of them (gdal_edit.py -units)"
+            f"units of {metres_per_unit:.6g} m; correct one of them (gdal_edit.py -units)"
         )
-    return own or per_height or 1.0
+    return own or metres_per_unit or 1.0
 
 
 def _in_metres(values: Any, facts: BandFacts, factor: float, path: Path) -> Floats:
@@ -278,7 +278,7 @@ def _in_metres(values: Any, facts: BandFacts, factor: float, path: Path) -> Floa
     return heights
 
 
-def _placed(
+def _place_on_map(
     heights: Floats, transform: Any, system: str, numbers: str, path: Path, has_points: bool
 ) -> PlacedHeights:
     """Return heights with their position on the map, the southernmost row first."""

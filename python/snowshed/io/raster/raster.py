@@ -130,18 +130,20 @@ def read_raster(path: PathLike, band: Optional[int] = None) -> Raster:
 
 
 def _read_ascii(path: Path) -> Raster:
-    heights, west, south, cell, missing, commas = read_ascii_grid(str(path))
+    heights, west, south, cell, missing, comma_count = read_ascii_grid(str(path))
     refuse_other_facts(path, heights)
     if missing:
         issue_note(f"{path.name}: {missing} values of -9999 are missing; the header declares none")
-    if commas:
-        issue_note(f"{path.name}: {commas} numbers have a decimal comma")
+    if comma_count:
+        issue_note(f"{path.name}: {comma_count} numbers have a decimal comma")
     raster = Raster(heights, west, south, cell, str(path), read_prj(path), plain=True)
-    system, per_height = split_vertical(raster.crs, str(path))
-    if per_height in (None, 1.0):
+    system, metres_per_unit = split_vertical(raster.crs, str(path))
+    if metres_per_unit in (None, 1.0):
         return replace(raster, crs=system)
-    issue_note(f"{path.name}: its values were turned into metres; one unit is {per_height:.10g} m")
-    return replace(raster, crs=system, heights=heights * per_height, plain=False)
+    issue_note(
+        f"{path.name}: its values were turned into metres; one unit is {metres_per_unit:.10g} m"
+    )
+    return replace(raster, crs=system, heights=heights * metres_per_unit, plain=False)
 
 
 def is_single(raster: Raster) -> bool:

@@ -18,7 +18,7 @@ from snowshed.io.raster.areas import MapArea
 from snowshed.io.raster.raster import Raster
 
 #: Areas that touch at a corner are separated by this share of a cell.
-GAP = 1e-7
+AREA_GAP = 1e-7
 #: Thicknesses from here on are codes for missing values, m.
 MAX_THICKNESS = 100.0
 
@@ -94,7 +94,7 @@ def _outlines(depth: Raster, snow: Booleans, shapely: Any) -> list[Any]:
     place = affine(depth.cell, 0.0, west, 0.0, depth.cell, south)
     shapes = features.shapes(snow.astype(np.uint8), mask=snow, connectivity=4, transform=place)
     inner = [
-        shapely.Polygon(rings[0], rings[1:]).buffer(-GAP * depth.cell, join_style="mitre")
+        shapely.Polygon(rings[0], rings[1:]).buffer(-AREA_GAP * depth.cell, join_style="mitre")
         for rings in (shape["coordinates"] for shape, _ in shapes)
     ]
     return [area for shape in inner for area in shapely.get_parts(shape)]

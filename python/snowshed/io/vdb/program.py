@@ -10,7 +10,7 @@ from snowshed._core import InputError
 from snowshed._core import __file__ as core_file
 
 PROGRAM = Path(core_file).with_name("snowshed-vdb")
-REFUSED = 2  # exit code; the reason is on standard output
+REFUSAL_CODE = 2  # exit code; the reason is on standard output
 
 
 def vdb_available() -> bool:
@@ -36,7 +36,7 @@ def run_writer(path: Path, request: bytes) -> bytes:
     done = subprocess.run(
         [PROGRAM, "write", path], input=request, stdout=subprocess.PIPE, check=False
     )
-    if done.returncode == REFUSED:
+    if done.returncode == REFUSAL_CODE:
         raise InputError(done.stdout.decode(errors="replace"))
     if done.returncode != 0:
         raise OSError(f"{PROGRAM} ended with exit code {done.returncode}")

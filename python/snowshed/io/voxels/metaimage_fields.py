@@ -56,7 +56,7 @@ class HeaderFields:
             if not line.strip() and end >= 0:
                 position = end + 1
                 continue
-            name, separator, value = _parted(line)
+            name, separator, value = _split_field(line)
             if not separator or (end < 0 and len(head) == MAX_HEADER):
                 raise InputError(f"{path}: damaged: no line {LAST} = ... in its header")
             if name in fields:
@@ -115,7 +115,7 @@ class HeaderFields:
         return InputError(f"{self.path}: {name} {quoted(self.values.get(name, ''))}: {needed}")
 
 
-def _parted(line: str) -> tuple[str, str, str]:
+def _split_field(line: str) -> tuple[str, str, str]:
     """Return name, separator and value of a line; both = and : separate, as in MetaIO."""
     match = re.match(r"([^=:]*)([=:])(.*)", line, re.DOTALL)
     return (match[1].strip(), match[2], match[3].strip()) if match else (line, "", "")

@@ -55,11 +55,11 @@ def open_voxels(
     (2, 3, 4)
     """
     with record_notes() as notes:
-        opened = _opened(Path(path), shape, kind)
+        opened = _open_file(Path(path), shape, kind)
     return replace(opened, notes=tuple(notes))
 
 
-def _opened(file: Path, shape: Optional[tuple[int, int, int]], kind: Optional[str]) -> VoxelFile:
+def _open_file(file: Path, shape: Optional[tuple[int, int, int]], kind: Optional[str]) -> VoxelFile:
     ending = file.suffix.lower()
     if (ending == RAW) != (shape is not None and kind is not None):
         raise InputError(

@@ -17,13 +17,13 @@ from snowshed.io.input_file import open_regular
 from snowshed.io.voxels.voxel_file import VoxelFile, check_unpacked
 
 PIECE = MB  # packed bytes in a chunk
-EITHER = 47  # window bits of zlib: its or gzip's stream, recognised by its head
+WINDOW_BITS = 47  # of zlib; accepts streams of zlib and of gzip
 
 
 def packed_numbers(
     name: Path, data: Path, shape: tuple[int, int, int], dtype: np.dtype[Any], start: int, size: int
 ) -> VoxelFile:
-    """Return an image whose numbers are a stream of zlib, which is unpacked only as far as needed.
+    """Return an image whose numbers are a stream of zlib, unpacked while they are read.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ class _Stream:
         self.name = name
         self.done = 0
         self._next = start  # packed byte in the file
-        self._unpacker = zlib.decompressobj(EITHER)
+        self._unpacker = zlib.decompressobj(WINDOW_BITS)
 
     def take(self, file: BinaryIO, count: int) -> bytearray:
         """Return the next bytes."""

@@ -12,7 +12,7 @@ from snowshed.base.limits import MAX_PAGES
 from snowshed.base.notes import issue_note
 from snowshed.io.voxels.picture import PixelPicture, stacked
 from snowshed.io.voxels.plain_pictures import open_picture
-from snowshed.io.voxels.tiff_description import Description, described
+from snowshed.io.voxels.tiff_description import Description, parse_description
 from snowshed.io.voxels.tiff_pages import contiguous_copies, is_big_endian, page_picture
 from snowshed.io.voxels.tiff_tags import Tags, read_pages
 from snowshed.io.voxels.voxel_file import VoxelFile
@@ -60,7 +60,7 @@ def open_slices(folder: Path) -> VoxelFile:
     OSError
         If they cannot be read.
     """
-    paths = _numbered(folder)
+    paths = _numbered_slices(folder)
     sizes: list[tuple[Optional[float], Optional[float]]] = []
     pictures = []
     for path in paths:
@@ -86,7 +86,7 @@ def _pages(path: Path) -> tuple[list[PixelPicture], Description, Optional[float]
     def look(tags: Tags) -> PixelPicture:
         picture = page_picture(path, tags, big_endian)
         if not descriptions:
-            text = described(str(path), tags.text(270), tags.ratio(282))
+            text = parse_description(str(path), tags.text(270), tags.ratio(282))
             descriptions.append((text, _printed_size(tags)))
         return picture
 
@@ -109,7 +109,7 @@ def _printed_size(tags: Tags) -> Optional[float]:
     return unit / across
 
 
-def _numbered(folder: Path) -> list[Path]:
+def _numbered_slices(folder: Path) -> list[Path]:
     """Return the slices of a folder by their number, without gaps."""
     paths = []
     for path in folder.iterdir():

@@ -40,7 +40,7 @@ def open_picture(path: Path, kind: str) -> PixelPicture:
     OSError
         If it cannot be read.
     """
-    with _opened(path, kind) as image:
+    with _open_picture(path, kind) as image:
         width, height = image.size
         check_size(str(path), (1, height, width))
         frames = getattr(image, "n_frames", 1)
@@ -65,7 +65,7 @@ def open_picture(path: Path, kind: str) -> PixelPicture:
 
 
 def _pixels(path: Path, kind: str) -> NDArray[Any]:
-    with _opened(path, kind) as image:
+    with _open_picture(path, kind) as image:
         if image.mode not in TYPES or (image.mode == "P" and not _is_grey(image)):
             raise InputError(f"{path}: has colours; convert it to shades of grey")
         pixels = np.asarray(image.convert("L") if image.mode == "P" else image)
@@ -73,7 +73,7 @@ def _pixels(path: Path, kind: str) -> NDArray[Any]:
 
 
 @contextmanager
-def _opened(path: Path, kind: str) -> Iterator[Image]:
+def _open_picture(path: Path, kind: str) -> Iterator[Image]:
     """Yield the picture in a file of some kind; errors say that it is damaged."""
     pillow = require("PIL.Image", "images", "reading pictures")
     with open_regular(path) as file:

@@ -46,7 +46,7 @@ class Description:
     notes: tuple[str, ...] = ()
 
 
-def described(name: str, text: str, pixels_per_unit: Optional[float]) -> Description:
+def parse_description(name: str, text: str, pixels_per_unit: Optional[float]) -> Description:
     r"""Return the content of a file's description.
 
     Parameters
@@ -65,7 +65,7 @@ def described(name: str, text: str, pixels_per_unit: Optional[float]) -> Descrip
 
     Examples
     --------
-    >>> described("a.tif", "ImageJ=1.53\nimages=40\nslices=40\nunit=mm\nspacing=0.05", 20.0)
+    >>> parse_description("a.tif", "ImageJ=1.53\nimages=40\nslices=40\nunit=mm\nspacing=0.05", 20.0)
     Description(slices=40, voxel_size=5e-05, notes=())
     """
     if text.startswith("ImageJ="):

@@ -24,7 +24,7 @@ WHITE_NOTE = (
 )
 #: The sample formats of TIFF, by NumPy's letter for the kind.
 KINDS = {1: "u", 2: "i", 3: "f", 4: "u"}
-UNDEFINED = 4
+UNDEFINED_FORMAT = 4
 MAX_TILE = 1 << 20  # pixels of a tile that may exceed its image
 
 
@@ -127,7 +127,7 @@ def _dtype(tags: Tags, big_endian: bool) -> tuple[np.dtype[Any], tuple[str, ...]
     order = ">" if big_endian else "<"
     notes = ("SampleFormat is undefined: numbers are taken as whole and not negative",)
     dtype = np.dtype(f"{order}{kind}{max(bits // 8, 1)}")
-    return dtype, notes if sample_format == UNDEFINED else ()
+    return dtype, notes if sample_format == UNDEFINED_FORMAT else ()
 
 
 def _palette(tags: Tags, dtype: np.dtype[Any]) -> tuple[NDArray[Any], tuple[str, ...]]:

@@ -27,7 +27,7 @@ TYPES = MappingProxyType(
         "UInt8": "<u1",
     }
 )
-APPENDED = b'<AppendedData encoding="raw">\n_'
+APPENDED_HEAD = b'<AppendedData encoding="raw">\n_'
 #: End of a file, with and without a checksum of the content before.
 END = re.compile(rb"  <!-- crc32 ([0-9a-f]{8}) -->\n</VTKFile>\n\Z")
 OLD_END, MAX_END_LENGTH = b"\n  </AppendedData>\n</VTKFile>\n", 64
@@ -58,7 +58,7 @@ def read_particles(path: Union[str, os.PathLike[str]]) -> dict[str, NDArray[Any]
     content = read_regular(Path(path))
     try:
         _check_sum(content)
-        head, separator, data = content.partition(APPENDED)
+        head, separator, data = content.partition(APPENDED_HEAD)
         if not separator:
             raise ValueError("it has no appended raw data")
         piece = ElementTree.fromstring(head + b"</VTKFile>").find("PolyData/Piece")
@@ -145,7 +145,7 @@ def write_appended(
 ) -> None:
     """Write a file of VTK: the XML `head`, then the arrays `blocks` as raw data."""
     with replacing(path) as beside, beside.open("wb") as file:
-        file.write(head.encode("ascii") + APPENDED)
+        file.write(head.encode("ascii") + APPENDED_HEAD)
         for block in blocks:
             file.write(block.nbytes.to_bytes(LENGTH_BYTES, "little"))
             file.write(np.ascontiguousarray(block).data)

@@ -96,7 +96,7 @@ def usual_step(times: Sequence[datetime]) -> float:
 
 
 def hours_before(times: Sequence[datetime]) -> list[float]:
-    """Return the hours since the previous row; after a gap of more than a day, those of usual rows.
+    """Return the hours since the previous row, or the usual hours after a gap of more than a day.
 
     Examples
     --------

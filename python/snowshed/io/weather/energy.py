@@ -24,7 +24,7 @@ from snowshed.io.weather.observation import (
     split_cells,
     time_of,
 )
-from snowshed.io.weather.years import arranged
+from snowshed.io.weather.years import arrange_winters
 
 EPW_HEADER, EPW_LAST = 8, "DATA PERIODS"
 EPW_HEAD = (
@@ -57,7 +57,7 @@ UNKNOWN, MISSING_TMY3 = 99.0, -9900.0  # hours of totals that stand for a missin
 MINUTE = timedelta(minutes=1)
 
 
-class _Place(NamedTuple):
+class _StationHeader(NamedTuple):
     """A station: its name, latitude, longitude, altitude, and hours ahead of universal time."""
 
     name: str
@@ -67,7 +67,7 @@ class _Place(NamedTuple):
     utc_offset: Optional[float]
 
     @classmethod
-    def of(cls, line: str, name: str, columns: Sequence[int]) -> _Place:
+    def of(cls, line: str, name: str, columns: Sequence[int]) -> _StationHeader:
         """Return the station in the first line; its name and numbers are in the given columns."""
         cells = [*split_cells(line, f"{name}, line 1"), *[""] * 10]
         numbers = [
@@ -108,7 +108,9 @@ def read_epw(name: str, lines: Sequence[str]) -> Station:
         rows.append(Observation(number, time, **values, end=end))
         periods.append(_period(cells.get(EPW_PERIOD, ""), f"{place}, column {EPW_PERIOD}"))
     columns = {quantity.name: title for title, quantity, _ in EPW_COLUMNS}
-    return _station("EPW", name, _Place.of(lines[0], name, EPW_PLACE), rows, periods, columns)
+    return _station(
+        "EPW", name, _StationHeader.of(lines[0], name, EPW_PLACE), rows, periods, columns
+    )
 
 
 def _epw_time(cells: dict[str, str], place: str) -> tuple[datetime, datetime]:
@@ -151,7 +153,9 @@ def read_tmy3(name: str, lines: Sequence[str]) -> Station:
         rows.append(Observation(number, end - MINUTE, **values, end=end))
         periods.append(_period(cells.get(TMY3_PERIOD, ""), f"{place}, column {TMY3_PERIOD}"))
     columns = {quantity.name: title for title, quantity in TMY3_NAMES.items()}
-    return _station("TMY3", name, _Place.of(lines[0], name, TMY3_PLACE), rows, periods, columns)
+    return _station(
+        "TMY3", name, _StationHeader.of(lines[0], name, TMY3_PLACE), rows, periods, columns
+    )
 
 
 def _tmy3_end(cells: dict[str, str], place: str) -> datetime:
@@ -188,13 +192,13 @@ def _period(text: str, where: str) -> Optional[float]:
 def _station(
     form: str,
     source: str,
-    place: _Place,
+    place: _StationHeader,
     rows: Sequence[Observation],
     periods: Sequence[Optional[float]],
     columns: Mapping[str, str],
 ) -> Station:
     completed, of_amounts = _with_amounts(rows, periods)
-    completed, typical, of_years = arranged(completed, place.latitude, source)
+    completed, typical, of_years = arrange_winters(completed, place.latitude, source)
     return Station(
         form, place.name, completed, (*of_amounts, *of_years), typical, *place[1:], columns
     )

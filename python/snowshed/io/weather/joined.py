@@ -70,7 +70,7 @@ def read_stations(paths: Sequence[Path], temperature: Optional[Path] = None) -> 
             raise InputError(f"{temperature}: no temperature of the air in any row")
     if len(files) == 1:
         return files[0].station
-    files, notes = _alike(files)
+    files, notes = _on_common_clock(files)
     own = -1 if temperature is not None else None
     values = [value for name in RANGES for value in _quantity_values(files, name, own)]
     rows = _rows(values, _series_of_depth(files))
@@ -88,7 +88,7 @@ def _read(path: Path) -> _File:
     return _File(Path(path).name, station)
 
 
-def _alike(files: Sequence[_File]) -> tuple[list[_File], list[str]]:
+def _on_common_clock(files: Sequence[_File]) -> tuple[list[_File], list[str]]:
     """Return the files on the clock of the first, and notes on their differences."""
     first, *others = files
     clocked, notes = [first], []
@@ -98,7 +98,7 @@ def _alike(files: Sequence[_File]) -> tuple[list[_File], list[str]]:
                 f"{name} is of {station.name}, and {first.name} of {first.station.name}; they are "
                 "taken as one station"
             )
-        notes += _apart(first, _File(name, station))
+        notes += _distance_notes(first, _File(name, station))
         clocked.append(_File(name, _on_clock(station, first.station.utc_offset)))
         if clocked[-1].station is not station:
             notes.append(
@@ -112,7 +112,7 @@ def _same_name(first: str, other: str) -> bool:
     return first.casefold().strip() == other.casefold().strip()
 
 
-def _apart(first: _File, other: _File) -> Iterator[str]:
+def _distance_notes(first: _File, other: _File) -> Iterator[str]:
     a, b = first.station, other.station
     if None not in (a.latitude, a.longitude, b.latitude, b.longitude):
         north = ((a.latitude or 0.0) - (b.latitude or 0.0)) * DEGREE
@@ -240,7 +240,9 @@ def _station(
         ]
         if titles:
             columns[name] = " and ".join(titles)
-            parts = (f"{title} on {len(own)} days" for title, own in zip(titles, _sorted(days)))
+            parts = (
+                f"{title} on {len(own)} days" for title, own in zip(titles, _days_by_number(days))
+            )
             notes.append(f"{WORDS[name]} is from {', '.join(parts)}")
         used |= days.keys()
         rolling |= {name for i in days if name in files[i].station.rolling}
@@ -264,5 +266,5 @@ def _station(
     )
 
 
-def _sorted(days: dict[int, set[date]]) -> list[set[date]]:
+def _days_by_number(days: dict[int, set[date]]) -> list[set[date]]:
     return [days[number] for number in sorted(days)]

@@ -219,19 +219,19 @@ class Quantity:
         number = number_in(cell)
         if math.isnan(number):
             raise InputError(
-                f"{where}: {quoted(cell)} is not a number ({self._allowed(low, high)})"
+                f"{where}: {quoted(cell)} is not a number ({self._range_text(low, high)})"
             )
         if number in _numbers(tuple(missing)):
             return None
         value = self.factor * number + self.offset
         if not (math.isfinite(value) and low <= value <= high):
             raise InputError(
-                f"{where}: {cell} is outside the allowed range ({self._allowed(low, high)}); "
+                f"{where}: {cell} is outside the allowed range ({self._range_text(low, high)}); "
                 f"is it really in {self.unit}?"
             )
         return round(max(value, 0.0) if self.name == "snow_depth" else value, 9)
 
-    def _allowed(self, low: float, high: float) -> str:
+    def _range_text(self, low: float, high: float) -> str:
         ends = [(end - self.offset) / self.factor for end in (low, high)]
         return f"{ends[0]:g} <= value <= {ends[1]:g} {self.unit}"
 

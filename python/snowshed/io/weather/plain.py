@@ -35,7 +35,9 @@ def read_plain(path: Path) -> Station:
     OSError
         If it cannot be read.
     """
-    table = read_text_table(path, f"it needs the columns {DATE} and {_allowed()}", _check_names)
+    table = read_text_table(
+        path, f"it needs the columns {DATE} and {_allowed_columns()}", _check_names
+    )
     columns = [
         Column(i, title, COLUMNS[title]) for i, title in enumerate(table.columns) if title != DATE
     ]
@@ -62,11 +64,13 @@ def _check_names(names: Sequence[str], where: str) -> None:
         if name != DATE and name not in COLUMNS:
             raise InputError(
                 f"{where}: neither a weather file of a known format nor a table: unknown column "
-                f"{quoted(name)}; allowed: {DATE}, {_allowed()}"
+                f"{quoted(name)}; allowed: {DATE}, {_allowed_columns()}"
             )
     if DATE not in names or len(names) < 2:
-        raise InputError(f"{where}: needed: the column {DATE}, and one or more of {_allowed()}")
+        raise InputError(
+            f"{where}: needed: the column {DATE}, and one or more of {_allowed_columns()}"
+        )
 
 
-def _allowed() -> str:
+def _allowed_columns() -> str:
     return ", ".join(COLUMNS)

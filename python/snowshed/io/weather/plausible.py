@@ -29,7 +29,7 @@ MAX_MEDIAN_WET_DAY, MAX_MEDIAN_WET_HOURS = 100.0, 50.0
 MAX_RAIN, EXPONENT = 491.0, 0.452
 #: Largest plausible density of new snow on cold days, kg/m3, and their limit, degrees C.
 MAX_DENSITY, COLD_DAY_LIMIT = 600.0, -2.0
-SHALLOW = 0.15  # m
+MAX_SHALLOW_DEPTH = 0.15  # m
 
 
 def with_plausible_units(station: Station, source: str) -> Station:
@@ -158,7 +158,7 @@ def _check_density(station: Station, source: str) -> None:
 def _shallow_snow_notes(station: Station) -> list[str]:
     depths = [row.snow_depth for row in station.rows if row.snow_depth]
     broken = [depth for depth in depths if abs(1000.0 * depth - round(1000.0 * depth)) > 1e-3]
-    if len(depths) < MIN_VALUES or max(depths) > SHALLOW or 2 * len(broken) < len(depths):
+    if len(depths) < MIN_VALUES or max(depths) > MAX_SHALLOW_DEPTH or 2 * len(broken) < len(depths):
         return []
     title = station.columns.get("snow_depth", WORDS["snow_depth"])
     return [

@@ -114,7 +114,7 @@ def read_icsv(name: str, lines: Sequence[str]) -> Station:
         raise InputError(
             f"{header.where('field_delimiter')}: {quoted(separator)}; allowed: one character"
         )
-    fields = _listed(header, "fields", separator)
+    fields = _header_list(header, "fields", separator)
     quantities = _by_units(header, fields, separator) or _by_factors(header, fields, separator)
     return _station("iCSV", header, lines, fields, quantities, separator)
 
@@ -146,7 +146,7 @@ def _by_units(header: _Header, fields: Sequence[str], separator: str) -> dict[in
 
     Factors besides units must be 1, or convert the units to SI.
     """
-    units = _listed(header, "units", separator)
+    units = _header_list(header, "units", separator)
     if not units:
         return {}
     if len(units) != len(fields):
@@ -269,7 +269,7 @@ def _header(name: str, lines: Sequence[str]) -> _Header:
     )
 
 
-def _listed(header: _Header, key: str, separator: str | None) -> list[str]:
+def _header_list(header: _Header, key: str, separator: str | None) -> list[str]:
     value = header.values.get(key, "")
     return [part.strip() for part in value.split(separator)] if value else []
 
@@ -281,7 +281,7 @@ def _numbers(
     key = next((candidate for candidate in (key, f"{key}s") if candidate in header.values), key)
     if key not in header.values:
         return []
-    numbers = [number_in(part) for part in _listed(header, key, separator)]
+    numbers = [number_in(part) for part in _header_list(header, key, separator)]
     if len(numbers) != len(fields) or not all(abs(number) < 1e9 for number in numbers):
         raise InputError(
             f"{header.where(key)}: {quoted(header.values[key])}; needed: {len(fields)} numbers"

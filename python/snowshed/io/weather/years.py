@@ -19,7 +19,7 @@ MAX_ROW_GAP = timedelta(days=1)  # between successive rows of one series
 YEAR = timedelta(days=365)
 
 
-def arranged(
+def arrange_winters(
     rows: Sequence[Observation], latitude: Optional[float], source: str
 ) -> tuple[list[Observation], bool, list[str]]:
     """Return the rows in the order of winters, whether they are a typical year, and notes.

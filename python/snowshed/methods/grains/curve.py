@@ -41,7 +41,7 @@ COLUMNS = (
 )
 #: Columns with a second column, named `PEAK` and the name. It holds the value in the step since the
 #: row before in which the sample carried most. Curves of earlier versions lack it.
-PEAKED = (
+PEAK_COLUMNS = (
     "axial_strain",
     "shear_strain",
     "top_stress_pa",
@@ -62,9 +62,9 @@ class LoadingCurve:
     Attributes
     ----------
     columns
-        Arrays of equal length by name: `COLUMNS`, `PEAKED` of the peaks between rows, and energies
-        in joules if they were recorded. Stages count from 1; a row at the end of a
-        stage belongs to that stage. Stresses are positive in compression.
+        Arrays of equal length by name: `COLUMNS`, `PEAK_COLUMNS` of the peaks between rows, and
+        energies in joules if they were recorded. Stages count from 1; a row at the end of a stage
+        belongs to that stage. Stresses are positive in compression.
     """
 
     columns: Mapping[str, Floats]
@@ -98,7 +98,7 @@ class LoadingCurve:
         own = np.flatnonzero(self["stage"] == stage)
         rows = np.arange(max(own[0] - 1, 0), own[-1] + 1) if own.size else own
         columns = {name: values[rows] for name, values in self.columns.items()}
-        for name in PEAKED:
+        for name in PEAK_COLUMNS:
             if own.size and own[0] > 0 and PEAK + name in columns:
                 columns[PEAK + name][0] = columns[name][0]  # from the stage before
         return LoadingCurve(columns)
@@ -116,7 +116,7 @@ class LoadingCurve:
         >>> curve.peaks["top_stress_pa"].tolist()
         [0.0, 5.0]
         """
-        peaks = {name: self.columns.get(PEAK + name, self.columns[name]) for name in PEAKED}
+        peaks = {name: self.columns.get(PEAK + name, self.columns[name]) for name in PEAK_COLUMNS}
         return LoadingCurve({**self.columns, **peaks})
 
     @classmethod

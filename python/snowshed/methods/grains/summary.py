@@ -22,7 +22,7 @@ from snowshed.methods.summary import Summary
 #: Number of grains below which a sample hardly represents its snow.
 FEW_GRAINS = 1000
 #: Largest mean difference of the stresses on the plates in a quasi-static test, over their mean.
-UNBALANCED = 0.2
+MAX_IMBALANCE = 0.2
 #: density_scaling times speed squared, m2/s2, up to which inertia did not raise stresses in tests.
 INERTIA = 0.004
 
@@ -211,7 +211,7 @@ def _notes(
     if kind in ("compress", "stretch"):
         top, bottom = first["top_stress_pa"], first["bottom_stress_pa"]
         apart, mean = np.abs(top - bottom).mean(), 0.5 * np.abs(top + bottom).mean()
-        if mean > 0 and apart > UNBALANCED * mean:
+        if mean > 0 and apart > MAX_IMBALANCE * mean:
             notes.append(
                 f"the stresses on the two plates differ by {100 * apart / mean:.0f} % of their "
                 "mean: the test is not quasi-static; load more slowly, or reduce density_scaling"

@@ -38,7 +38,7 @@ MEANINGS = {
     "speed": ("m/s", "Speed of the snow at the end"),
 }
 Singles = NDArray[np.float32]
-PACKED = "peaks.npz"  # in the results folder of a compact run
+PEAKS_FILE = "peaks.npz"  # in the results folder of a compact run
 
 
 @dataclass(frozen=True)

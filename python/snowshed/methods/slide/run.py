@@ -30,7 +30,7 @@ from snowshed.io.atomic import replacing
 from snowshed.io.film import FILM, Film
 from snowshed.io.raster.output import write_raster
 from snowshed.methods.slide.frames import Frame, slide_frames
-from snowshed.methods.slide.maps import PACKED, RASTERS, PeakMaps, SlideMaps, slide_maps
+from snowshed.methods.slide.maps import PEAKS_FILE, RASTERS, PeakMaps, SlideMaps, slide_maps
 from snowshed.methods.slide.summary import SlideSummary
 from snowshed.methods.slide.validity import (
     ReleaseArea,
@@ -92,7 +92,7 @@ class SlideRun(MethodRun):
     def stored_data(cls, folder: Path) -> Iterable[tuple[int, bytes]]:
         """Yield the peak maps."""
         if (folder / SlideSummary.FILE).is_file():
-            yield 1, (folder / PACKED).read_bytes()
+            yield 1, (folder / PEAKS_FILE).read_bytes()
 
 
 def _frames(folder: Path, maps: SlideMaps) -> list[Frame]:
@@ -151,7 +151,7 @@ def _border_notes(left: float, maps: SlideMaps) -> tuple[str, ...]:
 
 def _write_packed(folder: Path, maps: SlideMaps) -> None:
     peaks = PeakMaps.cropped(maps.peak_thickness, maps.peak_speed, maps.peak_pressure)
-    with replacing(folder / PACKED) as beside:
+    with replacing(folder / PEAKS_FILE) as beside:
         beside.write_bytes(peaks.packed())
 
 

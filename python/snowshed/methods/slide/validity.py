@@ -98,7 +98,7 @@ def release_areas(
     inclination = _inclination(ground)
     if thickness is not None:
         areas = [{**area, "thickness": _mean_thickness(thickness, area)} for area in areas]
-    return [_described(ground, inclination, area) for area in areas]
+    return [_release_area(ground, inclination, area) for area in areas]
 
 
 def validity_notes(
@@ -169,7 +169,7 @@ def _mean_thickness(thickness: Raster, area: Mapping[str, Any]) -> float:
     return float(np.nan_to_num(thickness.heights[_within(thickness, area)]).mean())
 
 
-def _described(ground: Raster, inclination: Floats, area: Mapping[str, Any]) -> ReleaseArea:
+def _release_area(ground: Raster, inclination: Floats, area: Mapping[str, Any]) -> ReleaseArea:
     outline = np.asarray(area["outline"], dtype=float)
     inside = _within(ground, area)
     slopes, heights = inclination[inside], ground.heights[inside]
@@ -192,7 +192,7 @@ def _described(ground: Raster, inclination: Floats, area: Mapping[str, Any]) -> 
 
 
 def _within(ground: Raster, area: Mapping[str, Any]) -> Booleans:
-    """Return the nodes inside an area; for an area smaller than a cell, the node next to it."""
+    """Return the nodes inside an area, or the nearest node if the area is smaller than a cell."""
     outline = np.asarray(area["outline"], dtype=float)
     inside = _inside(ground, outline)
     for hole in area.get("holes") or ():

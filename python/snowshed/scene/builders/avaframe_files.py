@@ -20,7 +20,7 @@ from snowshed.base.notes import issue_note
 from snowshed.io.atomic import replacing
 
 #: Endings of a project's files: rasters, polygons and lines, settings, tables.
-KNOWN = (
+SUPPORTED_SUFFIXES = (
     *(".asc", ".tif", ".tiff", ".tfw", ".prj", ".xml"),
     *(".shp", ".shx", ".dbf", ".cpg", ".qpj", ".qix", ".sbn", ".sbx", ".gpkg", ".geojson"),
     *(".ini", ".csv"),
@@ -67,8 +67,10 @@ def project_inputs(root: Path) -> list[InputFile]:
             f"{inputs}: {size / GB:.3g} GB of files; at most {MAX_PROJECT_BYTES // GB} GB are "
             "copied to the results"
         )
-    supported = [each for each in files if each.file.suffix.lower() in KNOWN]
-    others = [str(each.place) for each in files if each.file.suffix.lower() not in KNOWN]
+    supported = [each for each in files if each.file.suffix.lower() in SUPPORTED_SUFFIXES]
+    others = [
+        str(each.place) for each in files if each.file.suffix.lower() not in SUPPORTED_SUFFIXES
+    ]
     if others:
         more = f" and {len(others) - 5} others" if len(others) > 5 else ""
         issue_note(f"{inputs}: not copied to the results: {', '.join(others[:5])}{more}")

@@ -17,7 +17,7 @@ from snowshed.base.limits import MAX_INI_BYTES, MAX_SAVED_TIMES
 from snowshed.base.messages import printable, quoted, shortened, suggestion
 from snowshed.io.input_file import read_input
 from snowshed.scene.builders.avaframe_keys import (
-    FIXED,
+    FIXED_VALUES,
     FRICTION,
     OTHER_FRICTION,
     OWN_KEYS,
@@ -216,10 +216,11 @@ class _Keys:
 
     def refuse_the_rest(self) -> None:
         for key, text in self._found.items():
-            if key in FIXED:
-                if not _is_same(text, FIXED[key]):
+            if key in FIXED_VALUES:
+                if not _is_same(text, FIXED_VALUES[key]):
                     raise InputError(
-                        f"{self.where(key)}: {quoted(text)} is not available; allowed: {FIXED[key]}"
+                        f"{self.where(key)}: {quoted(text)} is not available; allowed: "
+                        f"{FIXED_VALUES[key]}"
                     )
             elif key in VARIATIONS:
                 raise InputError(
@@ -232,7 +233,7 @@ class _Keys:
                 or key in WITHOUT_EFFECT
                 or key.endswith(OTHER_FRICTION)
             ):
-                near = suggestion(key, [*SETTINGS, *OWN_KEYS, *FIXED])
+                near = suggestion(key, [*SETTINGS, *OWN_KEYS, *FIXED_VALUES])
                 raise InputError(f"{self.where(key)}: unknown key{near}")
 
 

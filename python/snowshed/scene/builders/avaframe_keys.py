@@ -29,7 +29,7 @@ FRICTION: Mapping[str, tuple[str, float]] = {
     "coulomb": ("mucoulomb", 0.155),
 }
 #: Keys that may only have the one value that is supported here.
-FIXED: Mapping[str, str] = {
+FIXED_VALUES: Mapping[str, str] = {
     "adaptsfcdetrainment": "0",
     "adaptsfcentrainment": "0",
     "adaptsfcstopped": "0",

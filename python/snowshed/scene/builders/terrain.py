@@ -101,7 +101,7 @@ def on_terrain(
     ('grid', None)
     """
     check_positive(spacing=spacing)
-    terrain = _checked(raster, band, max_slope)
+    terrain = _checked_terrain(raster, band, max_slope)
     flat = scene.dimension == 2
     xs, ys = _axis("x", x, spacing), np.zeros(1) if flat else _axis("y", y, spacing)
     edge_x = panel_edge(scene.to_data()).x if scene.panel is not None else 0.0
@@ -120,7 +120,9 @@ def on_terrain(
     )
 
 
-def _checked(raster: Union[Raster, PathLike], band: Optional[int], max_slope: float) -> Raster:
+def _checked_terrain(
+    raster: Union[Raster, PathLike], band: Optional[int], max_slope: float
+) -> Raster:
     if not isinstance(raster, Raster):
         return read_terrain(raster, band, max_slope)
     check_terrain(raster, max_slope)

@@ -35,7 +35,7 @@ class Origins:
                 self.note(f"{path}/{i}", inner, script_line)
 
     def of(self, path: str) -> Optional[ScriptLine]:
-        """Return the line that set the value at `path`, or an object around it, or a part of it."""
+        """Return the line that set the value at `path`, an object around it, or a part of it."""
         around = path
         while around:
             if around in self._lines:

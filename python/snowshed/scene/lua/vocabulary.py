@@ -161,7 +161,7 @@ def _positive(value: Any) -> bool:
 
 
 def _levelset(builder: Builder, script_line: ScriptLine, value: Any) -> None:
-    """Add an obstacle, or change the one of the same name."""
+    """Add an obstacle, or change the obstacle of the same name."""
     values = _table("levelset", value)
     builder.append_or_change(
         "obstacles", _name("levelset: name", values.get("name", "")), values, script_line
@@ -169,7 +169,7 @@ def _levelset(builder: Builder, script_line: ScriptLine, value: Any) -> None:
 
 
 def _body(builder: Builder, script_line: ScriptLine, value: Any) -> None:
-    """Add a body of snow, or change the one of the same name, which only scripts know."""
+    """Add a body of snow, or change the body of the same name; the name exists only in scripts."""
     values = dict(_table("body", value))
     name = _name("body: name", values.pop("name", ""))
     builder.append_or_change("bodies", name, values, script_line)

@@ -17,7 +17,7 @@ MAX_STEP = 3600.0  # s
 MAX_STRAIN = 0.01  # in one step
 
 # Density at which snow turns into firn and settling stops; none of the laws is made for firn.
-DENSEST = 0.6 * ICE_DENSITY
+MAX_SETTLED_DENSITY = 0.6 * ICE_DENSITY
 
 #: Strain rate, 1/s, positive where snow compacts, of layers with given densities, kg/m3, stress
 #: from the snow above, Pa, and temperature, degrees C.
@@ -75,7 +75,8 @@ def settled_densities(
     law
         Law of settling.
     densities
-        Densities of the layers, kg/m3, of any shape; layers above `DENSEST` do not settle.
+        Densities of the layers, kg/m3, of any shape; layers above `MAX_SETTLED_DENSITY` do not
+        settle.
     stresses
         Stress from the snow above, Pa, of the same shape.
     seconds
@@ -97,6 +98,6 @@ def settled_densities(
         rate = law(densities, stresses, temperature)
         step = min(left, MAX_STEP, MAX_STRAIN / max(float(rate.max()), 1e-12))
         settled = densities * np.exp(rate * step)
-        densities = np.maximum(densities, np.minimum(settled, DENSEST))
+        densities = np.maximum(densities, np.minimum(settled, MAX_SETTLED_DENSITY))
         left -= step
     return densities

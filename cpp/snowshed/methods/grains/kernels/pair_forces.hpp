@@ -44,17 +44,17 @@ SNOWSHED_INLINE void store_mask(std::uint8_t* flags, const QuadMask& mask) {
 struct PairedBodies {
   const BodyFrame &a, &b;
   // Offset (m) and velocity (m/s) of the second centre, at its periodic image, from the first.
-  double apart[3], parting[3];
+  double centre_offset[3], relative_velocity[3];
 
   SNOWSHED_INLINE PairedBodies(const View& s, const PairGroup& g)
       : a(s.bodies[g.first]), b(s.bodies[g.second]) {
     for (int i = 0; i < 3; ++i) {
-      apart[i] = b.position[i] - a.position[i];
-      parting[i] = b.velocity[i] - a.velocity[i];
+      centre_offset[i] = b.position[i] - a.position[i];
+      relative_velocity[i] = b.velocity[i] - a.velocity[i];
     }
     for (int i = 0; i < 2; ++i) {
-      apart[i] += g.shift[i] * s.period[i];
-      parting[i] += g.shift[i] * s.period_growth[i];
+      centre_offset[i] += g.shift[i] * s.period[i];
+      relative_velocity[i] += g.shift[i] * s.period_growth[i];
     }
   }
 };
@@ -64,7 +64,8 @@ SNOWSHED_INLINE void group_forces(const View& s, std::size_t group) {
   const PairedBodies pair(s, g);
   const BondLaw law{s.normal_stiffness, s.shear_stiffness, s.tension_limit, s.shear_limit,
                     s.friction};
-  const QuadVec apart = broadcast_vec(pair.apart), parting = broadcast_vec(pair.parting);
+  const QuadVec centre_offset = broadcast_vec(pair.centre_offset),
+                relative_velocity = broadcast_vec(pair.relative_velocity);
   const QuadVec spin_a = broadcast_vec(pair.a.spin), spin_b = broadcast_vec(pair.b.spin);
   const Quad dt = broadcast<Quad>(s.time_step);
   QuadVec force{}, torque_a{}, torque_b{};
@@ -73,8 +74,8 @@ SNOWSHED_INLINE void group_forces(const View& s, std::size_t group) {
   for (std::size_t p = g.begin; p < g.end; p += pairs_at_once) {
     const QuadVec from_a = rotated(pair.a.rotation, load_vec(s.ax, s.ay, s.az, p));
     const QuadVec from_b = rotated(pair.b.rotation, load_vec(s.bx, s.by, s.bz, p));
-    const QuadVec apart_now = apart + from_b - from_a;
-    const Quad square = dot(apart_now, apart_now);
+    const QuadVec offset = centre_offset + from_b - from_a;
+    const Quad square = dot(offset, offset);
     QuadMask bonded = load_mask(s.bonded + p);
     const QuadMask near = square < s.diameter * s.diameter;
     QuadVec u = load_vec(s.ux, s.uy, s.uz, p);
@@ -82,10 +83,10 @@ SNOWSHED_INLINE void group_forces(const View& s, std::size_t group) {
     if (!any(QuadMask(near | bonded | sheared))) continue;
 
     const Quad distance = sqrt(max(square, broadcast<Quad>(1e-60)));
-    const QuadVec normal = Quad(1.0 / distance) * apart_now;
+    const QuadVec normal = Quad(1.0 / distance) * offset;
     const QuadVec arm_a = from_a + Quad(0.5 * distance) * normal;
-    const QuadVec arm_b = arm_a - apart;
-    const QuadVec velocity = parting + cross(spin_b, arm_b) - cross(spin_a, arm_a);
+    const QuadVec arm_b = arm_a - centre_offset;
+    const QuadVec velocity = relative_velocity + cross(spin_b, arm_b) - cross(spin_a, arm_a);
     const Quad along = dot(velocity, normal);
     const ContactMotion<Quad> motion{Quad(distance - s.diameter), Quad(dt * along), normal,
                                      dt * (velocity - along * normal),

@@ -45,8 +45,8 @@ struct BSpline<Basis::cubic> {
   }
 };
 
-/// Finds the weights r of the steps from each node's value to the next from the weights w of the
-/// values, by summation by parts: sum_k w_k n_k = (sum_k w_k) n_1 + sum_k r_k (n_{k+1} - n_k).
+/// Finds the weights r of the steps between the values of consecutive nodes, given the weights w of
+/// the values, by summation by parts: sum_k w_k n_k = (sum_k w_k) n_1 + sum_k r_k (n_{k+1} - n_k).
 template <class V, int S>
 SNOWSHED_INLINE void weights_of_steps(const V (&w)[S], V (&r)[S - 1]) {
   r[0] = -w[0];

@@ -16,7 +16,7 @@ struct NodeKernels {
 
   static void gather(const T* const* tiles, T* sums) {
     std::memset(sums, 0, block_nodes<D> * node_values * sizeof(T));
-    // Seen from the particle block this block is the neighbour on the opposite side.
+    // Seen from the particle block, this block is the neighbour on the opposite side.
     const auto tile_of = [&](int neighbour) { return tiles[neighbour_count<D> - 1 - neighbour]; };
     const auto add = [&](int neighbour, int node, int tile_node, auto length) {
       T* out = sums + node * node_values;
@@ -264,12 +264,12 @@ struct NodeKernels {
     }
     const T drained =
         c.normal_impulse * drained_share(step, c, sliding_speed(c, normal_speed, free));
-    const T left = c.normal_impulse - drained;
-    const T least = c.acts ? min_push(c, left) : T(0);
+    const T remaining_impulse = c.normal_impulse - drained;
+    const T min_impulse = c.acts ? min_push(c, remaining_impulse) : T(0);
     T push = c.acts ? -mass * normal_speed : T(0);
-    const bool lets_go = !c.acts || push < least;
-    if (lets_go) push = least;
-    c.next_normal_impulse = left + push;
+    const bool lets_go = !c.acts || push < min_impulse;
+    if (lets_go) push = min_impulse;
+    c.next_normal_impulse = remaining_impulse + push;
 
     T slip[D], slip_squared = 0;
     const T along = normal_speed + push / mass;  // normal speed that remains
@@ -280,18 +280,18 @@ struct NodeKernels {
     }
     const T slip_impulse = mass * std::sqrt(slip_squared);
     const T friction =
-        T(law.friction) * step.pushing[c.obstacle] * (drained > T(0) ? drained : T(0));
-    const T lost = slip_impulse > friction ? friction / slip_impulse : T(1);
-    for (int d = 0; d < D; ++d) node[d] = after[d] = pushed[d] - lost * slip[d];
+        T(law.friction) * step.friction_shares[c.obstacle] * (drained > T(0) ? drained : T(0));
+    const T slip_share = slip_impulse > friction ? friction / slip_impulse : T(1);
+    for (int d = 0; d < D; ++d) node[d] = after[d] = pushed[d] - slip_share * slip[d];
     if constexpr (energy) {
       const NormalSplit split_before(before, c.normal), split_free(free, c.normal),
           split_after(after, c.normal);
       stats.impact +=
           energy_loss(!lets_go, mass, split_before.normal, split_free.normal, split_after.normal);
       if (!lets_go) stats.stress_work += work(step, sum, split_before.normal, split_after.normal);
-      if (lost == T(1))
+      if (slip_share == T(1))
         stats.stress_work += work(step, sum, split_before.tangential, split_after.tangential);
-      stats.friction += energy_loss(lost == T(1), mass, split_before.tangential,
+      stats.friction += energy_loss(slip_share == T(1), mass, split_before.tangential,
                                     split_free.tangential, split_after.tangential);
     }
   }

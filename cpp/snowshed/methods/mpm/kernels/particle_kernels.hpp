@@ -33,7 +33,7 @@ struct ParticleKernels {
   /// One chunk's state in registers.
   struct State {
     V cell[D], velocity[D], plastic, mass;
-    typename Rule::Carried carried;
+    typename Rule::CarriedValues carried;
     Tensor be_minus_identity;
   };
 
@@ -98,7 +98,7 @@ struct ParticleKernels {
   /// All values that a chunk takes from the grid.
   struct Motion {
     V pic[D], gradient[D][D];  // gradient[i][j] = dt d v_i / d x_j
-    typename Rule::Taken taken;
+    typename Rule::TakenValues taken;
   };
 
   SNOWSHED_INLINE void interpolate(const Stencil<T, D, basis>& stencil, const T* tile, int n,
@@ -186,8 +186,8 @@ struct ParticleKernels {
   }
 
   struct Stress {
-    Tensor tau;        // Kirchhoff's
-    V strain_squared;  // |e|^2 of the Hencky strain that goes with it
+    Tensor tau;        // Kirchhoff stress
+    V strain_squared;  // |e|^2 of the Hencky strain at this stress
   };
 
   /// Returns the stress of the present elastic strain. With plastic laws the strain is first

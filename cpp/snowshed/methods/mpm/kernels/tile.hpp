@@ -10,8 +10,8 @@
 
 SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
 
-/// The nodes [begin, end) along one direction that the tile covers of the block at `offset` (-1, 0,
-/// 1). Node n of the block is node n + shift of the tile.
+/// The nodes [begin, end) of the block at `offset` (-1, 0, 1) that the tile covers along one
+/// direction. Node n of the block is node n + shift of the tile.
 template <int D, Basis basis>
 struct Overlap {
   int begin, end, shift;

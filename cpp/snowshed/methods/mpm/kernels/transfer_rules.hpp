@@ -80,7 +80,7 @@ struct FlipRule {
   };
 
   /// Particles carry nothing beside their velocity.
-  struct Carried {
+  struct CarriedValues {
     SNOWSHED_INLINE void read(const ParticleView<T>&, int, int) {}
     SNOWSHED_INLINE void write(const ParticleView<T>&, int, int) const {}
     /// Returns the square of the velocity (m2/s2) that has the kinetic energy of the carried
@@ -91,14 +91,15 @@ struct FlipRule {
   };
 
   /// Values that particles take from the sums, beside the velocity and its gradient.
-  struct Taken {
+  struct TakenValues {
     V change[D];
     SNOWSHED_INLINE void read(const V* value, const V*, T) {
       SNOWSHED_UNROLL
       for (int i = 0; i < D; ++i) change[i] = value[half_node + i];
     }
     /// (1.2.26)
-    SNOWSHED_INLINE void move(V (&velocity)[D], Carried&, const V (&pic)[D], T flip_ratio) const {
+    SNOWSHED_INLINE void move(V (&velocity)[D], CarriedValues&, const V (&pic)[D],
+                              T flip_ratio) const {
       SNOWSHED_UNROLL
       for (int d = 0; d < D; ++d)
         velocity[d] = pic[d] + flip_ratio * (velocity[d] + change[d] - pic[d]);
@@ -179,14 +180,14 @@ struct ApicRule {
         }
       }
     }
-    /// Returns the moment for the first half, momentum, and the derivative for the second half,
-    /// force.
+    /// Returns a node with the moment in the first half, for the momentum, and the derivative in
+    /// the second half, for the force.
     SNOWSHED_INLINE Node<T> derived(int d, int k, int lane) const {
       return Node<T>::of_halves(moment(d, k, lane), slope(d, k, lane));
     }
   };
 
-  struct Carried {
+  struct CarriedValues {
     V affine[D * D];  // C, row by row, 1/s
 
     SNOWSHED_INLINE void read(const ParticleView<T>& p, int at, int n) {
@@ -212,7 +213,7 @@ struct ApicRule {
     }
   };
 
-  struct Taken {
+  struct TakenValues {
     V affine[D * D];
     SNOWSHED_INLINE void read(const V*, const V* along, T dx) {
       SNOWSHED_UNROLL
@@ -222,7 +223,8 @@ struct ApicRule {
           affine[i * D + j] = along[node_values * j + half_node + i] * (inverse_inertia / dx);
       }
     }
-    SNOWSHED_INLINE void move(V (&velocity)[D], Carried& carried, const V (&pic)[D], T) const {
+    SNOWSHED_INLINE void move(V (&velocity)[D], CarriedValues& carried, const V (&pic)[D],
+                              T) const {
       SNOWSHED_UNROLL
       for (int d = 0; d < D; ++d) velocity[d] = pic[d];
       SNOWSHED_UNROLL
@@ -240,7 +242,7 @@ struct AffineFlipRule : ApicRule<T, D, basis> {
   using V = SimdPack<T>;
   using Apic = ApicRule<T, D, basis>;
   using Flip = FlipRule<T, D, basis>;
-  using Carried = typename Apic::Carried;
+  using CarriedValues = typename Apic::CarriedValues;
   static constexpr bool averages = true;
   static constexpr Halves taken = Flip::taken;
 
@@ -257,16 +259,16 @@ struct AffineFlipRule : ApicRule<T, D, basis> {
     }
   };
 
-  struct Taken {
-    typename Flip::Taken change;
-    typename Apic::Taken affine;
+  struct TakenValues {
+    typename Flip::TakenValues change;
+    typename Apic::TakenValues affine;
     SNOWSHED_INLINE void read(const V* value, const V* along, T dx) {
       change.read(value, along, dx);
       affine.read(value, along, dx);
     }
-    SNOWSHED_INLINE void move(V (&velocity)[D], Carried& carried, const V (&pic)[D],
+    SNOWSHED_INLINE void move(V (&velocity)[D], CarriedValues& carried, const V (&pic)[D],
                               T flip_ratio) const {
-      typename Flip::Carried nothing;
+      typename Flip::CarriedValues nothing;
       change.move(velocity, nothing, pic, flip_ratio);
       SNOWSHED_UNROLL
       for (int k = 0; k < D * D; ++k) carried.affine[k] = affine.affine[k];

@@ -25,11 +25,11 @@ struct Rows {
     for (std::ptrdiff_t i = begin; i < end; ++i)
       sum_row_moments<D>(rows, offset, weight, slope, moments[i], std::size_t(i));
   }
-  static void even_weights(const PairRows& rows, const float* const* offset, const float* weight,
-                           const float* spread, float* even, std::ptrdiff_t begin,
-                           std::ptrdiff_t end) {
+  static void isotropic_weights(const PairRows& rows, const float* const* offset,
+                                const float* weight, const float* correction, float* corrected,
+                                std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t i = begin; i < end; ++i)
-      find_even_weights<D>(rows, offset, weight, spread, even, std::size_t(i));
+      find_isotropic_weights<D>(rows, offset, weight, correction, corrected, std::size_t(i));
   }
   static void apply(const PairRows& rows, const float* weight, const double* diagonal,
                     const double* p, double* q, std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -78,7 +78,7 @@ struct Rows {
   }
 
   static constexpr Kernels<D> table{
-      &search,          &weigh,          &sum_moments,         &even_weights,
+      &search,          &weigh,          &sum_moments,         &isotropic_weights,
       &apply,           &residual,       &apply_to_velocities, &sum_gradients,
       &sum_separations, &sum_approaches, &pair_rates};
 };

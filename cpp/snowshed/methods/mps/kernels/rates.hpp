@@ -5,7 +5,7 @@
 
 SNOWSHED_METHOD_VARIANT_BEGIN(mps)
 
-/// Separations of some pairs, and the change of velocity along them.
+/// Separations of some pairs, and the change of velocity from the particle to its neighbours.
 template <int D>
 struct PairMotion {
   using V = SimdPack<double>;

@@ -6,7 +6,7 @@
 
 SNOWSHED_METHOD_VARIANT_BEGIN(mps)
 
-/// Bits of the lanes of a mask of doubles, the first lane lowest.
+/// Returns a bit for each lane of a mask of doubles; the first lane has the lowest bit.
 SNOWSHED_INLINE unsigned lane_bits(const SimdMask<double>& mask) {
 #if defined(__AVX512DQ__)
   return _mm512_movepi64_mask((__m512i)mask);

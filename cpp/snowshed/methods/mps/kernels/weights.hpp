@@ -66,9 +66,9 @@ SNOWSHED_INLINE void sum_row_moments(const PairRows& rows, const float* const* o
 }
 
 template <int D>
-SNOWSHED_INLINE void find_even_weights(const PairRows& rows, const float* const* offset,
-                                       const float* weight, const float* spread, float* even,
-                                       std::size_t row) {
+SNOWSHED_INLINE void find_isotropic_weights(const PairRows& rows, const float* const* offset,
+                                            const float* weight, const float* correction,
+                                            float* corrected, std::size_t row) {
   using V = SimdPack<float>;
   constexpr int half = RowMoments<D>::half;
   for_each_pack<V>(rows, row, [&](const RowPack<V>& pack) SNOWSHED_INLINE_LAMBDA {
@@ -83,11 +83,12 @@ SNOWSHED_INLINE void find_even_weights(const PairRows& rows, const float* const*
     SNOWSHED_UNROLL
     for (int a = 0; a < D; ++a) SNOWSHED_UNROLL
     for (int b = a; b < D; ++b, ++k) {
-      const V both = gather<V>(spread + k, at) + spread[row * half + std::size_t(k)];
+      const V both = gather<V>(correction + k, at) + correction[row * half + std::size_t(k)];
       sum += (a == b ? 0.5f : 1.0f) * both * r[a] * r[b];
     }
     const V ratio = sum / max(square, broadcast<V>(1e-30f));
-    pack.store(even, V(pack.load(weight) * clamp(ratio, broadcast<V>(0.5f), broadcast<V>(2.0f))));
+    pack.store(corrected,
+               V(pack.load(weight) * clamp(ratio, broadcast<V>(0.5f), broadcast<V>(2.0f))));
   });
 }
 

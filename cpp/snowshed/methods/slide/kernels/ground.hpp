@@ -15,7 +15,8 @@ SNOWSHED_INLINE PackVec mixed(const View& s, const PackVec& u, const PackVec& ar
   return Pack(1.0 / (1.0 + f)) * (u + f * v);
 }
 
-/// Velocities mixed with those of the snow around, and the places that they lead to without forces.
+/// Velocities mixed with those of the snow around, and the places to which they lead without
+/// forces.
 struct PackAhead {
   PackVec velocity, place;
   PackReprojection on_ground;

@@ -6,9 +6,9 @@
 // binomial weights (1 4 6 4 1)/16 along both axes: nearly a Gaussian as wide as a cell, which has
 // no direction. This speed fades where the mean mass m around falls below a share m_0 of a
 // particle's mass: with the mean momentum q it is |q| m / (m^2 + m_0^2). A node beside the snow has
-// such a fading speed, too. When only nodes with snow had one, the choice of nodes at the rim
-// depended on the direction of the grid: a turned slide changed its peak speeds by up to 1.2 (L1)
-// and 1.8 (L2) times the error of interpolation, more than the verification case allows.
+// such a fading speed, too. When only nodes with snow had such a speed, the choice of nodes at the
+// rim depended on the direction of the grid: a turned slide changed its peak speeds by up to 1.2
+// (L1) and 1.8 (L2) times the error of interpolation, more than the verification case allows.
 #pragma once
 
 #include "snowshed/methods/slide/kernels/node_sums.hpp"

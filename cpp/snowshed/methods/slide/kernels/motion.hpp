@@ -61,7 +61,7 @@ SNOWSHED_INLINE PackVec along_ground(const PackVec& u, const PackVec& normal, do
   return Pack(length_from(dot(u, u)) / (speed + added_speed)) * tangential;
 }
 
-/// A velocity after all forces, and the place that it leads to.
+/// A velocity after all forces, and the place to which it leads.
 struct PackMotion {
   PackVec velocity;
   PackVec to;

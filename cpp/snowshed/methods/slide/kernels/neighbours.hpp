@@ -51,14 +51,14 @@ SNOWSHED_INLINE V within(const V& values, std::uint32_t e, std::uint32_t end) {
   return select(lane_numbers<V>() < double(end - e), values, V{});
 }
 
-/// weight (R - r)^2 / r from the square of the distance r, and 0 from the radius R on: the gradient
-/// of the kernel over the distance, without its constant.
+/// Returns weight (R - r)^2 / r from the square of the distance r; 0 if r is not less than the
+/// radius R. Without its constant, this is the gradient of the kernel, divided by r.
 template <class V>
 SNOWSHED_INLINE V spiky_gradient(const V& weight, const V& square, double radius) {
-  const double least = 1e-3 * radius, most = radius * radius;
-  const V s = max(square, broadcast<V>(least * least));
-  const V gradient = (most + s) * inverse_sqrt(s) - 2 * radius;
-  return select(s < most, V(weight * gradient), V{});
+  const double min_distance = 1e-3 * radius, max_square = radius * radius;
+  const V s = max(square, broadcast<V>(min_distance * min_distance));
+  const V gradient = (max_square + s) * inverse_sqrt(s) - 2 * radius;
+  return select(s < max_square, V(weight * gradient), V{});
 }
 SNOWSHED_INLINE double spiky_constant(double radius) {
   return -30 / (pi * radius * radius * radius * radius * radius);

@@ -32,7 +32,7 @@ SNOWSHED_INLINE void add_to_nodes(const View& s, std::uint32_t begin, std::uint3
   }
 }
 
-/// Raises the peak speed at a node of the terrain to the root of a square.
+/// Raises the peak speed at a node of the terrain to a speed, given by its square.
 SNOWSHED_INLINE void raise_speed(const View& s, std::ptrdiff_t node, double square) {
   if (square > s.peak_speed[node] * s.peak_speed[node]) s.peak_speed[node] = std::sqrt(square);
 }
@@ -61,8 +61,8 @@ SNOWSHED_INLINE void finish_nodes(const View& s, int row) {
   }
 }
 
-/// Adds the sums of a row of cells to the rows of nodes south and north of it. Every other row
-/// comes first, and begins the sums of all nodes; the rows between add to them and finish them.
+/// Adds the sums of a row of cells to the rows of nodes south and north of it. All even rows come
+/// first, and begin the sums of all nodes. The odd rows add to the sums and finish them.
 SNOWSHED_INLINE void sum_on_nodes(const View& s, int row) {
   const bool begins = row % 2 == 0, has_north = row + 1 < s.cell_rows;
   double* south = s.nodes + 4 * std::ptrdiff_t(row) * s.flow_columns;

@@ -37,7 +37,7 @@ SNOWSHED_INLINE void count_neighbours_of(const View& s, std::uint32_t first,
       sum[k] += mass * inside * inside * inside;
     }
   });
-  // Constant of the kernel, over a disc's area.
+  // Constant of the kernel, which is normalised over a disc.
   const double constant = 10 / (s.cell * s.cell * s.cell);
   const Quad sums = constant * sums_of(sum[0], sum[1], V{}, V{});
   for (int k = 0; k < count; ++k)

@@ -83,7 +83,7 @@ TYPED_TEST(BSplineWeights, OfStepsMakeTheSameSums) {
     }
     EXPECT_NEAR(by_steps, sum, 16 * this->epsilon);
     EXPECT_NEAR(gradient_by_steps, gradient, 32 * this->epsilon);
-    EXPECT_NEAR(total, 1.0, 4 * this->epsilon);  // the gradient of equal steps of one is one
+    EXPECT_NEAR(total, 1.0, 4 * this->epsilon);  // values that grow by one per node
   }
 }
 

@@ -17,20 +17,24 @@ from snowshed.study.store import Store
 CONFINED, ISOTROPIC, COMPACTION, TENSION, SHEAR = (
     "confined", "isotropic", "compaction", "tension", "shear"
 )  # fmt: skip
-FROZEN: Mapping[str, Any] = {"numerics.bonded_plates": True}
+BONDED_PLATES: Mapping[str, Any] = {"numerics.bonded_plates": True}
 #: Settings of each test. Tests of strength are slow; otherwise the plate's impact on soft snow
 #: would be as large as the strength. The snow is frozen to the plates; otherwise only the few
 #: spheres that touch them would yield.
-SLOW: Mapping[str, Any] = {"loading.0.speed": 1e-3, "loading.0.strain": 0.01, **FROZEN}
-LOADINGS: Mapping[str, Mapping[str, Any]] = {
-    CONFINED: {"loading.0.kind": "compress", **SLOW},
-    ISOTROPIC: {"loading.0.kind": "isotropic", **SLOW},
-    COMPACTION: {"loading.0.kind": "isotropic", **FROZEN},
-    TENSION: {"loading.0.kind": "stretch", **SLOW},
+SLOW_LOADING: Mapping[str, Any] = {
+    "loading.0.speed": 1e-3,
+    "loading.0.strain": 0.01,
+    **BONDED_PLATES,
 }
-SHEARING: Mapping[str, Any] = {
+LOADINGS: Mapping[str, Mapping[str, Any]] = {
+    CONFINED: {"loading.0.kind": "compress", **SLOW_LOADING},
+    ISOTROPIC: {"loading.0.kind": "isotropic", **SLOW_LOADING},
+    COMPACTION: {"loading.0.kind": "isotropic", **BONDED_PLATES},
+    TENSION: {"loading.0.kind": "stretch", **SLOW_LOADING},
+}
+SHEAR_SETTINGS: Mapping[str, Any] = {
     "loading.0.kind": "shear", "loading.0.speed": 2e-3, "loading.0.strain": 0.02,
-    "numerics.sides": "periodic", **FROZEN,
+    "numerics.sides": "periodic", **BONDED_PLATES,
 }  # fmt: skip
 #: Normal stresses of the shear tests, as shares of p0.
 NORMAL_STRESSES = (0.1, 0.3)
@@ -87,7 +91,7 @@ class MaterialTests:
         """Return the shear tests, with shares of a pressure (Pa) as normal stresses."""
         stresses = {
             f"{SHEAR} under {part:g} p0": {
-                **SHEARING,
+                **SHEAR_SETTINGS,
                 "loading.0.stress": float(f"{part * pressure:.2g}"),
             }
             for part in NORMAL_STRESSES
