@@ -107,7 +107,7 @@ def test_no_answer_is_given_where_strength_all_but_vanishes():
 
 def test_without_cohesion_the_critical_state_is_on_q_equal_m_p(monkeypatch):
     loose = CONSTANTS._replace(cohesion=0.0)
-    monkeypatch.setattr(material_paths, "calibrated", lambda: (loose, STRENGTH))
+    monkeypatch.setattr(material_paths, "calibrated_snow", lambda: (loose, STRENGTH))
     p, q = material_paths.critical_state(0.8)
     assert q == pytest.approx(loose.critical_state_slope * p)
     states, _ = StrainPath(-0.16, lateral=-0.5, pressure=0.8).mapped(1e-4)
@@ -151,7 +151,7 @@ def test_another_law_would_be_noticed(monkeypatch):
     """A core with a slightly different slope exceeds the limit, even with small steps."""
     changed = CONSTANTS._replace(critical_state_slope=CONSTANTS.critical_state_slope * 1.0001)
     reference = StrainPath(-0.06, lateral=0.0).reference()
-    monkeypatch.setattr(material_paths, "calibrated", lambda: (changed, STRENGTH))
+    monkeypatch.setattr(material_paths, "calibrated_snow", lambda: (changed, STRENGTH))
     monkeypatch.setattr(StrainPath, "reference", lambda self: reference)
     settings = {"dimension": 3, "increment": 1e-5, "method": "extrapolated"}
     error = measured(material_paths.measure_oedometer(settings))["extrapolated_stress"].error

@@ -51,17 +51,17 @@ class MpmSettings(MethodSettings):
         Time in which stress beyond the yield surface relaxes, a viscosity of snow that yields; 0:
         at once, the law itself [s]. 0 <= value <= 1e+09; default 0.
     contact : {"kernel", "touch"}
-        Snow on which a node of an obstacle acts: all whose splines reach the node (kernel), or
-        only if one of its particles touches the obstacle itself (touch). Default "kernel".
+        Snow on which a node of an obstacle acts: all snow whose splines reach the node (kernel),
+        or only snow beside a particle that touches the obstacle itself (touch). Default "kernel".
     contact_radius : float
-        Radius of the particles that touch, over half the spacing of particles. 0 < value <= 1;
+        Contact radius of a particle, relative to half the spacing of particles. 0 < value <= 1;
         default 0.6.
     fields : {"one", "events"}
         Velocity fields of the grid: one for all snow, which then sticks together on contact, or
         one for the snow of each event, which then touches, slides and separates. Default "one".
     event_friction : float
-        Friction between the snow of different events, with fields of events, over that of the snow
-        itself at the critical state, M/sqrt(3). 0 <= value <= 100; default 1.
+        With fields of events: friction between the snow of different events, relative to that of
+        the snow itself at the critical state, M/sqrt(3). 0 <= value <= 100; default 1.
     basis : {"quadratic", "cubic"}
         B-spline of the grid. Default "quadratic".
     courant_factor : float
