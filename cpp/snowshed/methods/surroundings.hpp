@@ -25,7 +25,7 @@ class MethodInput {
   /// The section of a checkpoint that holds the fingerprints of these files.
   virtual const char* section() const = 0;
   virtual std::vector<FilePrint> files() const = 0;
-  /// A remark on the files, for the user before the run; empty if there is none.
+  /// A remark on the files, which the user reads before the run; empty if there is none.
   virtual std::string remark() const { return ""; }
 };
 

@@ -46,7 +46,7 @@ struct Settings {
   double stress_growth = 1e4;  // s, m of Papanastasiou
   double dilatant_rate = 100;  // 1/s, above which the dilatant branch holds
   double dilatant_exponent = 1.5;
-  int yield_iterations = 50;  // largest number, for the apparent viscosity in a step
+  int yield_iterations = 50;  // most iterations for the apparent viscosity, per step
 
   bool erosion = false;             // whether snow erodes and is deposited
   double erodible_thickness = 0;    // m, of the erodible snow on obstacles at the beginning

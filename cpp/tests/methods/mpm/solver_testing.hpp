@@ -115,9 +115,9 @@ inline void run_steps(Method& solver, int steps) {
   for (int i = 0; i < steps; ++i) solver.step();
 }
 
-/// Averages over a duration, for snow that vibrates about its static state. Calls `add` with each
-/// state and its weight in the average. The weights, 2 sin^2 of the time, filter out all modes that
-/// are several times shorter than the duration.
+/// Averages the states of vibrating snow over a duration, which gives its static state. Calls `add`
+/// with each state and its weight in the average. The weights, 2 sin^2 of the time, filter out all
+/// modes that are several times shorter than the duration.
 template <class Add>
 void average(Method& solver, double duration, const Add& add) {
   double covered = 0;

@@ -274,8 +274,8 @@ def _spread(facts: dict[str, Any], where: str) -> Spread:
         0 <= x < 1e12 for x in factors.values()
     ):
         raise InputError(
-            f"{where}.factors: must be given, and not negative, for the shares {SPREAD_SHARE}, "
-            f"{INTERVAL_SHARE}"
+            f"{where}.factors: must be given, and not negative; the required shares are "
+            f"{SPREAD_SHARE} and {INTERVAL_SHARE}"
         )
     slope = _number(facts, "slope", where)
     if slope < 0:

@@ -180,8 +180,8 @@ struct ApicRule {
         }
       }
     }
-    /// Returns a node with the moment in the first half, for the momentum, and the derivative in
-    /// the second half, for the force.
+    /// Returns a node. Its first half holds the moment, which momentum needs; its second half holds
+    /// the derivative, which force needs.
     SNOWSHED_INLINE Node<T> derived(int d, int k, int lane) const {
       return Node<T>::of_halves(moment(d, k, lane), slope(d, k, lane));
     }
