@@ -11,7 +11,7 @@ import json
 import shutil
 import sys
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Optional
 
@@ -62,21 +62,28 @@ def page(data: Path = DATA) -> str:
         "`python -m reproductions.frischholz2023.claims_page` writes this page from the results "
         "in `reproductions/frischholz2023/data`. Do not edit it by hand.",
         "## Contradicted claims, and their likely causes",
-        "\n".join(_contradiction(claim) for claim in _contradicted_claims(claims)),
+        "\n".join(
+            explanation(claim, CAUSES, "cause", "causes.py")
+            for claim in claims
+            if claim.finding.verdict == CONTRADICTED
+        ),
         "## All claims",
         markdown_table(claims_grid(claims, "the thesis")),
     ]
     return "\n\n".join(parts) + "\n"
 
 
-def _contradicted_claims(claims: Sequence[JudgedClaim]) -> list[JudgedClaim]:
-    return [claim for claim in claims if claim.finding.verdict == CONTRADICTED]
+def explanation(claim: JudgedClaim, texts: Mapping[str, str], kind: str, file: str) -> str:
+    """Return a line of a list with a claim and the text on it, a cause or a reason.
 
-
-def _contradiction(claim: JudgedClaim) -> str:
-    if claim.text not in CAUSES:
-        raise InputError(f"claims/causes.py: no cause for {claim.text!r}")
-    return f"- **{claim.text}** ({claim.source}) {CAUSES[claim.text]}"
+    Raises
+    ------
+    InputError
+        If the file has no text on the claim.
+    """
+    if claim.text not in texts:
+        raise InputError(f"claims/{file}: no {kind} for {claim.text!r}")
+    return f"- **{claim.text}** ({claim.source}) {texts[claim.text]}"
 
 
 def keep(folder: Path, data: Path = DATA, report: Path = REPORT) -> None:
@@ -95,14 +102,20 @@ def keep(folder: Path, data: Path = DATA, report: Path = REPORT) -> None:
         )
         if left:
             raise InputError(f"{folder}: {left} simulations are not computed yet")
-        ((runs, date, cpu),) = store.read(
-            "SELECT count(*), substr(max(finished), 1, 10), max(cpu) FROM run_timing"
-            f" WHERE {OF_A_STUDY}"
-        )
+        origin = origin_of_runs(store)
     write_text(data / CLAIMS_FILE, claims_csv(claims))
-    write_text(data / COMPUTED_FILE, json.dumps({"runs": runs, "date": date, "cpu": cpu}) + "\n")
+    write_text(data / COMPUTED_FILE, json.dumps(origin) + "\n")
     report.parent.mkdir(exist_ok=True)
     shutil.copyfile(folder / REPORT_FILE, report)
+
+
+def origin_of_runs(store: Store) -> dict[str, object]:
+    """Return the number of computed simulations, and the date and the processor of the last."""
+    ((runs, date, cpu),) = store.read(
+        "SELECT count(*), substr(max(finished), 1, 10), max(cpu) FROM run_timing"
+        f" WHERE {OF_A_STUDY}"
+    )
+    return {"runs": runs, "date": date, "cpu": cpu}
 
 
 @click.command()

@@ -6,9 +6,10 @@ scheme; ``python -m reproductions.frischholz2023.schemes_page`` writes it again.
 
 from __future__ import annotations
 
+import json
 import sys
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Optional, get_args
 
@@ -19,14 +20,16 @@ from reproductions.common.folder import ReproductionFolder
 from reproductions.common.hypothesis_tests import JudgedClaim
 from reproductions.common.markdown import markdown_table
 from reproductions.frischholz2023.claims.scheme_reasons import REASONS
-from reproductions.frischholz2023.claims_page import DATA, DOCS
+from reproductions.frischholz2023.claims_page import DATA, DOCS, explanation, origin_of_runs
 from snowshed._core import InputError
 from snowshed.cli.main import main as snowshed
 from snowshed.io.atomic import write_text
 from snowshed.methods.mpm.settings import Scheme
 from snowshed.plot.html_page import HtmlTable
+from snowshed.study.store import Store
 
 PAGE = DOCS / "thesis-schemes.md"
+COMPUTED_FILE = "claims-planar-computed.json"
 THESIS, OBJECTIVE = get_args(Scheme)
 #: Beginnings of the sections whose simulations depend on the scheme.
 CHAPTERS = ("2", "3", "4", "Table 4")
@@ -55,9 +58,11 @@ def page(data: Path = DATA) -> str:
         "  --stage lab --stage s-index --stage fixation --stage calibration -o planar\n"
         "```",
         f"Of {len(pairs)} claims, {len(changed)} have another verdict with `{OBJECTIVE}`:",
-        markdown_table(_counts_grid(pairs)),
+        markdown_table(_counts_grid(pairs, json.loads((data / COMPUTED_FILE).read_text("utf-8")))),
         "## Claims with another verdict",
-        "\n".join(_reason(pair[0]) for pair in changed),
+        "\n".join(
+            explanation(claim, REASONS, "reason", "scheme_reasons.py") for claim, _ in changed
+        ),
         markdown_table(_findings_grid(changed)),
         "## Claims with the same verdict",
         markdown_table(_findings_grid([pair for pair in pairs if pair not in changed])),
@@ -67,18 +72,17 @@ def page(data: Path = DATA) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def _reason(claim: JudgedClaim) -> str:
-    if claim.text not in REASONS:
-        raise InputError(f"claims/scheme_reasons.py: no reason for {claim.text!r}")
-    return f"- **{claim.text}** ({claim.source}) {REASONS[claim.text]}"
-
-
 def keep(folders: Sequence[Path], data: Path = DATA) -> None:
-    """Copy the claims from the folders of the two schemes."""
+    """Copy the claims from the folders of the two schemes, with the origin of their simulations."""
+    origins = {}
     for scheme, folder in zip((THESIS, OBJECTIVE), folders):
-        claims = read_claims(ReproductionFolder(folder).claims)
+        reproduction = ReproductionFolder(folder)
+        claims = read_claims(reproduction.claims)
         of_chapters = [claim for claim in claims if claim.source.startswith(CHAPTERS)]
         write_text(_file(data, scheme), claims_csv(of_chapters))
+        with Store.open(reproduction.runs) as store:
+            origins[scheme] = origin_of_runs(store)
+    write_text(data / COMPUTED_FILE, json.dumps(origins) + "\n")
 
 
 def _file(data: Path, scheme: str) -> Path:
@@ -87,19 +91,25 @@ def _file(data: Path, scheme: str) -> Path:
 
 def _pairs(data: Path) -> list[tuple[JudgedClaim, JudgedClaim]]:
     tables = [read_claims(_file(data, scheme)) for scheme in (THESIS, OBJECTIVE)]
-    listed = [[(claim.source, claim.text) for claim in table] for table in tables]
-    if listed[0] != listed[1]:
+    of_thesis, of_objective = ([(claim.source, claim.text) for claim in table] for table in tables)
+    if of_thesis != of_objective:
         raise InputError(f"{data}: the tables of the two schemes list different claims")
     return list(zip(*tables))
 
 
-def _counts_grid(pairs: Sequence[tuple[JudgedClaim, JudgedClaim]]) -> HtmlTable:
+def _counts_grid(
+    pairs: Sequence[tuple[JudgedClaim, JudgedClaim]], origins: Mapping[str, Mapping[str, object]]
+) -> HtmlTable:
     counts = [Counter(judged.finding.verdict for judged in claims) for claims in zip(*pairs)]
     rows = [
-        [f"`{scheme}`", *(str(count[verdict]) for verdict in VERDICTS)]
+        [
+            f"`{scheme}`",
+            *(str(count[verdict]) for verdict in VERDICTS),
+            *(str(origins[scheme][name]) for name in ("runs", "date", "cpu")),
+        ]
         for scheme, count in zip((THESIS, OBJECTIVE), counts)
     ]
-    return HtmlTable(["scheme", *VERDICTS], rows, "lrrr")
+    return HtmlTable(["scheme", *VERDICTS, "simulations", "date", "processor"], rows, "lrrrrll")
 
 
 def _findings_grid(pairs: Sequence[tuple[JudgedClaim, JudgedClaim]]) -> HtmlTable:
@@ -112,12 +122,14 @@ def _findings_grid(pairs: Sequence[tuple[JudgedClaim, JudgedClaim]]) -> HtmlTabl
 
 
 @click.command()
-@click.argument("thesis", required=False, type=click.Path(path_type=Path))
-@click.argument("objective", required=False, type=click.Path(path_type=Path))
-def main(thesis: Optional[Path], objective: Optional[Path]) -> None:
-    """Write docs/trust/thesis-schemes.md, after taking the results of two folders, if given."""
-    if thesis is not None and objective is not None:
-        keep((thesis, objective))
+@click.argument("folders", nargs=2, required=False, type=click.Path(path_type=Path))
+def main(folders: Optional[tuple[Path, Path]]) -> None:
+    """Write docs/trust/thesis-schemes.md, after taking results, if FOLDERS are given.
+
+    The first folder is for the scheme thesis, the second for objective.
+    """
+    if folders:
+        keep(folders)
     write_text(PAGE, page())
 
 

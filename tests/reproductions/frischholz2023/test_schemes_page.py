@@ -7,6 +7,8 @@ from reproductions.frischholz2023 import schemes_page
 from reproductions.frischholz2023.claims.scheme_reasons import REASONS
 
 from snowshed._core import InputError
+from snowshed.cli.main import main
+from snowshed.study.store import Store
 
 #: A claim for which the reasons have an entry.
 GROWS = next(iter(REASONS))
@@ -22,6 +24,8 @@ def folders(tmp_path):
         for number, claims in enumerate(tables):
             (tmp_path / str(number)).mkdir()
             (tmp_path / str(number) / "claims.csv").write_text(claims_csv(claims), "utf-8")
+            with Store.create(tmp_path / str(number) / "runs"):
+                pass
         return [tmp_path / str(number) for number in range(len(tables))]
 
     return write
@@ -65,3 +69,10 @@ def test_tables_of_other_claims_are_refused(folders, tmp_path):
     schemes_page.keep(made, tmp_path)
     with pytest.raises(InputError, match="list different claims"):
         schemes_page.page(tmp_path)
+
+
+def test_one_folder_is_refused(tmp_path, capsys):
+    before = schemes_page.PAGE.read_bytes()
+    assert main([str(tmp_path)], command=schemes_page.main, name="schemes_page") == 2
+    assert "FOLDERS" in capsys.readouterr().err
+    assert schemes_page.PAGE.read_bytes() == before
