@@ -48,17 +48,19 @@ class ThesisComputation:
     def __init__(self, path: Path, settings: Settings, table: Optional[Path]) -> None:
         self.folder = folder = ReproductionFolder(path)
         self.settings = settings
-        of_the_thesis = settings.scheme == "thesis"
-        if table is None and not settings.simulates_panels and of_the_thesis:
+        has_thesis_scheme = settings.scheme == "thesis"
+        if table is None and not settings.simulates_panels and has_thesis_scheme:
             table = geometry_table()
+        left_out: set[str] = set() if has_thesis_scheme else {*THESIS_SCHEME_STAGES}
+        if table is not None:
+            left_out.add("geometry")
         self.table = table
         self.study_stages = {
             name: StudyStage(
                 name, folder.runs, partial(make, settings), keep_particles=name in PARTICLE_STAGES
             )
             for name, make in MAKERS.items()
-            if (name != "geometry" or table is None)
-            and (name not in THESIS_SCHEME_STAGES or of_the_thesis)
+            if name not in left_out
         }
         self.rows = GeometryRows(folder, table, self.study_stages.get("geometry"))
         self.regression = RegressionStage(folder, settings, self.rows)

@@ -213,7 +213,7 @@ def _scene_with_size(study: Study, settings: Settings) -> Scene:
 
 def _with_choices(scene: Scene, settings: Settings) -> Scene:
     """Return the scene with the condition of the panel, and with a scheme and its damping."""
-    scene = scene.with_({"panel.condition": settings.condition})
-    if settings.scheme == "thesis":
-        return scene
-    return scene.with_({"numerics.damping_rate": None, "numerics.scheme": settings.scheme})
+    choices: dict[str, Any] = {"panel.condition": settings.condition}
+    if settings.scheme != "thesis":
+        choices.update({"numerics.damping_rate": None, "numerics.scheme": settings.scheme})
+    return scene.with_(choices)

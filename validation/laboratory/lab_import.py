@@ -90,9 +90,9 @@ def settings_of(scene: ResolvedScene, where: str) -> CaseSettings:
 
 def _measured(particles: EventParticles) -> StackMeasure:
     return measure_lab(
-        particles.positions.astype(float),
-        particles.masses.astype(float),
-        particles.densities.astype(float),
+        particles.positions,
+        particles.masses,
+        particles.densities,
         particles.on_panel,
         particles.dimension,
         particles.dx,

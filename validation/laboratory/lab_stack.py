@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from snowshed import _core
 from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
@@ -258,10 +259,10 @@ class _Tape:
 
 
 def measure_lab(
-    positions: Floats,
-    masses: Floats,
-    densities: Floats,
-    on_panel: Booleans,
+    positions: ArrayLike,
+    masses: ArrayLike,
+    densities: ArrayLike,
+    on_panel: ArrayLike,
     dimension: int,
     dx: float,
 ) -> StackMeasure:
