@@ -20,8 +20,8 @@ VALIDATION ?= --quick
 THESIS ?= --quick
 MUTANTS ?=
 
-# Python keeps what it compiled. So pip need not compile modules that nothing imports, and no process
-# compiles a module again.
+# Python stores a module's bytecode at its first import. pip therefore need not compile modules that
+# nothing imports, and no process compiles a module again.
 unexport PYTHONDONTWRITEBYTECODE
 
 # Several tools must find cmake and ninja, which may be only in .venv.

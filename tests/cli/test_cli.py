@@ -37,10 +37,8 @@ def test_the_command_of_the_lab_experiment(capsys):
     assert data["panel"]["height"] == 0.33
     assert data["panel"]["friction"] == 0.3
     assert data["slab"]["thickness"] == 0.02
-    assert data["slab"]["width"] in (
-        0.0,
-        pytest.approx(0.142),
-    )  # 0: two thirds of the panel
+    two_thirds_of_the_panel = (0.0, pytest.approx(0.142))
+    assert data["slab"]["width"] in two_thirds_of_the_panel
     assert (data["events"]["count"], data["dimension"]) == (5, 3)
 
 

@@ -53,7 +53,7 @@ KINDS = ("kill", "full")
 #: Operations tried in the quick tests, if a program has more than two.
 SAMPLES = {"snowshed-run": 16}
 #: Programs in the quick tests; the others share their writers.
-SAMPLED = ("snowshed-run", "season", "study", "slide", "clearance")
+SAMPLED = ("snowshed-run", "run", "season", "study", "slide", "clearance")
 #: Files that hold wall times.
 DIFFERENT = (
     *("run.json", "events.csv", "store.sqlite", "store.sqlite-shm", "store.sqlite-wal"),
