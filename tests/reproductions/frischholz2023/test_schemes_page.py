@@ -74,5 +74,5 @@ def test_tables_of_other_claims_are_refused(folders, tmp_path):
 def test_one_folder_is_refused(tmp_path, capsys):
     before = schemes_page.PAGE.read_bytes()
     assert main([str(tmp_path)], command=schemes_page.main, name="schemes_page") == 2
-    assert "FOLDERS" in capsys.readouterr().err
+    assert "'folders' takes 2 values" in capsys.readouterr().err
     assert schemes_page.PAGE.read_bytes() == before
