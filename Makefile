@@ -47,7 +47,7 @@ help:
 	@echo "make demo       the laboratory experiment: five slide-offs, table, pictures and a page that moves"
 	@echo "make validation problems with known answers, a minute (VALIDATION=--full: hours)"
 	@echo "make thesis     the thesis reproduced, some minutes (THESIS=--middle: hours, --full: days)"
-	@echo "make test       all tests (test-cpp, test-py: C++, Python; test-slow: those that take minutes)"
+	@echo "make test       lint and all tests (test-cpp, test-py: C++, Python; test-slow: those that take minutes)"
 	@echo "make sanitize   the tests with AddressSanitizer, UBSan and ThreadSanitizer"
 	@echo "make fuzz       fuzz all readers of files (FUZZ_SECONDS=$(FUZZ_SECONDS) each)"
 	@echo "make mutants    inject faults and see which the tests catch, an hour or two"
@@ -114,7 +114,7 @@ provide_gtest = sh tools/provide_header.sh gtest/gtest.h libgtest-dev || echo "F
 enable = cmake -S . -B $(TREE) -D$(1)=ON > build/configure.log \
   || { cat build/configure.log; cmake -S . -B $(TREE) -D$(1)=OFF > /dev/null; exit 1; }
 
-test: test-cpp test-py
+test: lint test-cpp test-py
 
 # Several tests run at a time. Those with a solver use all cores, so their threads must not spin.
 test-cpp test-py sanitize-address sanitize-thread: export OMP_WAIT_POLICY := passive
@@ -193,7 +193,7 @@ components: build $(VENV)/.dev-tools
 	$(BIN)/python -m tools.components
 	$(BIN)/ruff format --quiet python/snowshed/scene python/snowshed/methods
 
-format: $(VENV)/.cpp-tools $(VENV)/.dev-tools
+format: $(VENV)/.clang-format $(VENV)/.dev-tools
 	$(BIN)/clang-format -i $(CPP_FILES)
 	$(BIN)/ruff check --fix $(PYTHON_FOLDERS)
 	$(BIN)/ruff format $(PYTHON_FOLDERS)
@@ -202,13 +202,13 @@ format: $(VENV)/.cpp-tools $(VENV)/.dev-tools
 python/snowshed/_core.pyi:
 	ln -s ../../cpp/bindings/_core.pyi $@
 
-lint: $(VENV)/.cpp-tools $(VENV)/.dev-tools python/snowshed/_core.pyi
-	$(BIN)/clang-format --dry-run -Werror $(CPP_FILES)
+lint: $(VENV)/.clang-format $(VENV)/.dev-tools python/snowshed/_core.pyi
+	@$(BIN)/clang-format --dry-run -Werror $(CPP_FILES)
 	$(BIN)/ruff check $(PYTHON_FOLDERS)
 	$(BIN)/ruff format --check $(PYTHON_FOLDERS)
 	$(BIN)/mypy python/snowshed validation reproductions
 
-tidy: $(VENV)/.build-tools $(VENV)/.cpp-tools
+tidy: $(VENV)/.build-tools $(VENV)/.clang-tidy
 	sh tools/tidy.sh
 
 # Installs the extra "dev" of pyproject.toml. snowshed itself is already installed and stays.
@@ -217,8 +217,12 @@ $(VENV)/.dev-tools: $(VENV)/.installed pyproject.toml
 	touch $@
 
 # Another version of clang-format would change the format of many files, one of clang-tidy its checks.
-$(VENV)/.cpp-tools: $(VENV)/.created
-	$(PIP) --quiet "clang-format==$(CLANG_FORMAT)" "clang-tidy==$(CLANG_TIDY)"
+$(VENV)/.clang-format: $(VENV)/.created
+	$(PIP) --quiet "clang-format==$(CLANG_FORMAT)"
+	touch $@
+
+$(VENV)/.clang-tidy: $(VENV)/.created
+	$(PIP) --quiet "clang-tidy==$(CLANG_TIDY)"
 	touch $@
 
 # The pages name estimators, which are classes of scikit-learn.

@@ -28,7 +28,7 @@ import numpy as np
 
 from snowshed.io.raster.raster import Raster, write_ascii_grid
 from snowshed.running.simulation import Simulation
-from snowshed.scene.builders.avaframe import avaframe_scene
+from snowshed.scene.builders.avaframe.project import avaframe_scene
 
 CELL = 2.0  # m
 THICKNESS = 0.5  # m; two particles per cell

@@ -27,8 +27,10 @@ from snowshed.study import Study
 
 STACKS = RESULTS / "calibration-schemes.csv"
 SCHEMES = ("objective", "thesis")
-#: The six stacks of the scheme thesis that stand in for measured ones.
-STAND_IN, STAND_IN_SEEDS = "thesis", range(101, 107)
+#: Scheme of the six stacks that stand in for measured ones.
+STAND_IN = "thesis"
+#: Their seeds.
+STAND_IN_SEEDS = range(101, 107)
 #: Snows that are stronger than those of the thesis's grid.
 STRONGER_SNOWS = {SLOPE: [0.5, 0.7], PRESSURE: [10e3, 14e3], COHESION: [0.2, 0.4]}
 TILT = "panel.tilt"

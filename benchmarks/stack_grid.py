@@ -67,6 +67,8 @@ CASES = {
         {"panel.tilt": [40.0], "panel.length": [0.5, 2.0, 4.0]},
     ),
 }
+#: Columns that identify a stack, for any size of cells.
+GROUP_COLUMNS = ("case", "scheme", "tilt", "panel_length", "friction", "event")
 #: Size of cells whose mean stacks count as exact, m.
 REFERENCE_CELLS = 0.0025
 
@@ -122,13 +124,12 @@ def deviations() -> pd.DataFrame:
         A row for each case, scheme, panel, event and size of cells. Columns are the number of seeds
         `n`, means in m, their standard errors (`_sem`) and their relative deviations (`_off`).
     """
-    circumstances = ["case", "scheme", "tilt", "panel_length", "friction", "event"]
-    groups = pd.read_csv(STACKS).groupby([*circumstances, "dx"])
+    groups = pd.read_csv(STACKS).groupby([*GROUP_COLUMNS, "dx"])
     table = groups[list(QUANTITIES)].mean()
     table["n"] = groups["seed"].count()
     for name in QUANTITIES:
         table[f"{name}_sem"] = groups[name].sem()
-        finest = table[name].groupby(level=circumstances).transform("first")
+        finest = table[name].groupby(level=list(GROUP_COLUMNS)).transform("first")
         table[f"{name}_off"] = table[name] / finest - 1
     return table.reset_index()
 
@@ -150,9 +151,15 @@ def _draw_errors(axes: Axes, lab: pd.DataFrame, times: pd.Series, name: str, lab
     errors = coarse.assign(square=coarse[f"{name}_off"] ** 2).groupby(["scheme", "dx"])["square"]
     error = 100 * errors.mean() ** 0.5
     for scheme in SCHEMES:
-        mine = error[scheme]
-        axes.loglog(times[scheme][mine.index], mine, "o-", color=COLOURS[scheme], label=scheme)
-        for cells, value in mine.items():
+        errors_of_scheme = error[scheme]
+        axes.loglog(
+            times[scheme][errors_of_scheme.index],
+            errors_of_scheme,
+            "o-",
+            color=COLOURS[scheme],
+            label=scheme,
+        )
+        for cells, value in errors_of_scheme.items():
             axes.annotate(
                 f"{100 * cells:g} cm",
                 (times[scheme][cells], value),

@@ -1,5 +1,9 @@
 # Finds Eigen, nlohmann-json and zlib. The system's packages are preferred.
-# The Python wheels `cmeel-eigen`, `nlohmann-json` and `cmeel-zlib` contain the same.
+# The Python wheels `cmeel-eigen`, `nlohmann-json` and `cmeel-zlib` contain the same. This file is
+# part of the installed library, whose `snowshed_dependency_hints` are searched first.
+if(TARGET snowshed_headers)
+  return()
+endif()
 add_library(snowshed_headers INTERFACE)
 
 find_package(Python COMPONENTS Interpreter QUIET)
@@ -10,9 +14,9 @@ if(Python_Interpreter_FOUND)
     OUTPUT_VARIABLE snowshed_site_packages OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
 endif()
 
-find_path(SNOWSHED_EIGEN_DIR Eigen/Core
+find_path(SNOWSHED_EIGEN_DIR Eigen/Core HINTS ${snowshed_dependency_hints}
   PATHS ${snowshed_site_packages} PATH_SUFFIXES eigen3 include/eigen3 cmeel.prefix/include/eigen3)
-find_path(SNOWSHED_JSON_DIR nlohmann/json.hpp
+find_path(SNOWSHED_JSON_DIR nlohmann/json.hpp HINTS ${snowshed_dependency_hints}
   PATHS ${snowshed_site_packages} PATH_SUFFIXES include nlohmann_json/include)
 foreach(header EIGEN JSON)
   if(NOT SNOWSHED_${header}_DIR)
@@ -22,8 +26,9 @@ foreach(header EIGEN JSON)
   target_include_directories(snowshed_headers SYSTEM INTERFACE ${SNOWSHED_${header}_DIR})
 endforeach()
 
-find_path(SNOWSHED_ZLIB_DIR zlib.h PATHS ${snowshed_site_packages} PATH_SUFFIXES cmeel.prefix/include)
-find_library(SNOWSHED_ZLIB_LIBRARY NAMES z)
+find_path(SNOWSHED_ZLIB_DIR zlib.h HINTS ${snowshed_dependency_hints}
+  PATHS ${snowshed_site_packages} PATH_SUFFIXES cmeel.prefix/include)
+find_library(SNOWSHED_ZLIB_LIBRARY NAMES z HINTS ${snowshed_dependency_hints})
 find_library(SNOWSHED_ZLIB_LIBRARY NAMES libz.so z
   PATHS ${snowshed_site_packages} PATH_SUFFIXES cmeel.prefix/lib64 cmeel.prefix/lib)
 if(NOT SNOWSHED_ZLIB_DIR OR NOT SNOWSHED_ZLIB_LIBRARY)

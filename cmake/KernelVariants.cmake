@@ -20,7 +20,7 @@ set(SNOWSHED_KERNEL_VARIANTS ${snowshed_default_variants} CACHE STRING
 
 # Sets `result` to the meaning of `native`: the baseline, and the widest set that this machine runs.
 function(snowshed_native_variants result)
-  try_run(runs compiles ${CMAKE_BINARY_DIR}/widest_kernels
+  try_run(runs compiles ${CMAKE_CURRENT_BINARY_DIR}/widest_kernels
     ${CMAKE_CURRENT_SOURCE_DIR}/cpp/apps/widest_kernels.cpp
     CMAKE_FLAGS -DINCLUDE_DIRECTORIES=${CMAKE_CURRENT_SOURCE_DIR}/cpp
     RUN_OUTPUT_VARIABLE widest)

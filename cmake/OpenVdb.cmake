@@ -1,5 +1,10 @@
 # Finds OpenVDB for the program snowshed-vdb. Everything else is built without it.
-set(SNOWSHED_WITH_OPENVDB AUTO CACHE STRING "Read and write OpenVDB files: AUTO, ON or OFF")
+set(snowshed_default_openvdb OFF)
+if(snowshed_is_top_level)
+  set(snowshed_default_openvdb AUTO)
+endif()
+set(SNOWSHED_WITH_OPENVDB ${snowshed_default_openvdb} CACHE STRING
+  "Read and write OpenVDB files: AUTO, ON or OFF")
 set_property(CACHE SNOWSHED_WITH_OPENVDB PROPERTY STRINGS AUTO ON OFF)
 
 set(SNOWSHED_HAS_OPENVDB FALSE)

@@ -10,7 +10,8 @@ This takes about two minutes with dx = 0.01 m and five events. To compare existi
 import sys
 from pathlib import Path
 
-from snowshed import Scene, dimension_ratio, run_events
+from snowshed import Scene, run_events
+from snowshed.analysis import dimension_ratio
 
 
 def main(folder: str = "dimensions", dx: float = 0.01, events: float = 5) -> None:

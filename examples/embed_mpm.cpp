@@ -5,35 +5,36 @@
 
 #include "snowshed/core/errors.hpp"
 #include "snowshed/geometry/primitives.hpp"
+#include "snowshed/methods/advance.hpp"
 #include "snowshed/methods/mpm/solver.hpp"
 
-using snowshed::Vec3;
+using namespace snowshed;
 
 int main() {
-  snowshed::mpm::Options options;
+  methods::mpm::Options options;
   options.dimension = 2;
   options.settings.dx = 0.02;  // m
-  snowshed::Snow snow;
+  material::Snow snow;
   snow.density = 250;  // kg/m3
   options.snows = {snow};
-  snowshed::Obstacle ground;
-  ground.shape = snowshed::make_plane(Vec3(0, 0, 0), Vec3(0, 0, 1));
-  ground.law = {snowshed::Condition::separate, 0.3};
+  methods::Obstacle ground;
+  ground.shape = geometry::make_plane(Vec3(0, 0, 0), Vec3(0, 0, 1));
+  ground.law = {methods::Condition::separate, 0.3};
   options.obstacles = {ground};
 
-  snowshed::ParticleBatch block;
+  methods::ParticleBatch block;
   const double distance = 0.01;  // m, between particles
   for (double x = -0.095; x < 0.1; x += distance)
     for (double z = 0.305; z < 0.4; z += distance) block.positions.emplace_back(x, 0, z);
   block.mass = snow.density * distance * distance;  // kg, per metre of width
 
   try {
-    const auto solver = snowshed::mpm::make_solver(options);
+    const auto solver = methods::mpm::make_solver(options);
     solver->add(block);
     double height = 0;  // m
     for (int tenth = 0; tenth < 10; ++tenth) {
-      while (solver->time() < 0.1 * tenth) solver->step();
-      const snowshed::ParticleState state = solver->state();
+      methods::advance_to(*solver, 0.1 * tenth);
+      const methods::ParticleState state = solver->state();
       height = 0;
       for (const Vec3& x : state.positions) height += x.z() / double(state.positions.size());
       std::printf("%.1f s: %.3f m\n", 0.1 * tenth, height);

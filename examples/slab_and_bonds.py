@@ -14,6 +14,7 @@ from matplotlib import rc_context
 from matplotlib.collections import LineCollection
 
 from snowshed.io import Raster
+from snowshed.methods import SlideState, slide_states
 from snowshed.plot import (
     INK,
     STACK,
@@ -24,7 +25,6 @@ from snowshed.plot import (
     focus,
     save_figure,
 )
-from snowshed.running import slide_states
 from snowshed.scene import example_slide, slide_terrain
 
 STRAINS = {"strong bonds": 0.2, "weak bonds": 0.03}  # at which a bond breaks
@@ -51,7 +51,7 @@ def main(folder: Path, seconds: float) -> None:
 def draw(ground: Raster, outlines: list, slabs: dict, file: Path) -> None:
     """Draw a row for each slab and a column for each time."""
     origin = (ground.east, ground.north)
-    snow = [state.positions[:, :2] + origin for states in slabs.values() for state in states]
+    snow = [xy(state) + origin for states in slabs.values() for state in states]
     part = focus(ground, np.zeros(ground.heights.shape, dtype=bool), [*outlines, *snow])
     with rc_context(STYLE):
         ratio = (part[3] - part[2]) / (part[1] - part[0])
@@ -59,7 +59,7 @@ def draw(ground: Raster, outlines: list, slabs: dict, file: Path) -> None:
         panels = figure.subplots(len(slabs), len(SHARES), squeeze=False)
         for row, (name, states) in zip(panels, slabs.items()):
             for axes, state in zip(row, states):
-                positions = state.positions[:, :2] + origin
+                positions = xy(state) + origin
                 draw_terrain(axes, ground, part, labels=False)
                 bonds = LineCollection(positions[state.bonds], colors=STACK, lw=0.8, zorder=4)
                 axes.add_collection(bonds)
@@ -68,6 +68,11 @@ def draw(ground: Raster, outlines: list, slabs: dict, file: Path) -> None:
                 axes.set(xticks=[], yticks=[])
                 axes.set_title(f"{name}, {state.time:.0f} s: {len(state.bonds):,} bonds")
     save_figure(figure, file)
+
+
+def xy(state: SlideState) -> np.ndarray:
+    """Return the horizontal positions of the particles (n, 2), m."""
+    return state.particles["position"].values[:, :2]
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Scenes small enough to run within a second or two."""
+"""Fixtures, and scenes that run within a second or two."""
 
 import importlib
 import signal
@@ -18,8 +18,10 @@ collect_ignore = [] if vdb_available() else ["io/vdb/test_vdb_files.py"]
 # A shell in the background ignores interrupts, and commands under test would inherit that.
 for _signal in (signal.SIGINT, signal.SIGHUP):
     if signal.getsignal(_signal) is signal.SIG_IGN:
-        _heard = signal.default_int_handler if _signal == signal.SIGINT else signal.SIG_DFL
-        signal.signal(_signal, _heard)
+        _default_handler = (
+            signal.default_int_handler if _signal == signal.SIGINT else signal.SIG_DFL
+        )
+        signal.signal(_signal, _default_handler)
 
 
 def tiny_scene(**values: object) -> Scene:
@@ -31,7 +33,7 @@ def tiny_scene(**values: object) -> Scene:
 
 
 def tiny_mps(**values: object) -> Scene:
-    """A column of eighty particles of MPS that slumps onto snow which erodes."""
+    """A column of eighty MPS particles that slumps onto erodible snow."""
     column = {"shape": {"type": "box", "center": [0, 0.25], "size": [0.4, 0.5]}}
     scene = Scene.from_data(
         {"snowshed": 2, "method": "mps", "dimension": 2, "ground": {}, "bodies": [column]}
@@ -59,7 +61,7 @@ def hide(monkeypatch: pytest.MonkeyPatch) -> Callable[[str], None]:
 
 @pytest.fixture
 def drawn() -> None:
-    """Draw the pictures and pages of this test, although `undrawn` leaves them out in its file."""
+    """Draw pictures and pages in this test, in a file that leaves them out with `undrawn`."""
 
 
 def leave_out_drawings(patch: pytest.MonkeyPatch) -> None:
@@ -81,7 +83,7 @@ def tiny() -> Scene:
 
 @pytest.fixture(scope="session")
 def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The results folder of a tiny scene, run to its end."""
+    """The results folder of a finished tiny scene."""
     folder = tmp_path_factory.mktemp("finished") / "results"
     run_events(tiny_scene(**{"output.energy": True}), folder)
     return folder

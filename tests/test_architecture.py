@@ -12,6 +12,8 @@ import pytest
 from helpers.paths import ROOT
 
 CPP = ROOT / "cpp" / "snowshed"
+#: Folders whose sources belong to the namespace of the folder above.
+PARTS_OF_ROOMS = ("kernels", "readers")
 
 #: What each C++ folder may include besides itself.
 ALLOWED = {
@@ -41,7 +43,7 @@ def includes(source):
     return re.findall(r'^#include "(snowshed/[^"]+)"', source.read_text(), re.MULTILINE)
 
 
-def test_every_folder_of_the_library_has_its_place():
+def test_every_folder_of_the_library_has_a_rule():
     assert {path.name for path in CPP.iterdir() if path.is_dir()} == ALLOWED.keys()
 
 
@@ -56,7 +58,7 @@ def test_no_cpp_include_points_up(folder):
     assert wrong == []
 
 
-def test_no_method_knows_another():
+def test_no_method_includes_another():
     wrong = [
         f"{source.relative_to(ROOT)} includes {header}"
         for method in (CPP / "methods").iterdir()
@@ -70,62 +72,82 @@ def test_no_method_knows_another():
     assert wrong == []
 
 
-def names_of_methods():
+def method_names():
     """Return the methods that the registry lists, one per line."""
     registry = (CPP / "methods" / "registry.cpp").read_text()
     return re.findall(r"^ +add\((\w+)\)", registry, re.MULTILINE)
 
 
+def namespace_of(source):
+    """Return the namespace of a source of the library: the folders below it; core has none."""
+    folders = [part for part in source.relative_to(CPP).parent.parts if part not in PARTS_OF_ROOMS]
+    return "::".join(["snowshed", *(folder for folder in folders if folder != "core")])
+
+
+def test_a_namespace_has_the_name_of_its_folder():
+    misplaced = []
+    for source in sorted([*CPP.rglob("*.hpp"), *CPP.rglob("*.cpp")]):
+        text = source.read_text(encoding="utf-8")
+        opened = re.findall(r"^namespace (snowshed[\w:]*) \{", text, re.MULTILINE)
+        modules = re.findall(r"^SNOWSHED_MODULE_VARIANT_BEGIN\((\S+)\)", text, re.MULTILINE)
+        opened += [f"snowshed::{module}" for module in modules]
+        if "\nSNOWSHED_VARIANT_BEGIN" in text:
+            opened.append("snowshed")
+        if opened and namespace_of(source) not in opened:
+            misplaced.append(f"{source.relative_to(ROOT)}: {', '.join(opened)}")
+    assert misplaced == []
+
+
 def test_no_method_is_named_outside_its_folder():
     """Texts may mention a slide or grains; names, includes and values may not."""
-    names = "|".join(names_of_methods())
-    prefixes = "|".join(name.capitalize() for name in names_of_methods())
+    names = "|".join(method_names())
+    prefixes = "|".join(name.capitalize() for name in method_names())
     value = re.compile(rf'"(?:{names})"|#include ".*/(?:{names})[/.].*"')
     identifier = re.compile(rf"\b(?:{prefixes})[A-Z]|(?<![a-zA-Z])(?:{names})(?![a-zA-Z])")
-    own = {ROOT / "cpp" / "bindings" / "methods" / f"{name}.cpp" for name in names_of_methods()}
+    own = {ROOT / "cpp" / "bindings" / "methods" / f"{name}.cpp" for name in method_names()}
     wrong = []
     for source in tracked("cpp/snowshed/*.?pp", "cpp/apps/*.?pp", "cpp/bindings/*.?pp"):
         inside = source.is_relative_to(CPP / "methods") and source.parent != CPP / "methods"
         if inside or source in own or source.name == "registry.cpp":
             continue
         code = re.sub(r"//.*", "", source.read_text())
-        found = value.findall(code) + identifier.findall(re.sub(r'"[^"\n]*"', "", code))
-        wrong += [f"{source.relative_to(ROOT)}: {name}" for name in found]
-    assert len(names_of_methods()) == 4
+        occurrences = value.findall(code) + identifier.findall(re.sub(r'"[^"\n]*"', "", code))
+        wrong += [f"{source.relative_to(ROOT)}: {name}" for name in occurrences]
+    assert len(method_names()) == 4
     assert wrong == []
 
 
-def test_no_cpp_header_includes_itself_by_a_detour():
+def test_cpp_includes_have_no_cycles():
     graph = {f"snowshed/{path.relative_to(CPP)}": includes(path) for path in CPP.rglob("*.hpp")}
-    done = set()
+    visited = set()
 
-    def visit(header, above):
-        assert header not in above, " includes ".join([*above, header])
-        if header not in done:
-            for other in graph.get(header, ()):
-                visit(other, [*above, header])
-            done.add(header)
+    def visit(header, chain):
+        assert header not in chain, " includes ".join([*chain, header])
+        if header not in visited:
+            for included in graph.get(header, ()):
+                visit(included, [*chain, header])
+            visited.add(header)
 
     for header in graph:
         visit(header, [])
 
 
-def test_no_kernel_is_for_one_compiler_only():
+def test_kernels_are_portable_between_compilers():
     """GCC 12 and Clang 14 know `__builtin_shufflevector`; loops are unrolled by `variant.hpp`."""
-    theirs = re.compile(r"__builtin_shuffle\(|#pragma (GCC|clang)")
-    sources = [path for path in CPP.rglob("*.?pp") if theirs.search(path.read_text())]
+    compiler_specific = re.compile(r"__builtin_shuffle\(|#pragma (GCC|clang)")
+    sources = [path for path in CPP.rglob("*.?pp") if compiler_specific.search(path.read_text())]
     assert [str(path.relative_to(ROOT)) for path in sources] == []
 
 
-def test_no_python_import_points_up_or_in_a_circle():
-    """The contracts stand in pyproject.toml."""
+def test_python_imports_point_down_without_cycles():
+    """The contracts are in pyproject.toml."""
     code = "from importlinter.cli import lint_imports_command; lint_imports_command()"
     command = [sys.executable, "-c", code]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_the_package_asks_its_root_for_the_compiled_core_alone():
+def test_modules_import_only_the_compiled_core_from_the_root():
     inside = [path for path in tracked("python/snowshed/*.py") if path.name != "__main__.py"]
     wrong = [
         f"{path.relative_to(ROOT)}: {line.strip()}"
@@ -158,9 +180,9 @@ def test_the_page_lists_every_folder():
         above[len(indent) // 2 :] = [name]
         drawn.update({Path(*above), *Path(*above).parents})
     repeating = {"tests", "lua_compat"}  # folders that repeat others
-    missing = {one for one in folders() - drawn if not repeating & set(one.parts[:-1])}
+    missing = {folder for folder in folders() - drawn if not repeating & set(folder.parts[:-1])}
     assert missing == set()
-    assert {one for one in drawn if not (ROOT / one).is_dir()} == set()
+    assert {folder for folder in drawn if not (ROOT / folder).is_dir()} == set()
 
 
 def test_no_source_file_is_long():
@@ -197,27 +219,27 @@ def writes_by_name(tree):
     for node in ast.walk(tree):
         if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):
             continue
-        words = {one.id for one in ast.walk(node) if isinstance(one, ast.Name)}
-        texts = [one.value for one in ast.walk(node) if isinstance(one, ast.Constant)]
+        names = {inner.id for inner in ast.walk(node) if isinstance(inner, ast.Name)}
+        texts = [inner.value for inner in ast.walk(node) if isinstance(inner, ast.Constant)]
         name = node.func.attr
         opens = name == "open" and any(re.fullmatch("[wax]b?", str(text)) for text in texts)
-        saves = name == "save" and "np" in words
-        if (name in WRITERS or opens or saves) and not words & own:
+        saves = name == "save" and "np" in names
+        if (name in WRITERS or opens or saves) and not names & own:
             yield f"line {node.lineno}: {name}"
 
 
-def test_files_are_written_by_the_one_writer():
+def test_files_are_written_by_the_atomic_writer():
     package = ROOT / "python" / "snowshed"
     wrong = []
     for source in tracked("python/snowshed/**/*.py"):
         name = source.relative_to(package).as_posix()
         if name not in WRITE_BY_NAME:
-            found = writes_by_name(ast.parse(source.read_text(encoding="utf-8")))
-            wrong += [f"{name}, {one}" for one in found]
+            calls = writes_by_name(ast.parse(source.read_text(encoding="utf-8")))
+            wrong += [f"{name}, {call}" for call in calls]
     assert wrong == []
 
 
-def test_tables_pass_the_one_sanitizer():
+def test_tables_pass_the_sanitizer():
     folders = ("python", "validation", "reproductions")
     wrong = [
         str(source.relative_to(ROOT))
@@ -227,8 +249,8 @@ def test_tables_pass_the_one_sanitizer():
     assert wrong == []
 
 
-def test_commands_print_by_what_makes_texts_harmless():
-    """Notes and names come from files; `say` and the consoles of cli/terminal.py show them."""
+def test_commands_print_through_the_terminal_module():
+    """`say` and the consoles of cli/output/terminal.py show texts of files: notes and names."""
     wrong = [
         str(source.relative_to(ROOT))
         for source in tracked("python/snowshed/cli/**/*.py")

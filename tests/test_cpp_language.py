@@ -10,10 +10,21 @@ from helpers.paths import ROOT
 from test_language import CONSTRUCTIONS, OPENINGS
 
 FOLDERS = ("snowshed", "bindings", "apps", "vdb")
-#: Sources of which only the comments follow the rules.
+#: Sources of which the strings are free: tests quote messages and damaged files.
 TOOLS = ("tests", "bench", "fuzz")
 #: Locals, members and functions with these names say nothing about their values.
 EMPTY_NAMES = {"found", "kept", "whole", "there", "way"}
+#: The same in tests, which compare an actual value with an expected one.
+EMPTY_NAMES_IN_TESTS = {"told", "said", "seen", "story", "place", "places"}
+EMPTY_NAMES_IN_TESTS |= {"got", "wanted", "worst"}
+#: A test is read after its suite: `Forces.ABentBondBreaksFirstAtItsOuterPairs`.
+TEST = re.compile(r"\b(?:TYPED_)?TEST(?:_[FP])?\(\s*(\w+),\s*(\w+)\s*\)")
+#: Names of tests that are no sentences, or that need a second reading.
+RIDDLES = re.compile(
+    r"^(Of|That|What|Which|Whose|How)[A-Z]"
+    r"|(Is|Are)(Told|That|Those)(?![a-z])|(And|Or)Told|(Goes|Go)On(?![a-z])"
+    r"|What(It|They|Is|Are)[A-Z]|As(ItWas|TheyWere|TheyAre)|Whoever|However[A-Z]|ThereIs(None)?$"
+)
 #: Constants that limit something are called max_… and min_….
 LIMITS = re.compile(
     r"\bconstexpr\b[^=;(){}]*"
@@ -92,8 +103,8 @@ def test_adjacent_lines_are_one_text():
 @pytest.mark.parametrize("folder", FOLDERS + TOOLS)
 def test_comments_begin_with_their_subject(folder):
     wrong = [
-        f"{place}: {sentence[:80]}"
-        for place, text in all_texts(folder)
+        f"{position}: {sentence[:80]}"
+        for position, text in all_texts(folder)
         if text.is_comment
         for sentence in sentences(text)
         if OPENINGS.match(sentence) or FRAGMENTS.match(sentence)
@@ -104,8 +115,8 @@ def test_comments_begin_with_their_subject(folder):
 @pytest.mark.parametrize("folder", FOLDERS)
 def test_texts_begin_with_their_subject(folder):
     wrong = [
-        f"{place}: {text.text[:80]}"
-        for place, text in all_texts(folder)
+        f"{position}: {text.text[:80]}"
+        for position, text in all_texts(folder)
         if not text.is_comment and OPENINGS.match(text.text)
     ]
     assert wrong == []
@@ -114,8 +125,8 @@ def test_texts_begin_with_their_subject(folder):
 @pytest.mark.parametrize("folder", FOLDERS + TOOLS)
 def test_comments_and_texts_need_no_second_reading(folder):
     wrong = [
-        f"{place}: …{match[0]}…"
-        for place, text in all_texts(folder)
+        f"{position}: …{match[0]}…"
+        for position, text in all_texts(folder)
         if " " in text.text and (text.is_comment or folder in FOLDERS)
         for sentence in sentences(text)
         if (match := CONSTRUCTIONS.search(sentence))
@@ -123,20 +134,31 @@ def test_comments_and_texts_need_no_second_reading(folder):
     assert wrong == []
 
 
-@pytest.mark.parametrize("folder", FOLDERS)
+@pytest.mark.parametrize("folder", FOLDERS + TOOLS)
 def test_names_say_what_they_hold(folder):
+    empty = EMPTY_NAMES | (EMPTY_NAMES_IN_TESTS if folder in TOOLS else set())
     wrong = [
         f"{path.relative_to(ROOT)}: {name}"
         for path in sources(folder)
         for name in sorted(
             set(re.findall(r"\w+", TOKEN.sub(" ", path.read_text(encoding="utf-8"))))
         )
-        if name.strip("_") in EMPTY_NAMES
+        if name.strip("_") in empty
     ]
     assert wrong == []
 
 
-@pytest.mark.parametrize("folder", FOLDERS)
+def test_names_of_tests_are_sentences():
+    wrong = [
+        f"{path.relative_to(ROOT)}: {suite}.{name}"
+        for path in sources("tests")
+        for suite, name in TEST.findall(path.read_text(encoding="utf-8"))
+        if RIDDLES.search(name) or len(re.findall("[A-Z]", name)) < 2
+    ]
+    assert wrong == []
+
+
+@pytest.mark.parametrize("folder", FOLDERS + TOOLS)
 def test_limits_are_called_max_and_min(folder):
     wrong = [
         f"{path.relative_to(ROOT)}: {name}"

@@ -23,7 +23,7 @@ PAGES = [ROOT / "README.md", *sorted(DOCS.rglob("*.md"))]
 #: Pages that a program writes, which may be long; their content is tested with the program.
 GENERATED = {
     *("trust/thesis-claims.md", "trust/thesis-schemes.md", "trust/thesis-gap.md"),
-    "trust/list-of-faults.md",
+    "develop/list-of-faults.md",
     "reference/api.md",
 }
 WRITTEN = [page for page in PAGES if page.relative_to(ROOT).as_posix()[5:] not in GENERATED]
@@ -36,7 +36,7 @@ PROGRAMS = {
     "python -m reproductions": reproduce,
 }
 #: Pages that list all options of a command.
-PAGE_OF = {
+PAGE_BY_COMMAND = {
     "sensitivity": "guides/sensitivity.md",
     "calibrate": "guides/calibration.md",
     "geometry": "guides/prediction.md",
@@ -50,7 +50,7 @@ SHORTER = {
 }
 
 
-def name_of(page):
+def page_name(page):
     return page.relative_to(ROOT).as_posix()
 
 
@@ -60,58 +60,61 @@ def blocks(page, language):
 
 
 def documented():
-    """Yield every command line in a shell block or a sentence: the program, and the words after
-    it."""
+    """Yield the program and the arguments of each command line in shell blocks and sentences."""
     for page in PAGES:
         text = page.read_text(encoding="utf-8")
-        lines = "\n".join(re.findall(r"^```sh\n(.*?)^```", text, re.M | re.S))
-        found = lines.replace("\\\n", " ").splitlines()
-        found += re.findall(r"`((?:snowshed|python -m) [a-z][^`\n]*)`", text)
-        for line in found:
+        scripts = "\n".join(re.findall(r"^```sh\n(.*?)^```", text, re.M | re.S))
+        lines = scripts.replace("\\\n", " ").splitlines()
+        lines += re.findall(r"`((?:snowshed|python -m) [a-z][^`\n]*)`", text)
+        for line in lines:
             words = shlex.split(line, comments=True)
             length = 3 if words[:2] == ["python", "-m"] else 1
-            program, rest = " ".join(words[:length]), words[length:]
+            program, arguments = " ".join(words[:length]), words[length:]
             if program in PROGRAMS:
-                yield pytest.param(program, rest, id=f"{page.stem}: {' '.join(words)}")
+                yield pytest.param(program, arguments, id=f"{page.stem}: {' '.join(words)}")
 
 
-def command_of(program, words):
-    """Return the command that words name, and the words after it."""
-    command, rest = PROGRAMS[program], list(words)
-    while isinstance(command, click.Group) and rest:
-        command = command.commands[rest.pop(0)]
+def resolve_command(program, words):
+    """Return the command that words name, and its arguments."""
+    command, arguments = PROGRAMS[program], list(words)
+    while isinstance(command, click.Group) and arguments:
+        command = command.commands[arguments.pop(0)]
         while isinstance(command, Deferred):
             command = command.load()
-    return command, rest
+    return command, arguments
 
 
 @pytest.mark.parametrize(("program", "words"), list(documented()))
 def test_documented_commands_and_their_options_exist(program, words):
     if words and words[0].startswith("-") and PROGRAMS[program] is cli:
         return
-    command, rest = command_of(program, [word for word in words if word != "..."])
+    command, arguments = resolve_command(program, [word for word in words if word != "..."])
     if command.name == "self-test":  # its former options name their replacements
-        assert not rest
-    command.make_context("documented", rest, resilient_parsing=True)
+        assert not arguments
+    command.make_context("documented", arguments, resilient_parsing=True)
 
 
 @pytest.mark.parametrize(
-    "name", sorted(name for name, one in cli.commands.items() if not one.hidden)
+    "name", sorted(name for name, command in cli.commands.items() if not command.hidden)
 )
 def test_every_command_is_on_the_page_of_commands(name):
     page = (DOCS / "reference" / "commands.md").read_text(encoding="utf-8")
     assert re.search(rf"(snowshed |`){name}\b", page)
 
 
-@pytest.mark.parametrize(("name", "page"), list(PAGE_OF.items()))
+@pytest.mark.parametrize(("name", "page"), list(PAGE_BY_COMMAND.items()))
 def test_every_option_is_on_the_page_of_its_command(name, page):
     text = (DOCS / page).read_text(encoding="utf-8")
-    command, _ = command_of("snowshed", [name])
-    options = [max(one.opts, key=len) for one in command.params if one.param_type_name == "option"]
+    command, _ = resolve_command("snowshed", [name])
+    options = [
+        max(parameter.opts, key=len)
+        for parameter in command.params
+        if parameter.param_type_name == "option"
+    ]
     assert [option for option in options if not re.search(rf"`{option}[ `]", text)] == []
 
 
-@pytest.mark.parametrize("page", PAGES, ids=name_of)
+@pytest.mark.parametrize("page", PAGES, ids=page_name)
 def test_links_lead_to_files(page):
     for target in re.findall(r"\]\(([^)#]+)", page.read_text(encoding="utf-8")):
         if not target.startswith(("http", "mailto")):
@@ -124,22 +127,22 @@ def test_every_page_is_in_the_table_of_contents():
     assert {name for name in names - {"index"} if f"\n{name}\n" not in contents} == set()
 
 
-@pytest.mark.parametrize("page", WRITTEN, ids=name_of)
+@pytest.mark.parametrize("page", WRITTEN, ids=page_name)
 def test_no_written_page_is_long(page):
     lines = len(page.read_text(encoding="utf-8").splitlines())
     assert lines <= (MAX_LINES_README if page.name == "README.md" else MAX_LINES)
 
 
-@pytest.mark.parametrize("page", PAGES, ids=name_of)
-def test_a_page_begins_by_saying_what_it_is(page):
-    """After the title comes a paragraph: no list, picture, table, code or further heading."""
+@pytest.mark.parametrize("page", PAGES, ids=page_name)
+def test_a_page_begins_with_a_paragraph(page):
+    """A paragraph follows the title: no list, picture, table, code or further heading."""
     title, empty, first, *_ = page.read_text(encoding="utf-8").splitlines()
     assert title.startswith("# ") and not empty
     assert re.match(r"[A-Z*`\[s]", first) and len(first) > 40, first
 
 
-#: Constructions that have to be read twice, and what to write instead.
-QUAINT = {
+#: Constructions that need a second reading, and their replacements.
+UNCLEAR = {
     r"(^|(?<=\. )|(?<=- ))(What|That|How|Of|By(?! default)) [^?.|]*\.": "begin with the subject",
     r"\bRead are\b|\bTold are\b": "begin with the subject",
     r"\bfor want of\b": "because ... is missing",
@@ -156,24 +159,24 @@ QUAINT = {
 
 #: The glossary lists former words.
 @pytest.mark.parametrize(
-    "page", [page for page in WRITTEN if page.name != "glossary.md"], ids=name_of
+    "page", [page for page in WRITTEN if page.name != "glossary.md"], ids=page_name
 )
-def test_sentences_are_read_once(page):
+def test_sentences_need_no_second_reading(page):
     text = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
     text = re.sub(r"(?<=[^\n|]) *\n *(?=[^\s|#*`-])", " ", text)  # a paragraph is one line
-    found = [
-        f"{match[0]!r}: {better}"
-        for quaint, better in QUAINT.items()
-        for match in re.finditer(quaint, text, re.M)
+    matches = [
+        f"{match[0]!r}: {replacement}"
+        for construction, replacement in UNCLEAR.items()
+        for match in re.finditer(construction, text, re.M)
     ]
-    assert found == []
+    assert matches == []
 
 
-@pytest.mark.parametrize("page", WRITTEN, ids=name_of)
+@pytest.mark.parametrize("page", WRITTEN, ids=page_name)
 def test_numbered_formulas_break_lines_with_cr(page):
     """Sphinx puts a formula with a double backslash into an environment that takes no number."""
     formulas = re.findall(r"\$\$.+?\$\$", page.read_text(encoding="utf-8"), re.S)
-    assert [one for one in formulas if r"\\" in one and r"\tag" in one] == []
+    assert [formula for formula in formulas if r"\\" in formula and r"\tag" in formula] == []
 
 
 def test_make_targets_exist():
@@ -215,7 +218,7 @@ def test_scenes_are_valid():
         assert Scene.from_data(json.loads(text)).resolve().data["title"]
 
 
-#: Folders from which pages name the files of the source.
+#: Folders to which the paths in pages are relative.
 ABOVE = ("", "python/snowshed/", "cpp/snowshed/", "cpp/snowshed/methods/*/", "reproductions/")
 TOP_FOLDERS = {path.name for path in ROOT.iterdir() if path.is_dir()} - {"build"}
 
@@ -228,9 +231,14 @@ def named_files(text):
 
 
 def is_file(path):
-    """Return whether the source has a file or folder; NAME stands for any name."""
+    """Return whether the source has a file or folder, or what CMake makes a file from.
+
+    NAME stands for any name.
+    """
     pattern = re.sub(r"\bNAME\b", "*", path.rstrip("/"))
-    return any(True for above in ABOVE for _ in ROOT.glob(above + pattern))
+    return any(
+        True for above in ABOVE for end in ("", ".in") for _ in ROOT.glob(above + pattern + end)
+    )
 
 
 def is_name(name):
@@ -242,7 +250,7 @@ def is_name(name):
     return True
 
 
-@pytest.mark.parametrize("page", PAGES, ids=name_of)
+@pytest.mark.parametrize("page", PAGES, ids=page_name)
 def test_the_source_has_the_files_and_names_of_a_page(page):
     text = page.read_text(encoding="utf-8")
     names = re.findall(r"`((?:snowshed|validation|reproductions)(?:\.(?!html)[A-Za-z_]\w*)+)", text)

@@ -1,4 +1,4 @@
-"""Every example runs; on coarse grids, so that it takes a second or two."""
+"""Every example runs, on coarse grids within a second or two."""
 
 import re
 import subprocess
@@ -22,7 +22,7 @@ ARGUMENTS = {
 }
 #: Scripts that take most of a minute.
 LONG = {"image_to_stack.py"}
-#: The note on thin slabs, which such coarse grids cause, with the script's line that runs them.
+#: The note on thin slabs, which coarse grids cause, and the script's line that caused it.
 NOTE = re.compile(r".*: SnowshedNote: the slab is .* thick, less than two cells .*\n.*\n")
 
 
@@ -33,7 +33,7 @@ def test_all_scripts_are_run():
 @pytest.mark.parametrize(
     "name", [pytest.param(n, marks=[pytest.mark.slow] if n in LONG else []) for n in ARGUMENTS]
 )
-def test_script(name, tmp_path):
+def test_a_script_runs(name, tmp_path):
     command = [sys.executable, EXAMPLES / name, *ARGUMENTS[name]]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
@@ -47,7 +47,7 @@ def test_script(name, tmp_path):
 
 
 @pytest.mark.parametrize("scene", sorted(EXAMPLES.glob("scenes/*.json")), ids=lambda p: p.stem)
-def test_scene(scene, tmp_path, capsys):
+def test_a_scene_runs(scene, tmp_path, capsys):
     assert main(["plan", str(scene)]) == 0
     assert "particles" in capsys.readouterr().out
     loaded = Scene.load(scene)

@@ -1,4 +1,4 @@
-"""The lines that a scientist tries first do what they say."""
+"""The first lines that a scientist would try."""
 
 from dataclasses import replace
 from datetime import date, timedelta
@@ -11,7 +11,7 @@ from helpers.slide_files import plane, write_polygons
 
 import snowshed
 from snowshed import InputError, Panel, Results, Scene, Simulation, Slab, Study
-from snowshed.analysis import Ranges
+from snowshed.analysis.clearance import SnowRanges
 from snowshed.io import write_raster
 
 TINY = {"dimension": 2, "numerics.dx": 0.02, "events.count": 1, "events.max_time": 0.1}
@@ -103,14 +103,14 @@ def test_a_panel_is_predicted():
     assert answer.array("height").shape == (1, 3)
 
 
-def test_a_clearance_is_asked_for(tmp_path):
+def test_a_clearance_is_computed(tmp_path):
     days = pd.Series([date(2023, 9, 1) + timedelta(n) for n in range(366)])
     weather = pd.DataFrame(
         {"date": days, "snowfall_m": 0.2 * (days == date(2024, 1, 5)), "temperature_c": -3.0}
     )
     answer = snowshed.clearance(
         weather, str(tmp_path), slope_length=0.5, tilt=60, heights=[0.5],
-        ranges=Ranges(draws=1), scene={"numerics.dx": 0.05}, jobs=1,
+        ranges=SnowRanges(draws=1), scene={"numerics.dx": 0.05}, jobs=1,
     )  # fmt: skip
     level = answer.at(0.9)
     assert level.low <= level.height <= level.high
@@ -118,7 +118,7 @@ def test_a_clearance_is_asked_for(tmp_path):
         answer.at(0.7)
 
 
-def test_a_scene_is_shown_by_what_differs_from_the_defaults():
+def test_a_scene_is_shown_by_its_differences_from_the_defaults():
     scene = tiny_scene()
     names = {name: getattr(snowshed, name) for name in snowshed.__all__}
     assert eval(repr(scene), names).resolve().json == scene.resolve().json

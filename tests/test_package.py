@@ -6,7 +6,7 @@ import sys
 
 import pytest
 from helpers.processes import modules_after
-from helpers.requirements import MODULES_OF, required
+from helpers.requirements import MODULE_BY_PACKAGE, required
 
 import snowshed
 
@@ -23,12 +23,12 @@ def test_examples_in_docstrings(name):
     assert doctest.testmod(module).failed == 0
 
 
-def test_every_requirement_has_its_module_here():
+def test_every_requirement_has_a_module():
     own, extras = required()
-    assert own.union(*extras.values()) == MODULES_OF.keys() | {"numpy"}
+    assert own.union(*extras.values()) == MODULE_BY_PACKAGE.keys() | {"numpy"}
 
 
-def test_running_a_scene_does_not_import_what_reads_images_of_snow():
+def test_running_a_scene_does_not_import_image_libraries():
     modules = modules_after("import snowshed.cli.commands.run, snowshed.running.run")
     assert not [m for m in modules if m.startswith(("scipy.ndimage", "skimage", "rasterio"))]
 
@@ -37,7 +37,7 @@ def test_running_a_scene_does_not_import_what_reads_images_of_snow():
     ("module", "allowed"),
     [("snowshed", {"lazy_loader"}), ("snowshed.cli.main", {"click", "lazy_loader"})],
 )
-def test_import_is_quick_and_leaves_the_libraries_out(module, allowed):
+def test_import_is_quick_and_loads_no_other_libraries(module, allowed):
     code = (
         "import sys, time; clock = [time.process_time()]; import numpy; "
         f"clock.append(time.process_time()); import {module}; clock.append(time.process_time()); "
@@ -48,8 +48,8 @@ def test_import_is_quick_and_leaves_the_libraries_out(module, allowed):
         subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
         for _ in range(4)
     ]
-    times_of_numpy, *imported = min(
+    relative_time, *imported = min(
         (run.stdout.split() for run in runs), key=lambda words: float(words[0])
     )
-    assert set(imported) & set(MODULES_OF.values()) == allowed
-    assert float(times_of_numpy) < 1.5  # of processor time, on any machine
+    assert set(imported) & set(MODULE_BY_PACKAGE.values()) == allowed
+    assert float(relative_time) < 1.5  # in units of NumPy's processor time, on any machine

@@ -47,8 +47,8 @@ def test_the_strength_of_snow(run_notebook):
     assert names["again"].mean_stress_5_10_pa > names["summary"].mean_stress_5_10_pa
 
 
-def test_every_tutorial_has_its_test_and_its_place_in_the_table_of_contents():
-    found = sorted(file.stem for file in FOLDER.glob("*.ipynb"))
-    assert found == ["first-stack", "snow-slide", "strength-of-snow"]
+def test_every_tutorial_has_a_test_and_an_entry_in_the_contents():
+    tutorials = sorted(file.stem for file in FOLDER.glob("*.ipynb"))
+    assert tutorials == ["first-stack", "snow-slide", "strength-of-snow"]
     contents = (FOLDER / "index.md").read_text(encoding="utf-8")
-    assert all(f"\n{name}\n" in contents for name in found)
+    assert all(f"\n{name}\n" in contents for name in tutorials)

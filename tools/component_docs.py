@@ -42,7 +42,8 @@ def _type(record, key, child):
     if "anyOf" in child:
         return "float or sequence of float"
     if child.get("type") == "array":
-        return "sequence of float"
+        is_points = child["items"].get("type") == "array"
+        return "sequence of (x, y)" if is_points else "sequence of float"
     return TYPES.get(child.get("type"), "int")
 
 

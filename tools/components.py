@@ -2,9 +2,9 @@
 
 The core describes every field of a scene once (cpp/snowshed/scene/describe.hpp), with its type,
 unit, range, default and meaning. This program changes the dataclasses in python/snowshed so that
-they agree with the description: it adds, removes and orders fields, and writes the section
-"Attributes" of each docstring. Methods, other sections and the first line of a docstring are
-written by hand. The package exports the settings of every method in the registry; this program
+they agree with the description: it adds, removes and orders fields, writes their defaults, and the
+section "Attributes" of each docstring. Methods, other sections and the first line of a docstring
+are written by hand. The package exports the settings of every method in the registry; this program
 writes those lines, too.
 
     python -m tools.components            # after a change of the description and `make build`
@@ -16,6 +16,8 @@ from __future__ import annotations
 import argparse
 import ast
 import inspect
+import json
+import re
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -25,7 +27,7 @@ from tools.component_docs import attributes_section
 import snowshed
 from snowshed import Scene
 from snowshed.base.record import Record
-from snowshed.methods.registry import METHODS
+from snowshed.methods.registry import METHODS, NAME_KEY
 from snowshed.scene.schema import properties, resolve, scene_schema, schema_of_method
 
 EXPORTS = Path(snowshed.__file__).with_suffix(".pyi")
@@ -36,8 +38,7 @@ TYPES = {"number": "float", "integer": "int", "boolean": "bool", "string": "str"
 def components() -> dict[type[Record], dict]:
     """Return every class of a scene's components with the schema node that describes it.
 
-    Parts that several methods have are described for each method. The node of the scene is the
-    whole schema.
+    A part that several methods take appears once per method. The scene's node is the whole schema.
     """
     nodes: dict[type[Record], dict] = {}
     for name, method in METHODS.items():
@@ -74,18 +75,46 @@ def _class_lines(lines: list[str], node: ast.ClassDef, record: type[Record], des
     start = node.lineno - 1
     doc = node.body[0]
     fields = [item for item in node.body if isinstance(item, ast.AnnAssign) and _is_field(item)]
-    texts = {item.target.id: lines[item.lineno - 1 : item.end_lineno] for item in fields}
+    held = {item.target.id: item for item in fields}
     head = "\n".join(inside[: doc.end_lineno - start])
     body_start = fields[-1].end_lineno - start if fields else doc.end_lineno - start
-    names = {
-        key: key if key in texts else f"{key}_" for key in properties(scene_schema(), described)
-    }
-    new = [
-        line
-        for key, child in properties(scene_schema(), described).items()
-        for line in texts.get(names[key]) or [f"    {key}: {_annotation(key, child)} = None"]
-    ]
+    new = []
+    for key, child in properties(scene_schema(), described).items():
+        item = held.get(key, held.get(f"{key}_"))
+        value = "None" if "oneOf" in described else _default_text(key, child)
+        if item is None:
+            new.append(f"    {key}: {_annotation(key, child)} = {value}")
+        elif _is_generated(item.value):
+            line = lines[item.lineno - 1]
+            new.append(f"{line[: item.annotation.end_col_offset]} = {value}")
+        else:
+            new += lines[item.lineno - 1 : item.end_lineno]
     return [*_with_section(head, record, described).split("\n"), "", *new, *inside[body_start:]]
+
+
+def _is_generated(value: ast.expr) -> bool:
+    """Return whether the value of a field is None or a default of the description."""
+    text = ast.unparse(value)
+    return text == "None" or text.startswith("default(")
+
+
+def _default_text(key: str, child: Mapping) -> str:
+    """Return the value of a field in its class; a type of shape has defaults of its own."""
+    value = resolve(scene_schema(), child).get("default")
+    if value is None:
+        return "None"
+    return f"default({'DEFAULT' if key == NAME_KEY else _literal(value)})"
+
+
+def _literal(value: object) -> str:
+    if isinstance(value, list):
+        return f"({', '.join(map(_literal, value))})"
+    if isinstance(value, str):
+        return json.dumps(value)
+    if not isinstance(value, float):
+        return repr(value)
+    text = re.sub(r"e\+?(-?)0*", r"e\1", f"{value:g}")
+    return text if "e" in text or "." in text else f"{text}.0"
 
 
 def _is_field(node: ast.AnnAssign) -> bool:

@@ -13,7 +13,9 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/kernel_variant.hpp"
 #include "snowshed/core/message_format.hpp"
+#include "snowshed/core/version.hpp"
 #include "snowshed/run/event_sequence.hpp"
+#include "snowshed/run/external_record.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
 namespace {
@@ -66,7 +68,7 @@ Options parse(int argc, char** argv) {
 }
 
 /// Shows the progress of the run on one line of the terminal.
-class Display : public snowshed::EventObserver {
+class Display : public snowshed::run::EventObserver {
  public:
   explicit Display(bool quiet) : quiet_(quiet) {}
 
@@ -75,25 +77,27 @@ class Display : public snowshed::EventObserver {
       std::fprintf(stderr, "%snote: %s\n", terminal_ ? "\r" : "",
                    snowshed::printable(note).c_str());
   }
-  void progress(const snowshed::Simulation& sim, const snowshed::RunReport& r) override {
+  void progress(const snowshed::run::Simulation& sim, const snowshed::run::RunReport& r) override {
     if (!quiet_ && terminal_)
       std::fprintf(stderr, "\revent %d  %3.0f %%  t = %.3f s  %.1f M updates/s ", sim.event(),
                    100 * r.progress, r.time, r.updates_per_s / 1e6);
   }
-  void event_ended(const snowshed::Simulation&, const snowshed::EventRecord& record) override {
-    if (const auto lost = record.energy_residual(); lost > snowshed::max_energy_residual)
+  void event_ended(const snowshed::run::Simulation&,
+                   const snowshed::run::EventRecord& record) override {
+    if (const auto lost = record.energy_residual(); lost > snowshed::run::max_energy_residual)
       std::fprintf(stderr, "\rnote: event %d: the energy balance has a residual of %.2g %%\n",
                    record.event, 100 * *lost);
     if (!quiet_)
       std::fprintf(stderr, "%sevent %d  %s after %.3f s of snow time%s\n", terminal_ ? "\r" : "",
-                   record.event, record.ended == snowshed::RunEnd::rest ? "at rest" : "time limit",
+                   record.event,
+                   record.ended == snowshed::run::RunEnd::rest ? "at rest" : "time limit",
                    record.sim_time, terminal_ ? "                              " : "");
   }
   bool stop_requested() override { return interrupted != 0; }
 
  private:
   bool quiet_;
-  bool terminal_ = isatty(STDERR_FILENO) != 0;  // a file or a pipe gets whole lines only
+  bool terminal_ = isatty(STDERR_FILENO) != 0;  // a file or a pipe gets complete lines only
 };
 
 /// The Python package computes the effects of time on the stack between events.
@@ -103,10 +107,10 @@ void refuse_ageing(const std::filesystem::path& folder) {
                                "its snow ages between events; resume it with: snowshed");
 }
 
-snowshed::EventSequence open(const Options& o) {
+snowshed::run::EventSequence open(const Options& o) {
   setting_up = 1;
   std::vector<std::string> notes;
-  const snowshed::Scene scene = snowshed::load_scene(o.scene, &notes);
+  const snowshed::scene::Scene scene = snowshed::scene::load_scene(o.scene, &notes);
   for (const std::string& note : notes)
     if (!o.quiet)
       std::fprintf(stderr, "note: %s\n", snowshed::printable(o.scene + ": " + note).c_str());
@@ -114,15 +118,15 @@ snowshed::EventSequence open(const Options& o) {
     setting_up = 0;  // called while snow is seeded, which can be stopped
     return interrupted != 0;
   };
-  if (!o.resume) return snowshed::EventSequence::create(scene, ".", o.folder, stop);
+  if (!o.resume) return snowshed::run::EventSequence::create(scene, ".", o.folder, stop);
   refuse_ageing(o.folder);
-  auto sequence = snowshed::EventSequence::resume(scene, ".", o.folder);
-  sequence.give_up_files();
+  auto sequence = snowshed::run::EventSequence::resume(scene, ".", o.folder);
+  snowshed::run::ExternalRecord(sequence).drop_files();
   return sequence;
 }
 
 /// Returns whether the run came to its end; after an error, run.json records it.
-bool run_all(snowshed::EventSequence& sequence, bool quiet) try {
+bool run_all(snowshed::run::EventSequence& sequence, bool quiet) try {
   Display display(quiet);
   return sequence.run(display, 0.1);
 } catch (const snowshed::FileError&) {
@@ -155,11 +159,11 @@ int fail(const std::string& message, int code) {
 
 int run(const Options& o) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) interrupt_on(signal);
-  snowshed::EventSequence sequence = open(o);
+  snowshed::run::EventSequence sequence = open(o);
   setting_up = 0;
   if (const char* slow = snowshed::slow_kernels_note(); *slow && !o.quiet)
     std::fprintf(stderr, "note: %s\n", slow);
-  if (const std::string note = sequence.simulation().input_remark(); !note.empty() && !o.quiet)
+  if (const std::string note = sequence.simulation().input_note(); !note.empty() && !o.quiet)
     std::fprintf(stderr, "note: %s\n", note.c_str());
   if (!run_all(sequence, o.quiet)) {
     return fail(
@@ -178,7 +182,7 @@ int main(int argc, char** argv) {
   if (argc == 2 && !std::strcmp(argv[1], "--version")) return std::puts(SNOWSHED_VERSION), 0;
   try {
     if (argc == 2 && !std::strcmp(argv[1], "--schema"))
-      return std::puts(snowshed::scene_schema().c_str()), 0;
+      return std::puts(snowshed::scene::scene_schema().c_str()), 0;
     return run(parse(argc, argv));
   } catch (const snowshed::Stopped&) {
     return fail("interrupted; nothing was written", 130);

@@ -23,8 +23,8 @@ struct Weights {
   }
 };
 
-/// The first node that a particle touches, and the weights of the nodes from there. Coordinates are
-/// in cells.
+/// The first node that a particle reaches, and the weights of its three nodes along each axis.
+/// Coordinates are in cells.
 struct Stencil {
   int node;
   Weights x, y, z;

@@ -17,14 +17,14 @@ class BareKernel {
 
   void step();
   std::size_t size() const { return mass_.size(); }
-  /// Returns the mass on the grid, kg. It must be that of the particles.
+  /// Returns the mass on the grid, kg. It must equal the mass of the particles.
   double grid_mass() const;
   /// Returns the mass of all particles, kg.
   double mass() const;
 
  private:
   static constexpr int margin = 2;          // empty cells on every side
-  static constexpr int slab_thickness = 4;  // cells along x that a thread takes at a time
+  static constexpr int slab_thickness = 4;  // cells along x in the unit of work of a thread
 
   void particles_to_grid(int slab);
   void update_nodes(int slab);

@@ -17,8 +17,8 @@ namespace {
 constexpr double cell = 2, thickness = 0.5;  // m
 constexpr int steps_before = 150;            // 1.5 s: the slide moves, most bonds hold
 
-HeightField plane_with_run_out(double width) {
-  HeightField f;
+geometry::HeightField plane_with_run_out(double width) {
+  geometry::HeightField f;
   f.cell = cell;
   f.columns = int((width + 240) / cell);
   f.rows = int((width + 40) / cell);
@@ -29,10 +29,10 @@ HeightField plane_with_run_out(double width) {
   return f;
 }
 
-std::unique_ptr<slide::Solver> sliding_snow(double particles, slide::Mode mode, bool bonds,
-                                            int threads) {
+std::unique_ptr<methods::slide::Solver> sliding_snow(double particles, methods::slide::Mode mode,
+                                                     bool bonds, int threads) {
   const double width = std::sqrt(particles / 2) * cell;  // two particles a cell
-  slide::Options o;
+  methods::slide::Options o;
   o.terrain = plane_with_run_out(width);
   const double low = 20, high = 20 + width;
   o.areas.release = {
@@ -41,23 +41,24 @@ std::unique_ptr<slide::Solver> sliding_snow(double particles, slide::Mode mode, 
   o.settings.bonds = bonds;
   o.settings.threads = threads;
   o.settings.stop_ratio = 0;
-  auto slide = slide::make_solver(std::move(o));
+  auto slide = methods::slide::make_solver(std::move(o));
   slide->add(slide->seed());
   for (int i = 0; i < steps_before; ++i) slide->step();
   return slide;
 }
 
-void add(const std::string& name, double particles, slide::Mode mode, bool bonds, int threads) {
-  const std::string full = "slide/" + name + "/" + std::to_string(int(particles));
-  benchmark::RegisterBenchmark(full.c_str(),
+void add(const std::string& name, double particles, methods::slide::Mode mode, bool bonds,
+         int threads) {
+  const std::string full_name = "slide/" + name + "/" + std::to_string(int(particles));
+  benchmark::RegisterBenchmark(full_name.c_str(),
                                [=](benchmark::State& state) {
                                  const auto slide = sliding_snow(particles, mode, bonds, threads);
-                                 std::int64_t moved = 0;
+                                 std::int64_t updates = 0;
                                  for (auto _ : state) {
                                    slide->step();
-                                   moved += std::int64_t(slide->size());
+                                   updates += std::int64_t(slide->size());
                                  }
-                                 state.SetItemsProcessed(moved);
+                                 state.SetItemsProcessed(updates);
                                  state.counters["bytes/particle"] =
                                      double(slide->bytes()) / double(slide->size());
                                })
@@ -70,9 +71,9 @@ void add(const std::string& name, double particles, slide::Mode mode, bool bonds
 void add_slides() {
   for (const double particles : {360., 1100., 1e5, 1e6})
     for (const int threads : {1, 2}) {
-      add("compatible", particles, slide::Mode::compatible, true, threads);
-      add("improved", particles, slide::Mode::improved, true, threads);
-      add("improved_without_bonds", particles, slide::Mode::improved, false, threads);
+      add("compatible", particles, methods::slide::Mode::compatible, true, threads);
+      add("improved", particles, methods::slide::Mode::improved, true, threads);
+      add("improved_without_bonds", particles, methods::slide::Mode::improved, false, threads);
     }
 }
 

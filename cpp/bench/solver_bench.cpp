@@ -1,9 +1,9 @@
-// Benchmarks of whole steps of the solver, in particle updates per second:
+// Benchmarks of complete steps of the solver, in particle updates per second:
 //
 // - the slab of snow on which other MPM codes were measured (2 x 0.5 x 1 m, dx 1/32 m, 8 particles
 //   per cell), and a two-dimensional slab;
 // - the bare kernel on the same slab;
-// - the same slab with one feature more or less at a time;
+// - the same slab with single features added or removed;
 // - the cost against the number of particles;
 // - the matrix of all kernels, on small slabs that flow.
 //
@@ -26,10 +26,10 @@ constexpr double slab_dx = 1.0 / 32;
 constexpr int slab_cells[3] = {64, 16, 32};
 
 /// Returns a lattice of two particles per cell in each direction. It is 2D if cells[1] is 0.
-ParticleBatch slab(const int (&cells)[3], double dx, double density) {
+methods::ParticleBatch slab(const int (&cells)[3], double dx, double density) {
   const double h = dx / 2;
   const bool flat = cells[1] == 0;
-  ParticleBatch batch;
+  methods::ParticleBatch batch;
   for (int i = 0; i < 2 * cells[0]; ++i)
     for (int j = 0; j < (flat ? 1 : 2 * cells[1]); ++j)
       for (int k = 0; k < 2 * cells[2]; ++k)
@@ -40,8 +40,8 @@ ParticleBatch slab(const int (&cells)[3], double dx, double density) {
 
 /// A benchmark case.
 struct Case {
-  mpm::Options options;
-  ParticleBatch batch;
+  methods::mpm::Options options;
+  methods::ParticleBatch batch;
   int steps_before = 10;
 };
 
@@ -51,8 +51,10 @@ Case slab_3d(const Vec3& velocity = Vec3::Zero()) {
   c.options.settings.sleep_speed = 0;
   c.batch = slab(slab_cells, slab_dx, c.options.snows[0].density);
   c.batch.velocity = velocity;
-  c.options.obstacles = {
-      {"ground", make_plane(Vec3::Zero(), Vec3::UnitZ()), {Condition::sticky, 0.0}, {}}};
+  c.options.obstacles = {{"ground",
+                          geometry::make_plane(Vec3::Zero(), Vec3::UnitZ()),
+                          {methods::Condition::sticky, 0.0},
+                          {}}};
   return c;
 }
 
@@ -61,8 +63,10 @@ Case slab_2d() {
   c.options.dimension = 2;
   c.options.settings.sleep_speed = 0;
   c.batch = slab({200, 0, 25}, c.options.settings.dx, c.options.snows[0].density);
-  c.options.obstacles = {
-      {"ground", make_plane(Vec3::Zero(), Vec3::UnitZ()), {Condition::sticky, 0.0}, {}}};
+  c.options.obstacles = {{"ground",
+                          geometry::make_plane(Vec3::Zero(), Vec3::UnitZ()),
+                          {methods::Condition::sticky, 0.0},
+                          {}}};
   return c;
 }
 
@@ -72,9 +76,9 @@ void report(benchmark::State& state, std::size_t particles, double bytes) {
 }
 
 void run(benchmark::State& state, const Case& c, int threads) {
-  mpm::Options options = c.options;
+  methods::mpm::Options options = c.options;
   options.settings.threads = threads;
-  const auto solver = mpm::make_solver(options);
+  const auto solver = methods::mpm::make_solver(options);
   solver->add(c.batch);
   for (int i = 0; i < c.steps_before; ++i) solver->step();
   for (auto _ : state) solver->step();
@@ -115,7 +119,9 @@ Case slab_in_flow() {
 
 void add_slabs() {
   const auto unchanged = [](Case&) {};
-  const auto in_double = [](Case& c) { c.options.settings.precision = mpm::Precision::float64; };
+  const auto in_double = [](Case& c) {
+    c.options.settings.precision = methods::mpm::Precision::float64;
+  };
   add("slab_3d/float_at_rest", slab_3d(), unchanged, {1, 2});
   add("slab_3d/float_in_plastic_flow", slab_in_flow(), unchanged, {1, 2});
   add("slab_3d/double_at_rest", slab_3d(), in_double, {1, 2});
@@ -139,16 +145,17 @@ void add_slabs() {
 /// Returns the base case, elastic snow in free fall: only the transfers and a stress.
 Case free_fall() {
   Case c = slab_3d(Vec3(0, 0, -1));
-  c.options.snows[0].model = SnowModel::elastic;
+  c.options.snows[0].model = material::SnowModel::elastic;
   c.options.obstacles.clear();
   return c;
 }
 
-Case slab_on_ground(Condition condition, bool moving = false) {
+Case slab_on_ground(methods::Condition condition, bool moving = false) {
   Case c = free_fall();
-  Obstacle ground{"ground", make_plane(Vec3::Zero(), Vec3::UnitZ()), {condition, 0.3}, {}};
+  methods::Obstacle ground{
+      "ground", geometry::make_plane(Vec3::Zero(), Vec3::UnitZ()), {condition, 0.3}, {}};
   if (moving) {
-    MotionSpec motion;
+    geometry::MotionSpec motion;
     motion.velocity = Vec3(0, 0, -0.1);
     ground.motion.emplace(motion);
   }
@@ -168,21 +175,22 @@ void add_prices() {
     c.batch = slab({256, 0, 256}, slab_dx, c.options.snows[0].density);
   });
   price("cam_clay_elastic", free_fall(),
-        [](C& c) { c.options.snows[0].model = SnowModel::cam_clay; });
+        [](C& c) { c.options.snows[0].model = material::SnowModel::cam_clay; });
   price("ground_cam_clay_in_flow", slab_in_flow(), unchanged);
   price("ground_elastic_in_flow", slab_in_flow(),
-        [](C& c) { c.options.snows[0].model = SnowModel::elastic; });
+        [](C& c) { c.options.snows[0].model = material::SnowModel::elastic; });
   price("double", free_fall(),
-        [](C& c) { c.options.settings.precision = mpm::Precision::float64; });
-  price("cubic", free_fall(), [](C& c) { c.options.settings.basis = mpm::Basis::cubic; });
-  price("apic", free_fall(), [](C& c) { c.options.settings.transfer = mpm::Transfer::apic; });
-  price("sticky_contact", slab_on_ground(Condition::sticky), unchanged);
-  price("slip_contact", slab_on_ground(Condition::slip), unchanged);
-  price("separate_contact", slab_on_ground(Condition::separate), unchanged);
-  price("moving_contact", slab_on_ground(Condition::sticky, true), unchanged);
-  price("several_snows", free_fall(), [](C& c) { c.options.snows.assign(2, Snow()); });
+        [](C& c) { c.options.settings.precision = methods::mpm::Precision::float64; });
+  price("cubic", free_fall(), [](C& c) { c.options.settings.basis = methods::mpm::Basis::cubic; });
+  price("apic", free_fall(),
+        [](C& c) { c.options.settings.transfer = methods::mpm::Transfer::apic; });
+  price("sticky_contact", slab_on_ground(methods::Condition::sticky), unchanged);
+  price("slip_contact", slab_on_ground(methods::Condition::slip), unchanged);
+  price("separate_contact", slab_on_ground(methods::Condition::separate), unchanged);
+  price("moving_contact", slab_on_ground(methods::Condition::sticky, true), unchanged);
+  price("several_snows", free_fall(), [](C& c) { c.options.snows.assign(2, material::Snow()); });
   price("energy_balance", free_fall(), [](C& c) {
-    c.options.snows.assign(2, Snow());
+    c.options.snows.assign(2, material::Snow());
     c.options.energy = true;
   });
   price("sleep_of_awake_snow", free_fall(), [](C& c) { c.options.settings.sleep_speed = 0.02; });
@@ -214,16 +222,17 @@ void add_scaling() {
 /// The snow for one kind of kernels, see KernelChoice.
 struct MatrixSnow {
   const char* name;
-  std::function<void(mpm::Options&)> choose;
+  std::function<void(methods::mpm::Options&)> choose;
 };
 
 const std::vector<MatrixSnow>& matrix_snows() {
   static const std::vector<MatrixSnow> snows = {
-      {"elastic", [](mpm::Options& o) { o.snows[0].model = SnowModel::elastic; }},
-      {"cam_clay", [](mpm::Options&) {}},
-      {"several", [](mpm::Options& o) { o.snows.assign(2, Snow()); }},
-      {"energy", [](mpm::Options& o) {
-         o.snows.assign(2, Snow());
+      {"elastic",
+       [](methods::mpm::Options& o) { o.snows[0].model = material::SnowModel::elastic; }},
+      {"cam_clay", [](methods::mpm::Options&) {}},
+      {"several", [](methods::mpm::Options& o) { o.snows.assign(2, material::Snow()); }},
+      {"energy", [](methods::mpm::Options& o) {
+         o.snows.assign(2, material::Snow());
          o.energy = true;
        }}};
   return snows;
@@ -240,19 +249,21 @@ Case matrix_slab(int dimension) {
 void add_matrix() {
   for (const int dimension : {2, 3})
     for (const bool in_double : {false, true})
-      for (const mpm::Transfer transfer : {mpm::Transfer::flip, mpm::Transfer::apic})
-        for (const mpm::Basis basis : {mpm::Basis::quadratic, mpm::Basis::cubic})
+      for (const methods::mpm::Transfer transfer :
+           {methods::mpm::Transfer::flip, methods::mpm::Transfer::apic})
+        for (const methods::mpm::Basis basis :
+             {methods::mpm::Basis::quadratic, methods::mpm::Basis::cubic})
           for (const MatrixSnow& snow : matrix_snows()) {
-            const std::string name = std::string("matrix/") + (dimension == 3 ? "3d/" : "2d/") +
-                                     (in_double ? "double/" : "float/") +
-                                     (transfer == mpm::Transfer::flip ? "flip/" : "apic/") +
-                                     (basis == mpm::Basis::quadratic ? "quadratic/" : "cubic/") +
-                                     snow.name;
+            const std::string name =
+                std::string("matrix/") + (dimension == 3 ? "3d/" : "2d/") +
+                (in_double ? "double/" : "float/") +
+                (transfer == methods::mpm::Transfer::flip ? "flip/" : "apic/") +
+                (basis == methods::mpm::Basis::quadratic ? "quadratic/" : "cubic/") + snow.name;
             add(name,
                 [=] {
                   Case c = matrix_slab(dimension);
-                  c.options.settings.precision =
-                      in_double ? mpm::Precision::float64 : mpm::Precision::float32;
+                  c.options.settings.precision = in_double ? methods::mpm::Precision::float64
+                                                           : methods::mpm::Precision::float32;
                   c.options.settings.transfer = transfer;
                   c.options.settings.basis = basis;
                   snow.choose(c.options);

@@ -8,13 +8,14 @@
 #include "bindings.hpp"
 #include "scene_argument.hpp"
 #include "simulation_handle.hpp"
+#include "snowshed/run/external_record.hpp"
 
 namespace py = pybind11;
 
 namespace snowshed {
 namespace {
 
-py::dict record_dict(const EventRecord& record) {
+py::dict record_dict(const run::EventRecord& record) {
   py::dict d;
   d["event"] = record.event;
   d["sim_time_s"] = record.sim_time;
@@ -39,15 +40,16 @@ bool python_interrupts() {
 }
 
 /// Passes all calls to a Python object with the same methods.
-class PythonObserver : public EventObserver {
+class PythonObserver : public run::EventObserver {
  public:
   explicit PythonObserver(py::object observer) : observer_(std::move(observer)) {}
 
-  void between_events(Simulation&) override {
+  void between_events(run::Simulation&) override {
     py::gil_scoped_acquire gil;
     observer_.attr("between_events")();
   }
-  void event_begun(const Simulation&, const std::optional<Reseeding>& reseeding) override {
+  void event_begun(const run::Simulation&,
+                   const std::optional<run::Reseeding>& reseeding) override {
     py::gil_scoped_acquire gil;
     observer_.attr("event_begun")(reseeding_dict(reseeding));
   }
@@ -55,15 +57,15 @@ class PythonObserver : public EventObserver {
     py::gil_scoped_acquire gil;
     observer_.attr("noted")(note);
   }
-  void progress(const Simulation&, const RunReport& report) override {
+  void progress(const run::Simulation&, const run::RunReport& report) override {
     py::gil_scoped_acquire gil;
     observer_.attr("progress")(report_dict(report));
   }
-  void event_ended(const Simulation&, const EventRecord& record) override {
+  void event_ended(const run::Simulation&, const run::EventRecord& record) override {
     py::gil_scoped_acquire gil;
     observer_.attr("event_ended")(record_dict(record));
   }
-  void before_checkpoint(const Simulation&) override {
+  void before_checkpoint(const run::Simulation&) override {
     py::gil_scoped_acquire gil;
     observer_.attr("before_checkpoint")();
   }
@@ -76,15 +78,17 @@ class PythonObserver : public EventObserver {
   py::object observer_;
 };
 
-bool run_sequence(EventSequence& sequence, const py::object& observer, double report_interval) {
+bool run_sequence(run::EventSequence& sequence, const py::object& observer,
+                  double report_interval) {
   PythonObserver passing_on(observer);
   py::gil_scoped_release release;
   return sequence.run(passing_on, report_interval);
 }
 
-py::list finished_events(const EventSequence& sequence) {
+py::list finished_events(const run::EventSequence& sequence) {
   py::list events;
-  for (const EventRecord& record : sequence.record().finished) events.append(record_dict(record));
+  for (const run::EventRecord& record : sequence.record().finished_events)
+    events.append(record_dict(record));
   return events;
 }
 
@@ -92,59 +96,67 @@ py::list finished_events(const EventSequence& sequence) {
 
 void bind_event_sequence(py::module_& m) {
   using namespace py::literals;
-  py::class_<EventSequence, std::shared_ptr<EventSequence>>(m, "EventSequence")
+  py::class_<run::EventSequence, std::shared_ptr<run::EventSequence>>(m, "EventSequence")
       .def_static(
           "create",
           [](const py::object& scene, const Path& base_dir, const Path& folder) {
-            return EventSequence::create(scene_of(scene), base_dir, folder, python_interrupts);
+            return run::EventSequence::create(scene_of(scene), base_dir, folder, python_interrupts);
           },
           "scene"_a, "base_dir"_a, "folder"_a)
       .def_static(
           "resume",
           [](const py::object& scene, const Path& base_dir, const Path& folder) {
-            return EventSequence::resume(scene_of(scene), base_dir, folder);
+            return run::EventSequence::resume(scene_of(scene), base_dir, folder);
           },
           "scene"_a, "base_dir"_a, "folder"_a)
       .def("run", &run_sequence, "observer"_a, "report_interval_s"_a)
-      .def("__enter__", [](EventSequence& self) -> EventSequence& { return self; })
-      .def("__exit__", [](EventSequence& self, const py::args&) { self.close(); })
-      .def("record_failure", &EventSequence::record_failure, "error"_a)
+      .def("__enter__", [](run::EventSequence& self) -> run::EventSequence& { return self; })
+      .def("__exit__", [](run::EventSequence& self, const py::args&) { self.close(); })
+      .def("record_failure", &run::EventSequence::record_failure, "error"_a)
       .def(
-          "add_note", [](EventSequence& s, const std::string& note) { s.record().add_note(note); },
+          "add_note",
+          [](run::EventSequence& s, const std::string& note) {
+            run::ExternalRecord(s).add_note(note);
+          },
           "note"_a)
-      .def_property_readonly("notes", [](const EventSequence& s) { return s.record().notes; })
-      .def("count_from", &EventSequence::count_from, "steps"_a, "wall_s"_a)
+      .def_property_readonly("notes", [](const run::EventSequence& s) { return s.record().notes; })
+      .def(
+          "set_finished_work",
+          [](run::EventSequence& s, std::int64_t steps, double wall) {
+            run::ExternalRecord(s).set_finished_work(steps, wall);
+          },
+          "steps"_a, "wall_s"_a)
       .def(
           "describe_machine",
-          [](EventSequence& s, std::map<std::string, std::string> facts) {
-            s.record().machine = std::move(facts);
+          [](run::EventSequence& s, std::map<std::string, std::string> facts) {
+            run::ExternalRecord(s).describe_machine(std::move(facts));
           },
           "facts"_a)
       .def_property(
-          "tables", [](const EventSequence& s) { return s.record().tables; },
-          [](EventSequence& s, decltype(RunRecord::tables) tables) {
-            s.record().tables = std::move(tables);
+          "tables", [](const run::EventSequence& s) { return s.record().tables; },
+          [](run::EventSequence& s, run::RunRecord::Tables tables) {
+            run::ExternalRecord(s).set_tables(std::move(tables));
           })
       .def_property(
           "files",
-          [](const EventSequence& s) {
+          [](const run::EventSequence& s) {
             std::map<std::string, std::pair<std::uint64_t, std::string>> files;
             for (const auto& [name, mark] : s.record().files)
               files[name] = {mark.bytes, mark.checksum};
             return files;
           },
-          [](EventSequence& s,
-             const std::map<std::string, std::pair<std::uint64_t, std::string>>& files) {
-            s.record().files.clear();
-            for (const auto& [name, mark] : files)
-              s.record().files[name] = {mark.first, mark.second};
+          [](run::EventSequence& s,
+             const std::map<std::string, std::pair<std::uint64_t, std::string>>& given) {
+            run::RunRecord::Files files;
+            for (const auto& [name, mark] : given) files[name] = {mark.first, mark.second};
+            run::ExternalRecord(s).set_files(std::move(files));
           })
-      .def("rewrite_record", &EventSequence::rewrite_record)
+      .def("rewrite_record", [](run::EventSequence& s) { run::ExternalRecord(s).rewrite(); })
       .def_property_readonly(
           "simulation",
-          [](const std::shared_ptr<EventSequence>& s) {  // kept alive by the simulation
+          [](const std::shared_ptr<run::EventSequence>& s) {  // kept alive by the simulation
             return std::make_unique<SimulationHandle>(
-                std::shared_ptr<Simulation>(s, &s->simulation()));
+                std::shared_ptr<run::Simulation>(s, &s->simulation()));
           })
       .def_property_readonly("finished_events", &finished_events);
 }

@@ -8,7 +8,7 @@ namespace py = pybind11;
 namespace snowshed {
 namespace {
 
-std::vector<py::ssize_t> shape_of(const FieldView& view) {
+std::vector<py::ssize_t> shape_of(const particles::FieldView& view) {
   const auto n = py::ssize_t(view.count);
   switch (view.info.components) {
     case 1:
@@ -21,7 +21,8 @@ std::vector<py::ssize_t> shape_of(const FieldView& view) {
 }
 
 /// Bytes from one index to the next along each axis; only the first axis may have gaps.
-std::vector<py::ssize_t> strides_of(const FieldView& view, const std::vector<py::ssize_t>& shape,
+std::vector<py::ssize_t> strides_of(const particles::FieldView& view,
+                                    const std::vector<py::ssize_t>& shape,
                                     py::ssize_t element_bytes) {
   std::vector<py::ssize_t> strides(shape.size(), element_bytes);
   for (std::size_t axis = shape.size() - 1; axis-- > 1;)
@@ -31,7 +32,7 @@ std::vector<py::ssize_t> strides_of(const FieldView& view, const std::vector<py:
 }
 
 /// Returns an object by which Python keeps a view's memory alive.
-py::capsule owner_of(const FieldView& view) {
+py::capsule owner_of(const particles::FieldView& view) {
   using Owner = std::shared_ptr<const void>;
   return py::capsule(new Owner(view.elements),
                      [](void* owner) { delete static_cast<Owner*>(owner); });
@@ -39,8 +40,8 @@ py::capsule owner_of(const FieldView& view) {
 
 }  // namespace
 
-py::array array_of(const FieldView& view) {
-  return with_field_type(view.info.type, [&](auto zero) {
+py::array array_of(const particles::FieldView& view) {
+  return particles::with_field_type(view.info.type, [&](auto zero) {
     using Value = decltype(zero);
     const auto shape = shape_of(view);
     py::array array =
@@ -51,16 +52,16 @@ py::array array_of(const FieldView& view) {
   });
 }
 
-py::array array_by_id(const Method& method, const std::string& name) {
-  const FieldView view = method.field(name);
+py::array array_by_id(const methods::Method& method, const std::string& name) {
+  const particles::FieldView view = method.field(name);
   const std::vector<std::uint32_t>& order = method.order_by_id();
-  return with_field_type(view.info.type, [&](auto zero) -> py::array {
+  return particles::with_field_type(view.info.type, [&](auto zero) -> py::array {
     using Value = decltype(zero);
     using Copy = std::conditional_t<std::is_floating_point_v<Value>, double, std::int64_t>;
     py::array_t<Copy> copy(shape_of(view));
     Copy* out = copy.mutable_data();
-    for (const std::uint32_t place : order) {
-      const Value* values = view.at<Value>(place);
+    for (const std::uint32_t index : order) {
+      const Value* values = view.at<Value>(index);
       for (int c = 0; c < view.info.components; ++c) *out++ = Copy(values[c]);
     }
     return copy;

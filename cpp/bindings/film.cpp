@@ -13,9 +13,9 @@ namespace py = pybind11;
 namespace snowshed {
 namespace {
 
-py::list quantity_list(const FilmHeader& header) {
+py::list quantity_list(const io::FilmHeader& header) {
   py::list list;
-  for (const FilmQuantity& q : header.quantities)
+  for (const io::FilmQuantity& q : header.quantities)
     list.append(py::make_tuple(q.name, q.unit, q.meaning, q.step));
   return list;
 }
@@ -30,10 +30,10 @@ py::array_t<std::int32_t> table(const std::vector<std::vector<std::int32_t>>& co
   return a;
 }
 
-py::dict next_frame(FilmReader& reader) {
+py::dict next_frame(io::FilmReader& reader) {
   if (reader.position() == reader.frames().size())
     throw py::stop_iteration("the film has no more frames");
-  const FilmFrame frame = reader.next();
+  const io::FilmFrame frame = reader.next();
   py::dict d;
   d["time"] = frame.time;
   d["event"] = frame.event;
@@ -47,31 +47,33 @@ py::dict next_frame(FilmReader& reader) {
 }
 
 /// Checksum of a film up to the end of its first `frames` frames.
-std::string film_checksum(const FilmReader& reader, std::size_t frames) {
+std::string film_checksum(const io::FilmReader& reader, std::size_t frames) {
   if (frames > reader.frames().size()) throw py::index_error("the film has fewer frames");
-  return hexadecimal(reader.checksum(frames));
+  return io::hexadecimal(reader.checksum(frames));
 }
 
 }  // namespace
 
 void bind_film(py::module_& m) {
   using namespace py::literals;
-  py::class_<FilmReader>(m, "FilmReader")
+  py::class_<io::FilmReader>(m, "FilmReader")
       .def(py::init<std::filesystem::path>(), "path"_a)
       .def("next", &next_frame)
       .def("checksum", &film_checksum, "frames"_a)
-      .def_property_readonly("version", &FilmReader::version)
-      .def_property_readonly("whole", &FilmReader::is_complete)
-      .def_property_readonly("closed", &FilmReader::closed)
-      .def_property_readonly("axes", [](const FilmReader& r) { return r.header().axes; })
-      .def_property_readonly("quantum_m", [](const FilmReader& r) { return r.header().quantum; })
-      .def_property_readonly("interval_s", [](const FilmReader& r) { return r.header().interval; })
-      .def_property_readonly("share", [](const FilmReader& r) { return r.header().share; })
+      .def_property_readonly("version", &io::FilmReader::version)
+      .def_property_readonly("whole", &io::FilmReader::is_complete)
+      .def_property_readonly("closed", &io::FilmReader::closed)
+      .def_property_readonly("axes", [](const io::FilmReader& r) { return r.header().axes; })
+      .def_property_readonly("quantum_m",
+                             [](const io::FilmReader& r) { return r.header().quantum; })
+      .def_property_readonly("interval_s",
+                             [](const io::FilmReader& r) { return r.header().interval; })
+      .def_property_readonly("share", [](const io::FilmReader& r) { return r.header().share; })
       .def_property_readonly("quantities",
-                             [](const FilmReader& r) { return quantity_list(r.header()); })
-      .def_property_readonly("frames", [](const FilmReader& r) {
+                             [](const io::FilmReader& r) { return quantity_list(r.header()); })
+      .def_property_readonly("frames", [](const io::FilmReader& r) {
         py::list list;
-        for (const FilmFrameInfo& f : r.frames())
+        for (const io::FilmFrameInfo& f : r.frames())
           list.append(py::make_tuple(f.time, f.event, f.particles));
         return list;
       });

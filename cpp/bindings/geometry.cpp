@@ -5,7 +5,6 @@
 
 #include "array_copies.hpp"
 #include "bindings.hpp"
-#include "snowshed/geometry/cliffs.hpp"
 #include "snowshed/geometry/readers/ascii_grid.hpp"
 #include "snowshed/geometry/readers/mesh_io.hpp"
 
@@ -15,26 +14,14 @@ namespace snowshed {
 namespace {
 
 py::tuple ascii_grid(const std::filesystem::path& path) {
-  GridAssumptions assumptions;
-  const HeightField f = read_ascii_grid(path, &assumptions);
+  geometry::GridAssumptions assumptions;
+  const geometry::HeightField f = geometry::read_ascii_grid(path, &assumptions);
   return py::make_tuple(map_of(f.heights, f.rows, f.columns), f.west, f.south, f.cell,
                         assumptions.undeclared_missing, assumptions.decimal_commas);
 }
 
-std::string cliff(const py::array_t<double, py::array::c_style | py::array::forcecast>& heights,
-                  double west, double south, double cell, double max_slope) {
-  HeightField f;
-  f.rows = int(heights.shape(0));
-  f.columns = int(heights.shape(1));
-  f.west = west;
-  f.south = south;
-  f.cell = cell;
-  f.heights.assign(heights.data(), heights.data() + heights.size());
-  return impossible_cliff(f, max_slope);
-}
-
 py::tuple mesh_arrays(const std::filesystem::path& path, double scale) {
-  const TriangleMesh mesh = read_mesh(path, scale);
+  const geometry::TriangleMesh mesh = geometry::read_mesh(path, scale);
   py::array_t<std::int64_t> triangles({py::ssize_t(mesh.triangles.size()), py::ssize_t(3)});
   auto out = triangles.mutable_unchecked<2>();
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -47,11 +34,8 @@ py::tuple mesh_arrays(const std::filesystem::path& path, double scale) {
 void bind_geometry(py::module_& m) {
   using namespace py::literals;
   m.def("read_ascii_grid", &ascii_grid, "path"_a,
-        "(heights, west, south, cell, values of -9999 that the header does not declare, numbers "
-        "with decimal commas) of an ESRI ASCII grid, the southernmost row first.");
-  m.def("impossible_cliff", &cliff, "heights"_a, "west"_a, "south"_a, "cell"_a, "max_slope"_a,
-        "Describes the first step between neighbouring nodes that is impossible on ground; empty "
-        "if there is none.");
+        "(heights, west, south, cell, number of undeclared -9999 values, number of decimal commas) "
+        "of an ESRI ASCII grid, the southernmost row first.");
   m.def("read_mesh", &mesh_arrays, "path"_a, "scale"_a = 1.0,
         "Vertices (n, 3), m, and triangles (m, 3) of an STL, OBJ or PLY file.");
 }

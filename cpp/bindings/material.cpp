@@ -11,7 +11,7 @@ namespace snowshed {
 
 void bind_material(py::module_& m) {
   using namespace py::literals;
-  using Law = CamClay<double>;
+  using Law = material::CamClay<double>;
   py::class_<Law>(m, "CamClay", "Cohesive Modified Cam-Clay snow in the p-q plane, in double.")
       .def(py::init(&Law::from), "youngs_modulus"_a, "poissons_ratio"_a, "critical_state_slope"_a,
            "cohesion"_a, "hardening_factor"_a, "dimension"_a = 3)
@@ -22,13 +22,13 @@ void bind_material(py::module_& m) {
       .def(
           "yield_function",
           [](const Law& law, double p, double q, double p0) {
-            return law.yield(PQ<double>{p, q}, p0);
+            return law.yield(material::PQ<double>{p, q}, p0);
           },
           "p"_a, "q"_a, "p0"_a)
       .def(
           "return_map",
           [](const Law& law, double p, double q, double ev) {
-            PQ<double> s{p, q};
+            material::PQ<double> s{p, q};
             law.return_map(s, ev);
             return py::make_tuple(s.p, s.q, ev);
           },

@@ -3,6 +3,7 @@
 
 #include "bindings.hpp"
 #include "method_bindings.hpp"
+#include "snowshed/core/version.hpp"
 
 namespace py = pybind11;
 

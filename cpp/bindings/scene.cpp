@@ -8,6 +8,7 @@
 #include "snowshed/run/cost_report.hpp"
 #include "snowshed/scene/earlier_version.hpp"
 #include "snowshed/scene/json_text.hpp"
+#include "snowshed/scene/panel_frame.hpp"
 #include "snowshed/scene/presets.hpp"
 
 namespace py = pybind11;
@@ -16,8 +17,8 @@ namespace snowshed {
 namespace {
 
 py::dict plan_dict(const py::object& argument, const std::filesystem::path& base_dir) {
-  const Scene scene = scene_of(argument);
-  const CostReport report = report_cost(scene, base_dir);
+  const scene::Scene scene = scene_of(argument);
+  const run::CostReport report = run::report_cost(scene, base_dir);
   const int events = scene.events.count;
   py::dict d;
   d["used"] = report.used;
@@ -48,12 +49,27 @@ void warn(const std::vector<std::string>& notes, const std::string& file = "") {
 }
 
 std::string updated(const std::string& text) {
-  nlohmann::json scene = parse_json(text, "scene");
-  update_version(scene);
+  nlohmann::json scene = scene::parse_json(text, "scene");
+  scene::update_version(scene);
   return scene.dump();
 }
 
+py::object vector(const Vec3& v) { return py::make_tuple(v[0], v[1], v[2]); }
+
 }  // namespace
+
+py::object panel_frame_dict(const scene::Scene& scene) {
+  if (!scene.panel) return py::none();
+  const scene::PanelFrame frame = panel_frame(scene);
+  py::dict d;
+  d["center"] = vector(frame.center);
+  d["normal"] = vector(frame.normal);
+  d["slope"] = vector(frame.slope);
+  d["length"] = frame.length;
+  d["width"] = frame.width;
+  d["board_thickness"] = frame.board_thickness;
+  return d;
+}
 
 void bind_scene(py::module_& m) {
   using namespace py::literals;
@@ -62,9 +78,9 @@ void bind_scene(py::module_& m) {
           "parse",
           [](const std::string& text, const std::filesystem::path& base_dir) {
             std::vector<std::string> notes;
-            const Scene scene = parse_scene(text, "scene", &notes);
+            const scene::Scene scene = scene::parse_scene(text, "scene", &notes);
             warn(notes);
-            return ParsedScene(resolve(with_absolute_files(base_dir, scene)));
+            return ParsedScene(scene::resolve(scene::with_absolute_files(base_dir, scene)));
           },
           "text"_a, "base_dir"_a = ".",
           "The scene of a JSON text; relative file names in it refer to base_dir.")
@@ -72,27 +88,32 @@ void bind_scene(py::module_& m) {
           "load",
           [](const std::filesystem::path& path) {
             std::vector<std::string> notes;
-            const Scene scene = load_scene(path, &notes);
+            const scene::Scene scene = scene::load_scene(path, &notes);
             warn(notes, path.string());
-            return ParsedScene(resolve(scene));
+            return ParsedScene(scene::resolve(scene));
           },
           "path"_a, "The scene of a file; relative file names in it refer to the file's folder.")
-      .def_property_readonly("json", [](const ParsedScene& s) { return s.json; });
+      .def_property_readonly("json", [](const ParsedScene& s) { return s.json; })
+      .def(
+          "panel_frame", [](const ParsedScene& s) { return panel_frame_dict(s.scene); },
+          "The position of the panel's face and the thickness of its board; None without a panel.");
   m.def("update_version", &updated, "text"_a,
         "The JSON of a scene in the present version, with the same meaning.");
-  m.def("scene_checksum", &scene_checksum, "text"_a,
+  m.def("scene_checksum", &scene::scene_checksum, "text"_a,
         "A checksum of the values in a scene's text, except the number of threads.");
-  m.def("scene_schema", &scene_schema, "The JSON Schema of a scene.");
+  m.def("scene_schema", &scene::scene_schema, "The JSON Schema of a scene.");
   m.def(
-      "preset", [](const std::string& name) { return write_scene(preset_scene(name)); }, "name"_a);
+      "preset", [](const std::string& name) { return write_scene(scene::preset_scene(name)); },
+      "name"_a);
   m.def(
-      "snow_preset", [](const std::string& name) { return write_snow(preset_snow(name)); },
+      "snow_preset",
+      [](const std::string& name) { return scene::write_snow(scene::preset_snow(name)); },
       "name"_a);
   m.def("plan", &plan_dict, "scene"_a, "base_dir"_a = ".");
   m.def(
       "expected_work",
       [](const py::object& scene, const std::filesystem::path& base_dir) {
-        return expected_work(scene_of(scene), base_dir);
+        return run::expected_work(scene_of(scene), base_dir);
       },
       "scene"_a, "base_dir"_a = ".",
       "Expected work of a run, in particle updates of unbroken snow; nothing is measured.");

@@ -11,17 +11,18 @@ namespace snowshed {
 
 /// A complete scene and its JSON text.
 struct ParsedScene {
-  Scene scene;
+  scene::Scene scene;
   std::string json;
 
-  explicit ParsedScene(Scene complete) : scene(std::move(complete)), json(write_scene(scene)) {}
+  explicit ParsedScene(scene::Scene complete)
+      : scene(std::move(complete)), json(snowshed::scene::write_scene(scene)) {}
 };
 
 /// The scene of an argument, which is a ParsedScene or JSON text; only text is parsed.
-inline Scene scene_of(const pybind11::object& argument) {
+inline scene::Scene scene_of(const pybind11::object& argument) {
   if (pybind11::isinstance<ParsedScene>(argument)) return argument.cast<const ParsedScene&>().scene;
   if (pybind11::isinstance<pybind11::str>(argument))
-    return parse_scene(argument.cast<std::string>());
+    return scene::parse_scene(argument.cast<std::string>());
   throw pybind11::type_error("scene: a ParsedScene or JSON text is needed");
 }
 

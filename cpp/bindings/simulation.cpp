@@ -13,18 +13,12 @@
 #include "snowshed/methods/quantities.hpp"
 #include "snowshed/run/energy_history.hpp"
 #include "snowshed/run/run_record.hpp"
-#include "snowshed/scene/assemble.hpp"
 
 namespace py = pybind11;
 
 namespace snowshed {
-namespace {
 
-py::object vector(const Vec3& v) { return py::make_tuple(v[0], v[1], v[2]); }
-
-}  // namespace
-
-py::object reseeding_dict(const std::optional<Reseeding>& r) {
+py::object reseeding_dict(const std::optional<run::Reseeding>& r) {
   if (!r) return py::none();
   py::dict d;
   for (const auto& [when, cloud] : {std::pair("before", &r->before), {"after", &r->after}}) {
@@ -37,7 +31,7 @@ py::object reseeding_dict(const std::optional<Reseeding>& r) {
   return d;
 }
 
-py::dict report_dict(const RunReport& r) {
+py::dict report_dict(const run::RunReport& r) {
   py::dict d;
   d["time_s"] = r.time;
   d["steps"] = r.steps;
@@ -52,44 +46,33 @@ py::dict report_dict(const RunReport& r) {
 namespace {
 
 /// Runs the present event until it ends or the callback returns false; returns how it ended.
-std::string run(Simulation& sim, const py::function& callback, double interval) {
-  const auto observer = [&](const RunReport& r) {
+std::string run(run::Simulation& sim, const py::function& callback, double interval) {
+  const auto observer = [&](const run::RunReport& r) {
     py::gil_scoped_acquire gil;
     return callback(report_dict(r)).cast<bool>();
   };
   py::gil_scoped_release release;
-  const RunEnd end = sim.run(observer, interval);
-  return end == RunEnd::paused ? "interrupted" : name_of(end);
+  const run::RunEnd end = sim.run(observer, interval);
+  return end == run::RunEnd::paused ? "interrupted" : name_of(end);
 }
 
-py::dict energy(const Simulation& sim) {
+py::dict energy(const run::Simulation& sim) {
   py::dict d;
-  if (const auto* keeping = capability<KeepsEnergy>(sim.method()))
+  if (const auto* keeping = methods::capability<methods::KeepsEnergy>(sim.method()))
     for (const auto& [name, joules] : keeping->energies()) d[name.c_str()] = joules;
   return d;
 }
 
-py::dict energy_history(const Simulation& sim) {
-  const EnergyHistory& history = sim.energy_history();
+py::dict energy_history(const run::Simulation& sim) {
+  const run::EnergyHistory& history = sim.energy_history();
   return columns_of(history.columns(), history.values());
 }
 
-py::object frame(const Simulation& sim) {
-  if (!sim.scene().panel) return py::none();
-  const PanelFrame f = panel_frame(sim.scene());
-  py::dict d;
-  d["center"] = vector(f.center);
-  d["normal"] = vector(f.normal);
-  d["slope"] = vector(f.slope);
-  d["length"] = f.length;
-  d["width"] = f.width;
-  d["board"] = f.board;
-  return d;
-}
+py::object frame(const run::Simulation& sim) { return panel_frame_dict(sim.scene()); }
 
-std::vector<std::string> snows(const Simulation& sim) {
+std::vector<std::string> snows(const run::Simulation& sim) {
   std::vector<std::string> json;
-  for (const Snow& snow : sim.snows()) json.push_back(write_snow(snow));
+  for (const material::Snow& snow : sim.snows()) json.push_back(scene::write_snow(snow));
   return json;
 }
 
@@ -102,8 +85,8 @@ std::vector<Vec3> vectors(const py::array_t<double>& array, const char* name) {
   return out;
 }
 
-template <double (Simulation::*distance)(const Vec3&) const>
-py::array_t<double> distances_at(const Simulation& sim, const py::array_t<double>& points) {
+template <double (run::Simulation::*distance)(const Vec3&) const>
+py::array_t<double> distances_at(const run::Simulation& sim, const py::array_t<double>& points) {
   std::vector<double> distances;
   for (const Vec3& x : vectors(points, "points")) distances.push_back((sim.*distance)(x));
   return column<double>(distances);
@@ -112,44 +95,39 @@ py::array_t<double> distances_at(const Simulation& sim, const py::array_t<double
 /// The names, units and meanings of the quantities that files and fields hold.
 py::list quantity_list() {
   py::list all;
-  for (const Quantity& q : quantities()) all.append(py::make_tuple(q.name, q.unit, q.meaning));
+  for (const methods::Quantity& q : methods::quantities())
+    all.append(py::make_tuple(q.name, q.unit, q.meaning));
   return all;
 }
 
-py::dtype dtype_of(FieldType type) {
+py::dtype dtype_of(particles::FieldType type) {
   return with_field_type(type, [](auto zero) { return py::dtype::of<decltype(zero)>(); });
 }
 
-py::list field_list(const Simulation& sim) {
+py::list field_list(const run::Simulation& sim) {
   py::list all;
-  for (const FieldInfo& f : sim.method().fields())
+  for (const particles::FieldInfo& f : sim.method().fields())
     all.append(py::make_tuple(f.name, f.unit, f.meaning, dtype_of(f.type), f.stored));
   return all;
 }
 
-py::array order_by_id(const Simulation& sim) {
+py::array order_by_id(const run::Simulation& sim) {
   const std::vector<std::uint32_t>& order = sim.method().order_by_id();
   return column<std::int64_t>(order);
 }
 
 /// Returns for each particle, ordered by id, whether it is on the panel.
-py::array on_panel(const Simulation& sim) {
-  const FieldView view = sim.method().field("position");
+py::array on_panel(const run::Simulation& sim) {
+  const particles::FieldView view = sim.method().field("position");
   std::vector<Vec3> positions;
-  for (const std::uint32_t place : sim.method().order_by_id())
-    positions.push_back(Vec3::Map(view.at<double>(place)));
+  for (const std::uint32_t index : sim.method().order_by_id())
+    positions.push_back(Vec3::Map(view.at<double>(index)));
   return column<bool>(sim.on_panel(positions));
 }
 
-py::object affine(const Simulation& sim) {
-  for (const FieldInfo& info : sim.method().fields())
-    if (info.name == "affine") return array_by_id(sim.method(), info.name);
-  return py::none();
-}
-
-void add_snow(Simulation& sim, const py::array_t<double>& positions, double mass,
+void add_snow(run::Simulation& sim, const py::array_t<double>& positions, double mass,
               const std::array<double, 3>& velocity, int material_id) {
-  ParticleBatch batch;
+  methods::ParticleBatch batch;
   batch.positions = vectors(positions, "positions");
   batch.mass = mass;
   batch.velocity = Vec3(velocity[0], velocity[1], velocity[2]);
@@ -159,16 +137,16 @@ void add_snow(Simulation& sim, const py::array_t<double>& positions, double mass
 
 void bind_run(SimulationClass& c) {
   using namespace py::literals;
-  c.changes("begin_event", [](Simulation& s) { return reseeding_dict(s.begin_event()); });
+  c.changes("begin_event", [](run::Simulation& s) { return reseeding_dict(s.begin_event()); });
   c.changes(
       "run",
-      [](Simulation& s, const py::function& callback, double interval) {
+      [](run::Simulation& s, const py::function& callback, double interval) {
         return run(s, callback, interval);
       },
       "callback"_a, "interval_s"_a = 0.5);
   c.changes(
       "step",
-      [](Simulation& s, int count) {
+      [](run::Simulation& s, int count) {
         py::gil_scoped_release release;
         s.step(count);
       },
@@ -176,13 +154,13 @@ void bind_run(SimulationClass& c) {
   c.changes("add_snow", &add_snow, "positions"_a, "mass"_a, "velocity"_a, "material_id"_a);
   c.changes(
       "add_velocity",
-      [](Simulation& s, const py::array_t<double>& changes) {
+      [](run::Simulation& s, const py::array_t<double>& changes) {
         s.add_velocity(vectors(changes, "velocity changes"));
       },
       "velocity_changes"_a);
   c.changes(
       "settle",
-      [](Simulation& s, const std::vector<double>& drops,
+      [](run::Simulation& s, const std::vector<double>& drops,
          const std::vector<double>& plastic_changes) { s.settle(drops, plastic_changes); },
       "drops"_a, "plastic_changes"_a);
 }
@@ -192,7 +170,7 @@ void bind_files(SimulationClass& c) {
   (*c).def_static(
       "load",
       [](const std::filesystem::path& path) {
-        return std::make_unique<SimulationHandle>(Simulation::load(path));
+        return std::make_unique<SimulationHandle>(run::Simulation::load(path));
       },
       "path"_a);
   (*c).def_static(
@@ -200,21 +178,22 @@ void bind_files(SimulationClass& c) {
       [](const py::object& scene, const std::filesystem::path& base_dir,
          const std::filesystem::path& path) {
         return std::make_unique<SimulationHandle>(
-            Simulation::load_into(scene_of(scene), base_dir, path));
+            run::Simulation::load_into(scene_of(scene), base_dir, path));
       },
       "scene"_a, "base_dir"_a, "path"_a);
   c.reads(
-      "save", [](const Simulation& s, const std::filesystem::path& path) { s.save(path); },
+      "save", [](const run::Simulation& s, const std::filesystem::path& path) { s.save(path); },
       "path"_a);
   c.changes(
       "set_snapshots",
-      [](Simulation& s, const std::filesystem::path& dir, double interval) {
+      [](run::Simulation& s, const std::filesystem::path& dir, double interval) {
         s.write_snapshots(dir, interval);
       },
       "dir"_a, "interval_s"_a);
   c.reads(
       "write_vtk",
-      [](const Simulation& s, const std::filesystem::path& path) { s.write_vtp(path); }, "path"_a);
+      [](const run::Simulation& s, const std::filesystem::path& path) { s.write_vtp(path); },
+      "path"_a);
 }
 
 void bind_fields(SimulationClass& c) {
@@ -222,11 +201,15 @@ void bind_fields(SimulationClass& c) {
   c.reads("fields", &field_list);
   c.reads(
       "field",
-      [](const Simulation& s, const std::string& name) { return array_of(s.method().field(name)); },
+      [](const run::Simulation& s, const std::string& name) {
+        return array_of(s.method().field(name));
+      },
       "name"_a);
   c.reads(
       "field_by_id",
-      [](const Simulation& s, const std::string& name) { return array_by_id(s.method(), name); },
+      [](const run::Simulation& s, const std::string& name) {
+        return array_by_id(s.method(), name);
+      },
       "name"_a);
   c.reads("order_by_id", &order_by_id);
   c.column("positions", "position");
@@ -237,11 +220,10 @@ void bind_fields(SimulationClass& c) {
   c.column("plastic_strains", "volumetric_plastic_strain");
   c.column("events", "event");
   c.column("material_ids", "material_id");
-  c.reads("affine", &affine);
   c.reads("on_panel", &on_panel);
   c.reads(
       "on_panel_at",
-      [](const Simulation& s, const py::array_t<double>& positions, double laid_height) {
+      [](const run::Simulation& s, const py::array_t<double>& positions, double laid_height) {
         return column<bool>(s.on_panel(vectors(positions, "positions"), laid_height));
       },
       "positions"_a, "laid_height"_a);
@@ -252,34 +234,34 @@ void bind_facts(SimulationClass& c) {
   c.reads("energy", &energy);
   c.reads("energy_history", &energy_history);
   c.reads("panel_frame", &frame);
-  c.reads("obstacle_distance", &distances_at<&Simulation::obstacle_distance>, "points"_a);
-  c.reads("resolved_distance", &distances_at<&Simulation::resolved_distance>, "points"_a);
-  c.reads("label_note", [](const Simulation& s) { return s.input_remark(); });
-  c.property("notes", [](const Simulation& s) { return s.notes(); });
-  c.property("expected_particles", [](const Simulation& s) {
+  c.reads("obstacle_distance", &distances_at<&run::Simulation::obstacle_distance>, "points"_a);
+  c.reads("resolved_distance", &distances_at<&run::Simulation::resolved_distance>, "points"_a);
+  c.reads("input_note", [](const run::Simulation& s) { return s.input_note(); });
+  c.property("notes", [](const run::Simulation& s) { return s.notes(); });
+  c.property("expected_particles", [](const run::Simulation& s) {
     const std::vector<double>& particles = s.cost().particles;
     return particles.empty() ? 0.0 : particles.front();
   });
-  c.property("event", [](const Simulation& s) { return s.event(); });
-  c.property("event_count", [](const Simulation& s) { return s.scene().events.count; });
-  c.property("event_running", [](const Simulation& s) { return s.event_running(); });
-  c.property("time_s", [](const Simulation& s) { return s.event_time(); });
-  c.property("damping_rate_per_s", [](const Simulation& s) { return s.damping_rate(); });
-  c.property("total_steps", [](const Simulation& s) { return s.method().counters().steps; });
-  c.property("rejected_steps", [](const Simulation& s) { return s.method().counters().rejected; });
+  c.property("event", [](const run::Simulation& s) { return s.event(); });
+  c.property("event_count", [](const run::Simulation& s) { return s.scene().events.count; });
+  c.property("event_running", [](const run::Simulation& s) { return s.event_running(); });
+  c.property("time_s", [](const run::Simulation& s) { return s.event_time(); });
+  c.property("damping_rate_per_s", [](const run::Simulation& s) { return s.damping_rate(); });
+  c.property("total_steps", [](const run::Simulation& s) { return s.method().counters().steps; });
+  c.property("rejected_steps",
+             [](const run::Simulation& s) { return s.method().counters().rejected; });
   c.property("particle_updates",
-             [](const Simulation& s) { return s.method().counters().particle_updates; });
-  c.property("slept_updates", [](const Simulation& s) { return slept_updates(s.method()); });
-  c.property("sorts", [](const Simulation& s) { return s.method().counters().sorts; });
-  c.property("particle_count", [](const Simulation& s) { return s.method().size(); });
-  c.property("time_step_s", [](const Simulation& s) { return s.method().time_step(); });
-  c.property("scene", [](const Simulation& s) { return write_scene(s.scene()); });
+             [](const run::Simulation& s) { return s.method().counters().particle_updates; });
+  c.property("particle_count", [](const run::Simulation& s) { return s.method().size(); });
+  c.property("time_step_s", [](const run::Simulation& s) { return s.method().time_step(); });
+  c.property("scene", [](const run::Simulation& s) { return write_scene(s.scene()); });
   c.property("snows", &snows);
-  c.property("threads", [](const Simulation& s) { return s.threads(); });
-  c.property("resolution", [](const Simulation& s) { return s.resolution(); });
-  c.property("dimension", [](const Simulation& s) { return s.scene().dimension; });
-  c.property("ground_tilt_deg",
-             [](const Simulation& s) { return s.scene().ground ? s.scene().ground->tilt : 0.0; });
+  c.property("threads", [](const run::Simulation& s) { return s.threads(); });
+  c.property("resolution", [](const run::Simulation& s) { return s.resolution(); });
+  c.property("dimension", [](const run::Simulation& s) { return s.scene().dimension; });
+  c.property("ground_tilt_deg", [](const run::Simulation& s) {
+    return s.scene().ground ? s.scene().ground->tilt : 0.0;
+  });
 }
 
 }  // namespace
@@ -290,7 +272,7 @@ void bind_simulation(py::module_& m) {
   SimulationClass c(m);
   (*c).def(py::init([](const py::object& scene, const std::filesystem::path& base_dir) {
              return std::make_unique<SimulationHandle>(
-                 std::make_shared<Simulation>(scene_of(scene), base_dir));
+                 std::make_shared<run::Simulation>(scene_of(scene), base_dir));
            }),
            "scene"_a, "base_dir"_a = ".");
   bind_run(c);

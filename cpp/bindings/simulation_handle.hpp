@@ -9,6 +9,6 @@
 
 namespace snowshed {
 
-using SimulationHandle = Guarded<std::shared_ptr<Simulation>>;
+using SimulationHandle = Guarded<std::shared_ptr<run::Simulation>>;
 
 }  // namespace snowshed

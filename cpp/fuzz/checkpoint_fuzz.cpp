@@ -8,20 +8,21 @@
 namespace snowshed {
 namespace {
 
-/// Scenes with more particles are valid, too, but take too long for one mutation.
+/// Scenes with more particles are valid, but take too long for one mutation.
 constexpr double max_added_particles = 2000;
 
-void continue_run(Simulation& simulation) {
-  const bool more = simulation.event() < simulation.scene().events.count;
-  if (!simulation.event_running() && more &&
+void continue_run(run::Simulation& simulation) {
+  const bool has_next_event = simulation.event() < simulation.scene().events.count;
+  if (!simulation.event_running() && has_next_event &&
       simulation.cost().total_particles < max_added_particles)
     simulation.begin_event();
   if (simulation.event_running()) simulation.step(3);
 }
 
-void exercise(Simulation& simulation, const std::filesystem::path& copy) {
+void exercise(run::Simulation& simulation, const std::filesystem::path& copy) {
   simulation.method().state();
-  if (const auto* keeping = capability<KeepsEnergy>(simulation.method())) keeping->energies();
+  if (const auto* keeping = methods::capability<methods::KeepsEnergy>(simulation.method()))
+    keeping->energies();
   simulation.save(copy);
   try {
     continue_run(simulation);
@@ -35,6 +36,6 @@ void exercise(Simulation& simulation, const std::filesystem::path& copy) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace snowshed;
   const InputFile file(data, size, ".bin");
-  allow_refusal([&] { exercise(*Simulation::load(file.path()), file.path()); });
+  allow_refusal([&] { exercise(*run::Simulation::load(file.path()), file.path()); });
   return 0;
 }

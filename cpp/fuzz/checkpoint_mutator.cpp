@@ -56,7 +56,7 @@ std::string archive_of(const std::vector<ArchiveSection>& sections) {
   std::string bytes = "\x89SNOW\r\n\x1a" + bytes_of(std::uint32_t(1));
   bytes += bytes_of(std::uint32_t(sections.size()));
   bytes += bytes_of(std::uint64_t(archive_header + body.size() + archive_trailer)) + body;
-  Checksum sum;
+  io::Checksum sum;
   sum.update(bytes.data(), bytes.size());
   return bytes + bytes_of(sum.value());
 }
@@ -66,7 +66,7 @@ std::string with_valid_frame(std::string bytes) {
   bytes.resize(padded(std::max(bytes.size(), archive_header + archive_trailer)));
   const auto length = bytes_of(std::uint64_t(bytes.size()));
   bytes.replace(16, length.size(), length);
-  Checksum sum;
+  io::Checksum sum;
   sum.update(bytes.data(), bytes.size() - archive_trailer);
   return bytes.replace(bytes.size() - archive_trailer, archive_trailer, bytes_of(sum.value()));
 }

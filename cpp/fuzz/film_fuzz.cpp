@@ -1,31 +1,32 @@
-// Fuzz target of films. A file must be refused, or give frames whose lists belong together; and a
-// run must be able to go on with it.
+// Fuzz target of films. A file must be refused, or yield frames with lists of equal length, and a
+// run must be able to append to it.
 #include "fuzzing.hpp"
 #include "snowshed/io/film_file.hpp"
 
 namespace snowshed {
 namespace {
 
-void check_frame(const FilmFrame& frame, const FilmHeader& header, std::size_t particles) {
-  const auto of_all = [particles](const auto& values) { return values.size() == particles; };
-  require(of_all(frame.ids) && of_all(frame.events) && of_all(frame.materials), "lists");
-  require(!header.has_radius || of_all(frame.radii), "radii");
+void check_frame(const io::FilmFrame& frame, const io::FilmHeader& header, std::size_t particles) {
+  const auto has_all = [particles](const auto& values) { return values.size() == particles; };
+  require(has_all(frame.ids) && has_all(frame.events) && has_all(frame.materials), "lists");
+  require(!header.has_radius || has_all(frame.radii), "radii");
   require(frame.positions.size() == std::size_t(header.axes), "axes");
   require(frame.values.size() == header.quantities.size(), "quantities");
-  for (const auto& axis : frame.positions) require(of_all(axis), "positions");
-  for (const auto& quantity : frame.values) require(of_all(quantity), "values");
+  for (const auto& axis : frame.positions) require(has_all(axis), "positions");
+  for (const auto& quantity : frame.values) require(has_all(quantity), "values");
   for (std::size_t i = 1; i < particles; ++i)
     require(frame.ids[i - 1] < frame.ids[i], "ids do not rise");
 }
 
-void go_on(const std::filesystem::path& path) {
-  FilmWriter writer = FilmWriter::reopen(path, [](const FilmFrameInfo&) { return true; });
-  FilmFrame empty;
+void extend_film(const std::filesystem::path& path) {
+  io::FilmWriter writer =
+      io::FilmWriter::reopen(path, [](const io::FilmFrameInfo&) { return true; });
+  io::FilmFrame empty;
   empty.positions.resize(std::size_t(writer.header().axes));
   empty.values.resize(writer.header().quantities.size());
   writer.append(empty);
   writer.close();
-  const FilmReader reader(path);
+  const io::FilmReader reader(path);
   require(reader.is_complete() && reader.closed(), "the film does not end");
   require(reader.frames().size() == writer.frames().size(), "frames are lost");
 }
@@ -37,10 +38,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace snowshed;
   const InputFile file(data, size, ".bin");
   allow_refusal([&] {
-    FilmReader reader(file.path());
-    for (const FilmFrameInfo& info : reader.frames())
+    io::FilmReader reader(file.path());
+    for (const io::FilmFrameInfo& info : reader.frames())
       check_frame(reader.next(), reader.header(), info.particles);
-    go_on(file.path());
+    extend_film(file.path());
   });
   return 0;
 }

@@ -35,10 +35,10 @@ FilmParts parts_of(const std::string& bytes) {
   for (std::size_t at = text_at + length; bytes.size() - at >= record_head;) {
     const std::size_t raw = number_at<std::uint32_t>(bytes, at + raw_at),
                       packed = number_at<std::uint32_t>(bytes, at + packed_at);
-    if (packed > bytes.size() - at - record_head || !could_be_deflated(packed, raw)) break;
+    if (packed > bytes.size() - at - record_head || !io::could_be_deflated(packed, raw)) break;
     const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data()) + at + record_head;
     try {
-      const auto content = inflated(data, packed, raw, "film");
+      const auto content = io::inflated(data, packed, raw, "film");
       parts.records.push_back({bytes.substr(at + facts_at, raw_at - facts_at),
                                std::string(content.begin(), content.end())});
     } catch (const InputError&) {
@@ -52,16 +52,16 @@ FilmParts parts_of(const std::string& bytes) {
 /// Returns the header of a film; the checksum of version 1 covers the text alone.
 std::string header_of(const std::string& text, std::uint32_t version) {
   const std::string fixed = "SNOWFILM" + bytes_of(version) + bytes_of(std::uint32_t(text.size()));
-  const std::uint32_t before = version == 1 ? 0 : crc32_of(fixed.data(), fixed.size());
-  return fixed + bytes_of(crc32_of(text.data(), text.size(), before)) + bytes_of(0) + text;
+  const std::uint32_t before = version == 1 ? 0 : io::crc32_of(fixed.data(), fixed.size());
+  return fixed + bytes_of(io::crc32_of(text.data(), text.size(), before)) + bytes_of(0) + text;
 }
 
 /// Returns a record that follows one with the checksum `before`; `before` becomes its own checksum.
 std::string record_of(const std::string& tag, std::string facts, std::size_t raw,
                       const std::vector<std::uint8_t>& packed, std::uint32_t& before) {
   facts += bytes_of(std::uint32_t(raw)) + bytes_of(std::uint32_t(packed.size())) +
-           bytes_of(crc32_of(packed.data(), packed.size()));
-  before = crc32_of(facts.data(), facts.size(), before);
+           bytes_of(io::crc32_of(packed.data(), packed.size()));
+  before = io::crc32_of(facts.data(), facts.size(), before);
   return tag + bytes_of(before) + facts + std::string(packed.begin(), packed.end());
 }
 
@@ -69,7 +69,7 @@ std::string record_of_version_1(std::string facts, std::size_t raw,
                                 const std::vector<std::uint8_t>& packed) {
   facts += bytes_of(std::uint32_t(raw)) + bytes_of(std::uint32_t(packed.size())) + bytes_of(0);
   facts.append(packed.begin(), packed.end());
-  return "FRAM" + bytes_of(crc32_of(facts.data(), facts.size())) + facts;
+  return "FRAM" + bytes_of(io::crc32_of(facts.data(), facts.size())) + facts;
 }
 
 /// Returns a film of these parts with matching lengths and checksums, with its end if `closed`.
@@ -77,7 +77,7 @@ std::string film_of(const FilmParts& parts, std::uint32_t version, bool closed) 
   std::string bytes = header_of(parts.text, version);
   auto sum = number_at<std::uint32_t>(bytes, text_at - 8);
   for (const auto& record : parts.records) {
-    const auto packed = deflated({record.raw.begin(), record.raw.end()});
+    const auto packed = io::deflated({record.raw.begin(), record.raw.end()});
     bytes += version == 1 ? record_of_version_1(record.facts, record.raw.size(), packed)
                           : record_of("FRAM", record.facts, record.raw.size(), packed, sum);
   }

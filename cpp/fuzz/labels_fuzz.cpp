@@ -6,7 +6,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace snowshed;
   const InputFile file(data, size, ".npy");
   allow_refusal([&] {
-    const NpyLabels labels = read_npy_labels(file.path());
+    const geometry::NpyLabels labels = geometry::read_npy_labels(file.path());
     std::size_t voxels = 1;
     for (const std::size_t side : labels.shape) voxels *= side;
     require(labels.shape.size() == 3 && labels.values.size() == voxels, "voxels");

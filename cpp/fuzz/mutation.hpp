@@ -27,7 +27,7 @@ std::string bytes_of(T value) {
   return {reinterpret_cast<const char*>(&value), sizeof value};
 }
 
-/// Returns the bytes as libFuzzer changes them.
+/// Returns the bytes after a mutation by libFuzzer.
 inline std::string mutate(std::string bytes, std::size_t max_size) {
   const std::size_t size = bytes.size();
   bytes.resize(std::max(size, max_size));

@@ -10,8 +10,8 @@
 namespace snowshed {
 namespace {
 
-void check_samples(const LevelSet& shape) {
-  const Bounds bounds = shape.bounds();
+void check_samples(const geometry::LevelSet& shape) {
+  const geometry::Bounds bounds = shape.bounds();
   require(shape.inradius() >= 0 && std::isfinite(shape.inradius()), "inradius");
   for (const double fraction : {-0.5, 0.0, 0.25, 0.5, 1.0}) {
     Vec3 x;
@@ -31,11 +31,11 @@ void check_samples(const LevelSet& shape) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace snowshed;
   const InputFile file(data, size, SNOWSHED_FUZZ_EXTENSION);
-  ShapeSpec spec;
+  scene::ShapeSpec spec;
   spec.type = SNOWSHED_FUZZ_TYPE;
   spec.file = file.path().string();
   spec.spacing = 0.1;  // for grids
   for (const int dimension : {2, 3})
-    allow_refusal([&] { check_samples(*build_shape(spec, dimension, "/shape", "")); });
+    allow_refusal([&] { check_samples(*scene::build_shape(spec, dimension, "/shape", "")); });
   return 0;
 }

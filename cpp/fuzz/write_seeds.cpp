@@ -106,14 +106,14 @@ std::string rich_scene_in(int dimension) {
 }
 
 void write_scenes(const fs::path& folder) {
-  for (const std::string& name : scene_preset_names())
-    write(folder / (name + ".json"), write_scene(preset_scene(name)));
+  for (const std::string& name : scene::scene_preset_names())
+    write(folder / (name + ".json"), write_scene(scene::preset_scene(name)));
   for (const int dimension : {2, 3})
     write(folder / ("rich-" + std::to_string(dimension) + "d.json"),
-          write_scene(parse_scene(rich_scene_in(dimension))));
-  write(folder / "grains.json", write_scene(parse_scene(grains_scene)));
-  write(folder / "mps.json", write_scene(parse_scene(mps_scene)));
-  write(folder / "slide.json", write_scene(parse_scene(slide_scene)));
+          scene::write_scene(scene::parse_scene(rich_scene_in(dimension))));
+  write(folder / "grains.json", scene::write_scene(scene::parse_scene(grains_scene)));
+  write(folder / "mps.json", scene::write_scene(scene::parse_scene(mps_scene)));
+  write(folder / "slide.json", scene::write_scene(scene::parse_scene(slide_scene)));
   write(folder / "least.json", R"({"snowshed": 2, "bodies": [{"shape": {"type": "sphere",)"
                                R"( "center": [0, 0, 1], "radius": 1e-1}}]})");
 }
@@ -131,7 +131,7 @@ std::set<std::string> scene_words() {
       if (value.is_structured()) self(self, value);
     }
   };
-  collect_words(collect_words, nlohmann::json::parse(scene_schema()));
+  collect_words(collect_words, nlohmann::json::parse(scene::scene_schema()));
   return words;
 }
 
@@ -310,15 +310,15 @@ void write_terrain(const fs::path& file) {
 void write_films(const fs::path& folder) {
   fs::create_directories(folder);
   for (const int axes : {2, 3}) {
-    FilmHeader header;
+    io::FilmHeader header;
     header.axes = axes;
     header.quantum = 1.0 / 1024;
     header.interval = 0.1;
     header.has_radius = axes == 3;
     header.quantities = {{"speed", "m/s", "Speed", 0.05}};
-    FilmWriter writer(folder / (std::to_string(axes) + "d.bin"), header);
+    io::FilmWriter writer(folder / (std::to_string(axes) + "d.bin"), header);
     for (std::uint32_t k = 0; k < 4; ++k) {
-      FilmFrame frame;
+      io::FilmFrame frame;
       frame.time = 0.1 * k;
       frame.event = 1 + k / 3;
       frame.positions.resize(std::size_t(axes));
@@ -338,20 +338,21 @@ void write_films(const fs::path& folder) {
 
 /// Returns a scene of a few particles: plain and between two events, or with many features and in
 /// the middle of an event.
-Scene scene_of_checkpoint(int dimension, bool running) {
-  Scene scene = parse_scene(R"({"snowshed": 2, "bodies": [{"shape": {"type": "sphere", "center":)"
-                            R"( [0, 0, 0.25], "radius": 0.1}, "event": 0}], "ground": {},)"
-                            R"( "events": {"count": 2}, "numerics": {"dx": 0.1, "threads": 1}})");
+scene::Scene scene_of_checkpoint(int dimension, bool running) {
+  scene::Scene scene =
+      scene::parse_scene(R"({"snowshed": 2, "bodies": [{"shape": {"type": "sphere", "center":)"
+                         R"( [0, 0, 0.25], "radius": 0.1}, "event": 0}], "ground": {},)"
+                         R"( "events": {"count": 2}, "numerics": {"dx": 0.1, "threads": 1}})");
   scene.dimension = dimension;
   scene.events.max_time = running ? 1.0 : 0.01;
   scene.events.rest_time = 0.005;
   if (!running) return scene;
-  scene.events.between = Between::reseed;
-  scene.numerics.as<mpm::Settings>().precision = mpm::Precision::float64;
-  scene.numerics.as<mpm::Settings>().transfer = mpm::Transfer::apic;
+  scene.events.between = methods::Between::reseed;
+  scene.numerics.as<methods::mpm::Settings>().precision = methods::mpm::Precision::float64;
+  scene.numerics.as<methods::mpm::Settings>().transfer = methods::mpm::Transfer::apic;
   scene.output.energy = true;
-  scene.domain.emplace(Domain{Vec3(-1, -1, -1), Vec3(1, 1, 1)});
-  ObstacleSpec plate;
+  scene.domain.emplace(scene::Domain{Vec3(-1, -1, -1), Vec3(1, 1, 1)});
+  scene::ObstacleSpec plate;
   plate.shape = scene.bodies.front().shape;
   plate.shape.center.z() = 0;
   plate.motion.emplace();
@@ -361,30 +362,30 @@ Scene scene_of_checkpoint(int dimension, bool running) {
 }
 
 /// Writes the checkpoint of a scene after some steps of its first event.
-void write_checkpoint(const Scene& scene, const fs::path& inputs, const fs::path& file) {
-  Simulation simulation(scene, inputs);
+void write_checkpoint(const scene::Scene& scene, const fs::path& inputs, const fs::path& file) {
+  run::Simulation simulation(scene, inputs);
   simulation.begin_event();
   simulation.step(3);
   simulation.save(file);
 }
 
-/// Writes a checkpoint of each other method, with everything that its state can hold, and the files
+/// Writes a checkpoint of each other method, with a state that has all parts, and writes the files
 /// that the scenes name into `inputs`.
 void write_checkpoints_of_methods(const fs::path& folder, const fs::path& inputs) {
   write_terrain(inputs / "plane.asc");
   write_labels(inputs);
-  write_checkpoint(parse_scene(mps_scene), inputs, folder / "mps");
-  write_checkpoint(parse_scene(loaded_grains), inputs, folder / "grains");
-  write_checkpoint(parse_scene(small_slide), inputs, folder / "slide");
+  write_checkpoint(scene::parse_scene(mps_scene), inputs, folder / "mps");
+  write_checkpoint(scene::parse_scene(loaded_grains), inputs, folder / "grains");
+  write_checkpoint(scene::parse_scene(small_slide), inputs, folder / "slide");
 }
 
 void write_checkpoints(const fs::path& folder) {
   fs::create_directories(folder);
   for (const int dimension : {2, 3})
     for (const bool running : {false, true}) {
-      Simulation simulation(scene_of_checkpoint(dimension, running));
+      run::Simulation simulation(scene_of_checkpoint(dimension, running));
       simulation.begin_event();
-      simulation.run([&](const RunReport& r) { return !running || r.steps < 10; }, 0.0);
+      simulation.run([&](const run::RunReport& r) { return !running || r.steps < 10; }, 0.0);
       simulation.save(folder / (std::to_string(dimension) + (running ? "d-running" : "d-ended")));
     }
 }

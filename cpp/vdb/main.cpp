@@ -15,6 +15,7 @@
 #include "particle_message.hpp"
 #include "read_samples.hpp"
 #include "snowshed/core/errors.hpp"
+#include "snowshed/core/version.hpp"
 
 namespace {
 

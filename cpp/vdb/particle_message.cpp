@@ -17,8 +17,9 @@ std::vector<T> read_values(std::istream& in, std::size_t count) {
   return values;
 }
 
-PointArray read_attribute(std::istream& in, const nlohmann::json& header, std::size_t particles) {
-  PointArray array;
+io::PointArray read_attribute(std::istream& in, const nlohmann::json& header,
+                              std::size_t particles) {
+  io::PointArray array;
   array.name = header.at(0);
   array.components = header.at(2);
   if (array.components != 1 && array.components != 3)
@@ -43,10 +44,11 @@ WriteRequest read_request(std::istream& in) try {
   request.settings.dimension = header.at("dimension");
   request.settings.voxel = header.at("voxel");
   request.settings.width = header.at("width");
-  request.settings.radius = particle_radius(request.settings.dimension, request.settings.voxel,
-                                            header.at("particles_per_voxel"));
+  request.settings.radius = sampling::particle_radius(
+      request.settings.dimension, request.settings.voxel, header.at("particles_per_voxel"));
   const std::size_t particles = header.at("particles");
-  if (double(particles) > max_particles) throw InputError("particles", "at most 2e8 are written");
+  if (double(particles) > sampling::max_particles)
+    throw InputError("particles", "at most 2e8 are written");
   const std::vector<double> x = read_values<double>(in, 3 * particles);
   for (std::size_t n = 0; n < particles; ++n)
     request.cloud.positions.emplace_back(

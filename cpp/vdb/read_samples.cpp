@@ -19,12 +19,12 @@ template <class... Values>
   throw InputError("", text.str());
 }
 
-VdbKind kind_of(const openvdb::FloatGrid& grid) {
+geometry::VdbKind kind_of(const openvdb::FloatGrid& grid) {
   switch (grid.getGridClass()) {
     case openvdb::GRID_LEVEL_SET:
-      return VdbKind::level_set;
+      return geometry::VdbKind::level_set;
     case openvdb::GRID_FOG_VOLUME:
-      return VdbKind::fog_volume;
+      return geometry::VdbKind::fog_volume;
     default:
       fail("a grid of class '", openvdb::GridBase::gridClassToString(grid.getGridClass()),
            "'; allowed: level set, fog volume");
@@ -56,9 +56,9 @@ openvdb::CoordBBox box_of(const openvdb::FloatGrid& grid) {
   double total = 1;
   for (int axis = 0; axis < 3; ++axis)
     total *= double(box.max()[axis]) - double(box.min()[axis]) + 3;
-  if (total > double(max_vdb_samples))
+  if (total > double(geometry::max_vdb_samples))
     fail("the box around its ", grid.activeVoxelCount(), " active voxels holds ", total,
-         " in all; at most ", double(max_vdb_samples), " are read");
+         " in all; at most ", double(geometry::max_vdb_samples), " are read");
   box.expand(1);
   return box;
 }
@@ -79,10 +79,11 @@ double band_of(const openvdb::FloatGrid& grid, double spacing) {
 VdbSamples read_samples(const std::string& path, const std::string& name) {
   const openvdb::FloatGrid::Ptr grid = GridFile(path).read(name);
   VdbSamples result;
-  VdbHeader& header = result.header;
+  geometry::VdbHeader& header = result.header;
   header.kind = kind_of(*grid);
   header.spacing = spacing_of(*grid);
-  if (header.kind == VdbKind::level_set) header.background = band_of(*grid, header.spacing);
+  if (header.kind == geometry::VdbKind::level_set)
+    header.background = band_of(*grid, header.spacing);
   const openvdb::CoordBBox box = box_of(*grid);
   const openvdb::Vec3d origin = grid->indexToWorld(box.min());
   for (int axis = 0; axis < 3; ++axis) {

@@ -9,7 +9,7 @@
 namespace snowshed {
 
 struct VdbSamples {
-  VdbHeader header;
+  geometry::VdbHeader header;
   std::vector<float> values;
 };
 

@@ -35,7 +35,8 @@ double extruded(double d, double y, double width) {
   return d > 0 && outside > 0 ? std::hypot(d, outside) : std::max(d, outside);
 }
 
-FloatGrid::Ptr surface_grid(const GridSamples& samples, const VdbWriteSettings& settings) {
+FloatGrid::Ptr surface_grid(const geometry::GridSamples& samples,
+                            const VdbWriteSettings& settings) {
   const double band = half_band * samples.spacing;
   const bool flat = settings.dimension == 2;
   // In 2D the layers along y cover the strip and a margin; the middle one is at y = 0.
@@ -124,7 +125,7 @@ void add_attribute(PointTree& tree, const PointIndex& index, const std::string& 
                                      openvdb::points::PointAttributeVector<Value>(values));
 }
 
-void add_attribute(PointTree& tree, const PointIndex& index, const PointArray& array) {
+void add_attribute(PointTree& tree, const PointIndex& index, const io::PointArray& array) {
   const std::string name = attribute_name(array.name);
   if (const auto* floats = std::get_if<std::vector<float>>(&array.values)) {
     if (array.components == 3)
@@ -148,7 +149,7 @@ openvdb::points::PointDataGrid::Ptr point_grid(const ParticleCloud& cloud,
       openvdb::points::createPointDataGrid<openvdb::points::NullCodec,
                                            openvdb::points::PointDataGrid>(*index, all, *transform);
   grid->setName("particles");
-  for (const PointArray& array : cloud.attributes) add_attribute(grid->tree(), *index, array);
+  for (const io::PointArray& array : cloud.attributes) add_attribute(grid->tree(), *index, array);
   openvdb::points::appendAttribute<float>(grid->tree(), "pscale", float(settings.radius));
   return grid;
 }
@@ -157,8 +158,8 @@ openvdb::points::PointDataGrid::Ptr point_grid(const ParticleCloud& cloud,
 
 VdbSummary write_particles(const std::string& path, const ParticleCloud& cloud,
                            const VdbWriteSettings& settings) {
-  GridSamples samples =
-      particles_to_samples(cloud.positions, settings.dimension, settings.voxel, settings.radius);
+  geometry::GridSamples samples = sampling::particles_to_samples(
+      cloud.positions, settings.dimension, settings.voxel, settings.radius);
   const FloatGrid::Ptr surface = surface_grid(samples, settings),
                        density = density_grid(cloud, settings);
   openvdb::io::File file(path);
@@ -168,8 +169,8 @@ VdbSummary write_particles(const std::string& path, const ParticleCloud& cloud,
   summary.surface_voxels = surface->activeVoxelCount();
   summary.density_voxels = density->activeVoxelCount();
   // Measured like a body of a scene, so that a body made from the file has the same volume.
-  summary.volume = measure(*make_sampled_grid(std::move(samples), "surface"), settings.dimension,
-                           settings.voxel) *
+  summary.volume = sampling::measure(*geometry::make_sampled_grid(std::move(samples), "surface"),
+                                     settings.dimension, settings.voxel) *
                    (settings.dimension == 2 ? settings.width : 1.0);
   for (auto node = density->cbeginValueOn(); node; ++node)
     summary.mass += node.getValue() * std::pow(settings.voxel, 3);

@@ -13,7 +13,7 @@ struct ParticleCloud {
   std::vector<Vec3> positions;  // m; y = 0 in 2D
   std::vector<double> masses;   // kg (per metre of width in 2D)
   // Arrays of floats or 32-bit integers, with 1 or 3 components.
-  std::vector<PointArray> attributes;
+  std::vector<io::PointArray> attributes;
 };
 
 struct VdbWriteSettings {

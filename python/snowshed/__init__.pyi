@@ -20,13 +20,12 @@ from .methods.grains.settings import GrainsSettings as GrainsSettings
 from .methods.mpm.settings import MpmSettings as MpmSettings
 from .methods.mps.settings import MpsSettings as MpsSettings
 from .methods.slide.settings import SlideSettings as SlideSettings
-from .results.dimension_ratio import dimension_ratio as dimension_ratio
+from .methods.slide.simulate import slide as slide
 from .results.folder import read_events as read_events
 from .results.reader import Results as Results
 from .running.run import run as run
 from .running.run import run_events as run_events
 from .running.simulation import Simulation as Simulation
-from .running.slide import slide as slide
 from .scene.components import Area as Area
 from .scene.components import Body as Body
 from .scene.components import Domain as Domain
@@ -47,9 +46,8 @@ from .scene.output import Output as Output
 from .scene.scene import ResolvedScene as ResolvedScene
 from .scene.scene import Scene as Scene
 from .scene.shape import Shape as Shape
-from .snow.stack.measure import Extent as Extent
+from .season.driver import run_season as run_season
 from .snow.stack.measure import StackMeasure as StackMeasure
-from .snow.stack.measure import levelled_positions as levelled_positions
 from .snow.stack.measure import measure_stack as measure_stack
 from .study.definition import Study as Study
 

@@ -22,7 +22,7 @@ VERDICTS = (CONTRADICTED, CONFIRMED, UNDECIDED)
 COLUMNS = ("source", "claim", "confirmed_if", "verdict", "finding")
 
 
-def claims_grid(claims: Sequence[JudgedClaim], author: str) -> HtmlTable:
+def claims_table(claims: Sequence[JudgedClaim], author: str) -> HtmlTable:
     """Return claims and findings, contradictions first; `author` is the heading of the claims."""
     ordered = sorted(claims, key=lambda claim: VERDICTS.index(claim.finding.verdict))
     rows = [
@@ -32,7 +32,7 @@ def claims_grid(claims: Sequence[JudgedClaim], author: str) -> HtmlTable:
     return HtmlTable(["verdict", "section", author, "here"], rows, "llll")
 
 
-def rules_grid(claims: Sequence[Claim[Any]]) -> HtmlTable:
+def rules_table(claims: Sequence[Claim[Any]]) -> HtmlTable:
     """Return the rule of each claim."""
     rows = [[claim.source, claim.text, claim.rule] for claim in claims]
     return HtmlTable(["section", "claim", "confirmed if"], rows, "lll")

@@ -10,8 +10,8 @@ from typing import Optional
 from reproductions.common.hypothesis_tests import CONTRADICTED, UNDECIDED, JudgedClaim
 from snowshed.base.formatting import about
 from snowshed.base.progress import Progress, Reporter
-from snowshed.cli import progress as bar
-from snowshed.cli.terminal import plain_table, wide_console
+from snowshed.cli.output import progress as bar
+from snowshed.cli.output.terminal import plain_table, wide_console
 
 WIDTH = 140  # columns of output that is not a terminal
 STYLES = {CONTRADICTED: "bold red", UNDECIDED: "dim"}

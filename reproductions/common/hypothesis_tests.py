@@ -136,20 +136,20 @@ def _finding(claim: Claim[Data], data: Data) -> Finding:
         return Finding(UNDECIDED, f"the data lack {missing}")
 
 
-def positive(estimate: Estimate, what: str, unit: str = "") -> Finding:
+def is_positive(estimate: Estimate, what: str, unit: str = "") -> Finding:
     """Test the claim that a number is above zero.
 
     Examples
     --------
-    >>> positive(Estimate(0.3, 0.1), "growth", "m")
+    >>> is_positive(Estimate(0.3, 0.1), "growth", "m")
     Finding(verdict='confirmed', sentence='growth: 0.3 ± 0.1 m')
-    >>> [positive(Estimate(x, 0.1), "").verdict for x in (-0.3, 0.1)]
+    >>> [is_positive(Estimate(x, 0.1), "").verdict for x in (-0.3, 0.1)]
     ['contradicted', 'undecided']
     """
     return Finding(_sign(estimate.value, estimate.noise), _sentence(what, estimate, unit))
 
 
-def negative(estimate: Estimate, what: str, unit: str = "") -> Finding:
+def is_negative(estimate: Estimate, what: str, unit: str = "") -> Finding:
     """Test the claim that a number is below zero."""
     return Finding(_sign(-estimate.value, estimate.noise), _sentence(what, estimate, unit))
 

@@ -6,7 +6,7 @@ from collections import Counter
 from datetime import datetime, timezone
 from pathlib import Path
 
-from reproductions.common.claims_tables import claims_csv, claims_grid, rules_grid
+from reproductions.common.claims_tables import claims_csv, claims_table, rules_table
 from reproductions.common.folder import ReproductionFolder
 from reproductions.common.hypothesis_tests import SIGMAS, JudgedClaim
 from reproductions.common.reproduction import Reproduction, Work
@@ -51,11 +51,11 @@ def write_report(
         facts=facts,
         sigmas=SIGMAS,
         counts=Counter(claim.finding.verdict for claim in judged_claims),
-        claims=claims_grid(judged_claims, reproduction.author),
-        rules=rules_grid(reproduction.claims),
+        claims=claims_table(judged_claims, reproduction.author),
+        rules=rules_table(reproduction.claims),
         missing=list(missing),
         sections=sections,
-        of_section=lambda some: claims_grid(some, reproduction.author),
+        of_section=lambda some: claims_table(some, reproduction.author),
     )
     write_text(reproduction.report(folder), page)
     return judged_claims

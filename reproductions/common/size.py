@@ -19,7 +19,7 @@ class Size(Generic[Settings]):
     help
         Help text of the option.
     settings
-        Settings of the publication's modules at this size.
+        Value that the publication's stages receive, such as a resolution.
     caution
         Limits of results of this size, for the report; may hold HTML, may be empty.
     """

@@ -17,7 +17,7 @@ from typing import Optional
 
 import click
 
-from reproductions.common.claims_tables import VERDICTS, claims_csv, claims_grid, read_claims
+from reproductions.common.claims_tables import VERDICTS, claims_csv, claims_table, read_claims
 from reproductions.common.folder import ReproductionFolder
 from reproductions.common.hypothesis_tests import CONTRADICTED, JudgedClaim
 from reproductions.common.markdown import markdown_table
@@ -68,7 +68,7 @@ def page(data: Path = DATA) -> str:
             if claim.finding.verdict == CONTRADICTED
         ),
         "## All claims",
-        markdown_table(claims_grid(claims, "the thesis")),
+        markdown_table(claims_table(claims, "the thesis")),
     ]
     return "\n\n".join(parts) + "\n"
 

@@ -165,7 +165,7 @@ def _remaining_gaps(stacks: pd.DataFrame) -> list[str]:
 
 def _gaps(ours: list[float]) -> str:
     parts = (quartile / printed - 1 for quartile, printed in zip(ours, THESIS_QUARTILES["rbf"]))
-    return ", ".join(f"{100 * part:+.0f}" for part in parts) + " %"
+    return ", ".join(map(deviations_section.signed_percentage, parts)) + " %"
 
 
 def rows_of_regressions() -> dict[str, StackRows]:

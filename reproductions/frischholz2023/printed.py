@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from snowshed.analysis.calibration.parameter_grid import COHESION, PRESSURE, SLOPE
 from snowshed.analysis.regression.published import published
-from snowshed.plot.labels import label
+from snowshed.scene.labels import label
 
 
 @dataclass(frozen=True)

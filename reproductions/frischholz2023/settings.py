@@ -28,7 +28,7 @@ class Settings:
     frictions, release_frictions
         Friction of the panel in the laboratory, and at 30 degrees.
     lab_seeds, index_seeds, fixation_seeds, grid_seeds
-        Seedings of each point of the stages.
+        Random seeds per point of the stages.
     grid_events
         Events of the calibration.
     slopes, pressures, cohesions

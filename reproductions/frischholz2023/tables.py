@@ -14,7 +14,7 @@ from reproductions.frischholz2023.settings import MEASURED_FRICTION
 from snowshed.base.arrays import Floats
 from snowshed.base.formatting import MISSING
 from snowshed.plot.html_page import HtmlTable
-from snowshed.plot.labels import label
+from snowshed.scene.labels import label
 from snowshed.study.table import value_at
 
 if TYPE_CHECKING:

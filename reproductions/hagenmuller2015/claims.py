@@ -22,9 +22,9 @@ from reproductions.common.hypothesis_tests import (
     Finding,
     all_of,
     is_near,
+    is_negative,
+    is_positive,
     is_small,
-    negative,
-    positive,
     widening,
 )
 from reproductions.hagenmuller2015.printed import YADE
@@ -49,13 +49,16 @@ if TYPE_CHECKING:
 PEAK, EARLY, MIDDLE, DENSE = STRESSES
 SCALED_DENSITY = "density of ice x 100"
 HALF_EDGE = "volume / 8"
-#: Largest log ratio of stresses that hardly differ, and smallest of clearly different ones.
-MAX_LOG_SIMILAR, MIN_LOG_DISTINCT = math.log(1.3), math.log(2.0)
+#: Largest log ratio of stresses that hardly differ.
+MAX_LOG_SIMILAR = math.log(1.3)
+#: Smallest log ratio of clearly different stresses.
+MIN_LOG_DISTINCT = math.log(2.0)
 #: Log ratio above which two of Yade's numbers differ by more than a sample's scatter.
 MIN_LOG_CLEAR = math.log(1.5)
-#: Largest remaining part of a reversible strain, relative to the peak strain; smallest R2 of a
-#: linear curve.
-MAX_REMAINING_STRAIN, MIN_LINEARITY = 0.05, 0.95
+#: Largest remaining part of a reversible strain, relative to the peak strain.
+MAX_REMAINING_STRAIN = 0.05
+#: Smallest R2 of a linear curve.
+MIN_LINEARITY = 0.95
 
 
 @dataclass(frozen=True)
@@ -133,7 +136,7 @@ def softens(tests: LoadingTests) -> Finding:
     """Test whether the stress falls after its peak."""
     rows = tests.of(BASE)
     drop = _estimate(LogMean.of((rows[EARLY].astype(float) / rows[PEAK].astype(float)).tolist()))
-    return _with_factor(negative(drop, ""), drop, "mean from 5 to 10 % over the peak below 5 %")
+    return _with_factor(is_negative(drop, ""), drop, "mean from 5 to 10 % over the peak below 5 %")
 
 
 def hardens(tests: LoadingTests) -> Finding:
@@ -142,7 +145,7 @@ def hardens(tests: LoadingTests) -> Finding:
     growth = (rows[DENSE].astype(float) / rows[MIDDLE].astype(float)).tolist()
     rise = _estimate(LogMean.of(growth))
     finding = _with_factor(
-        positive(rise - Estimate(MIN_LOG_DISTINCT, 0.0), ""), rise, "25 to 30 % over 10 to 15 %"
+        is_positive(rise - Estimate(MIN_LOG_DISTINCT, 0.0), ""), rise, "25 to 30 % over 10 to 15 %"
     )
     onset = rows["hardening_onset_strain"].astype(float)
     seen = int(onset.notna().sum())
@@ -156,7 +159,7 @@ def rises(variant: str, base: str, stresses: Sequence[str], tests: LoadingTests)
     changes = [tests.change(variant, stress, base) for stress in stresses]
     return all_of(
         [
-            _with_factor(positive(change, ""), change, STRESSES[name])
+            _with_factor(is_positive(change, ""), change, STRESSES[name])
             for change, name in zip(changes, stresses)
         ]
     )
@@ -165,7 +168,7 @@ def rises(variant: str, base: str, stresses: Sequence[str], tests: LoadingTests)
 def falls(variant: str, stress: str, tests: LoadingTests, *, by: float = 0.0) -> Finding:
     """Test whether the logarithm of a stress is below the base's by more than `by`."""
     change = tests.change(variant, stress)
-    return _with_factor(negative(change - Estimate(-by, 0.0), ""), change, STRESSES[stress])
+    return _with_factor(is_negative(change - Estimate(-by, 0.0), ""), change, STRESSES[stress])
 
 
 def hardly_differs(
@@ -203,7 +206,7 @@ def same_signs(variant: str, tests: LoadingTests) -> Finding:
         if printed is None or base is None or abs(math.log(printed / base)) < MIN_LOG_CLEAR:
             continue
         change = tests.change(variant, stress)
-        test = positive if printed > base else negative
+        test = is_positive if printed > base else is_negative
         text = f"{STRESSES[stress]} (Yade x {printed / base:.3g})"
         findings.append(_with_factor(test(change, ""), change, text))
     return all_of(findings)
@@ -218,7 +221,7 @@ def same_order(stress: str, tests: LoadingTests) -> Finding:
         if high is None or low is None or abs(math.log(high / low)) < MIN_LOG_CLEAR:
             continue
         above, below = (first, second) if high > low else (second, first)
-        pairs.append((positive(tests.change(above, stress, below), "").verdict, above, below))
+        pairs.append((is_positive(tests.change(above, stress, below), "").verdict, above, below))
     verdict = all_of([Finding(verdict, "") for verdict, _, _ in pairs]).verdict
     right = sum(verdict == CONFIRMED for verdict, _, _ in pairs)
     wrong = [

@@ -11,16 +11,18 @@ from typing import Optional
 
 from snowshed._core import InputError
 from snowshed.analysis.grains.samples import LabelledSample
-from snowshed.analysis.tomography.gaussian_snow import gaussian_snow
+from snowshed.analysis.tomography.gaussian_field import gaussian_snow
 from snowshed.analysis.tomography.ice_image import IceImage
 from snowshed.analysis.tomography.segmentation import SegmentationSettings, segment
-from snowshed.analysis.tomography.sphere_snow import sphere_snow
+from snowshed.analysis.tomography.sphere_packing import sphere_snow
 
 VOXEL, WAVELENGTH = 5e-5, 5e-4  # m
 VOXELS_PER_SPHERE = 2  # voxels along the edge of a sphere
 DENSITY, LIGHT_DENSITY, HEAVY_DENSITY = 318.0, 192.0, 427.0  # kg/m3
-#: Sphere packs of equal density: their density, diameter, and radius of the necks.
-PACK_DENSITY, PACK_DIAMETER, THIN_NECK_RATIO, WIDE_NECK_RATIO = 250.0, 4.5e-4, 0.3, 0.6
+# Sphere packs of equal density.
+PACK_DENSITY = 250.0  # kg/m3
+PACK_DIAMETER = 4.5e-4  # m, of the spheres
+THIN_NECK_RATIO, WIDE_NECK_RATIO = 0.3, 0.6  # radius of the necks over that of the spheres
 MAX_FIELDS = 20  # fields that are tried for one sample
 #: Smallest depth of a neck. This depth gives fewer grains than the default (0.75 voxels).
 DEEP_NECKS = SegmentationSettings(depth=1.25)

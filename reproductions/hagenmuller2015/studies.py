@@ -37,8 +37,10 @@ BRITTLE_STAGE = LoadingStage(kind="compress", speed=0.02, strain=0.05)
 #: Steps are three times the default: peaks of four samples stayed within 5 %, and energies balanced
 #: within 2e-4 of the work.
 SETTINGS = GrainsSettings(density_scaling=10.0, courant_factor=0.9)
-#: Loading and unloading within the elastic phase; slow, so that waves are small.
-ELASTIC_STRAIN, ELASTIC_SPEED = 1e-4, 5e-4
+#: Strain within the elastic phase, for loading and unloading.
+ELASTIC_STRAIN = 1e-4
+#: Speed of this loading, m/s; slow, so that waves are small.
+ELASTIC_SPEED = 5e-4
 #: Density scaling with far too much inertia.
 EXCESSIVE_SCALING = 1e4
 LIGHT_SNOW, HEAVY_SNOW = f"{LIGHT_DENSITY:.0f} kg/m3", f"{HEAVY_DENSITY:.0f} kg/m3"

@@ -36,7 +36,8 @@ WOOD_TILT = 30.0  # degrees
 BLOCK = (0.4, 0.2)  # m, length and height of the block of snow; it fills the slope's width
 OBSTACLE_DISTANCE = 0.3  # m above the foot of the slope
 STAKE_WIDTH, STAKE_HEIGHT = 0.02, 0.2  # m
-BOARD_HEIGHT, BOARD_GAP, NOTCH = 0.12, 0.04, (0.04, 0.06)  # m; the notch's width and depth
+BOARD_HEIGHT, BOARD_GAP = 0.12, 0.04  # m
+NOTCH = (0.04, 0.06)  # m, width and depth of the board's notch
 #: Inferred, slopes 1 and 2: tilt and length (m) from the top down, then level ground.
 SLOPES: Mapping[int, Sequence[tuple[float, float]]] = {
     1: [(30.0, 40.0)],
@@ -44,9 +45,11 @@ SLOPES: Mapping[int, Sequence[tuple[float, float]]] = {
 }
 RELEASED_SLAB = (12.0, 10.0, 1.5)  # m, length, width and height of the slab that is released
 LAYER_WIDTH = 20.0  # m
-#: Shear rate above which the stress grows as a power of the rate: about that of snow that slides
-#: along a wall at 10 m/s.
-WOOD_LIMIT, SLOPE_LIMIT = 1000.0, 50.0  # 1/s
+#: Shear rate at which the dilatant branch begins: about that of snow sliding along a wall at
+#: 10 m/s, for the particles of the wooden slope...
+WOOD_LIMIT = 1000.0  # 1/s
+#: ... and for those of slopes 1 and 2.
+SLOPE_LIMIT = 50.0  # 1/s
 STRESS_GROWTH = 1000.0  # s
 
 BINGHAM, COMBINED = "Bingham", "combined"
@@ -96,12 +99,12 @@ class GroundProfile:
 
     @classmethod
     def of(cls, planes: Sequence[tuple[float, float]]) -> GroundProfile:
-        """Return the path of planes with tilts in degrees and lengths in m, from the top down.
+        """Return the profile of planes with tilts in degrees and lengths in m, from the top down.
 
         Examples
         --------
-        >>> path = GroundProfile.of([(30.0, 2.0)])
-        >>> path.along(np.array([[-1.7320508, 0, 1.0], [1, 0, 0]])).round(3).tolist()
+        >>> profile = GroundProfile.of([(30.0, 2.0)])
+        >>> profile.along(np.array([[-1.7320508, 0, 1.0], [1, 0, 0]])).round(3).tolist()
         [-2.0, 1.0]
         """
         corners = [(0.0, 0.0)]
@@ -153,7 +156,7 @@ class GroundProfile:
         across: float = 0.0,
         above: float = 0.0,
     ) -> Shape:
-        """Return a box on or above the ground, at a distance along the path and across it, m."""
+        """Return a box on or above the ground, at a distance along the profile and across it, m."""
         point, _, normal, tilt = self.frame(distance)
         centre = point + (0.5 * size[2] + above) * normal + np.array([0.0, across, 0.0])
         box = Shape.box((0, 0, 0), size)
@@ -179,19 +182,19 @@ class Case:
     ----------
     name
         Name for people; files are named after it.
-    path
+    profile
         Its ground.
     scene
         Its scene.
     end, interval
         End of the case, and interval of the stored states, s.
     obstacle
-        Position along the path of its obstacle, or of the obstacles of other cases if it has none,
-        m.
+        Position along the profile of its obstacle, or of the obstacles of other cases if it has
+        none, m.
     """
 
     name: str
-    path: GroundProfile
+    profile: GroundProfile
     scene: Scene
     end: float
     interval: float
@@ -210,19 +213,19 @@ class Case:
 
 def wooden_case(obstacle: str, resolution: Resolution) -> Case:
     """Return the wooden slope with an obstacle at its foot."""
-    path = GroundProfile.of([(WOOD_TILT, WOOD_LENGTH)])
+    profile = GroundProfile.of([(WOOD_TILT, WOOD_LENGTH)])
     width = resolution.wooden_width
-    obstacles = path.ground()
+    obstacles = profile.ground()
     for side in (-1, 1):
         rail = Shape.plane((0, side * width / 2, 0), (0, -side, 0))
         name = "rail right" if side < 0 else "rail left"
         obstacles.append(Obstacle(name=name, shape=rail, condition="separate", friction=0.1))
     if obstacle in (NARROW_STAKES, WIDE_STAKES):
         gap = 0.02 if obstacle == NARROW_STAKES else 0.04
-        obstacles.append(_solid("stakes", Shape.union(*_stakes(path, width, gap))))
+        obstacles.append(_solid("stakes", Shape.union(*_stakes(profile, width, gap))))
     elif obstacle == NOTCHED_BOARD:
-        obstacles.append(_solid("board", _board(path, width)))
-    snow = path.box(-WOOD_LENGTH + BLOCK[0] / 2, (BLOCK[0], width, BLOCK[1]))
+        obstacles.append(_solid("board", _board(profile, width)))
+    snow = profile.box(-WOOD_LENGTH + BLOCK[0] / 2, (BLOCK[0], width, BLOCK[1]))
     settings = replace(
         WOOD_SNOW,
         spacing=resolution.wooden_spacing,
@@ -234,21 +237,21 @@ def wooden_case(obstacle: str, resolution: Resolution) -> Case:
         deposition_speed=0.005,  # below the speed after one step: snow is not deposited at once
     )
     scene = _scene(f"wooden slope, {obstacle}", 3, settings, obstacles, [Body(shape=snow)], 4.0)
-    return Case(f"wooden slope, {obstacle}", path, scene, 4.0, 0.25, -OBSTACLE_DISTANCE)
+    return Case(f"wooden slope, {obstacle}", profile, scene, 4.0, 0.25, -OBSTACLE_DISTANCE)
 
 
 def slope_case(number: int, model: str, resolution: Resolution) -> Case:
     """Return slope 1 or 2 with the Bingham or the combined model."""
-    path = GroundProfile.of(SLOPES[number])
+    profile = GroundProfile.of(SLOPES[number])
     spacing = SLOPE_SNOW.spacing
     assert spacing is not None
     top = sum(length for _, length in SLOPES[number])
-    snow = [Body(shape=path.box(-top + RELEASED_SLAB[0] / 2, RELEASED_SLAB, above=spacing))]
+    snow = [Body(shape=profile.box(-top + RELEASED_SLAB[0] / 2, RELEASED_SLAB, above=spacing))]
     lengths = [length for _, length in SLOPES[number]]
     ends = [-sum(lengths[k + 1 :]) for k in range(len(lengths))]
     for end, length in zip(ends, lengths):
         layer = (length - spacing, LAYER_WIDTH, spacing)
-        snow.append(Body(shape=path.box(end - length / 2, layer)))
+        snow.append(Body(shape=profile.box(end - length / 2, layer)))
     snow.append(
         Body(shape=Shape.box((10.0 + spacing, 0, spacing / 2), (20.0, LAYER_WIDTH, spacing)))
     )
@@ -264,8 +267,8 @@ def slope_case(number: int, model: str, resolution: Resolution) -> Case:
             deposition_speed=0.1,
         )  # fmt: skip
     dimension = resolution.slope_dimension
-    scene = _scene(f"slope {number}, {model}", dimension, settings, path.ground(), snow, 20.0)
-    return Case(f"slope {number}, {model}", path, scene, 20.0, 1.0)
+    scene = _scene(f"slope {number}, {model}", dimension, settings, profile.ground(), snow, 20.0)
+    return Case(f"slope {number}, {model}", profile, scene, 20.0, 1.0)
 
 
 def cases(resolution: Resolution) -> list[Case]:
@@ -280,21 +283,23 @@ def _solid(name: str, shape: Shape) -> Obstacle:
     return Obstacle(name=name, shape=shape, condition="sticky")
 
 
-def _stakes(path: GroundProfile, width: float, gap: float) -> list[Shape]:
+def _stakes(profile: GroundProfile, width: float, gap: float) -> list[Shape]:
     count = int((width + 1e-9) // (STAKE_WIDTH + gap))
     first = -0.5 * (count - 1) * (STAKE_WIDTH + gap)
     size = (STAKE_WIDTH, STAKE_WIDTH, STAKE_HEIGHT)
     return [
-        path.box(-OBSTACLE_DISTANCE, size, across=first + k * (STAKE_WIDTH + gap))
+        profile.box(-OBSTACLE_DISTANCE, size, across=first + k * (STAKE_WIDTH + gap))
         for k in range(count)
     ]
 
 
-def _board(path: GroundProfile, width: float) -> Shape:
+def _board(profile: GroundProfile, width: float) -> Shape:
     """Return a board that leaves gaps at its ends and has a notch in the middle of its top."""
-    board = path.box(-OBSTACLE_DISTANCE, (STAKE_WIDTH, width - 2 * BOARD_GAP, BOARD_HEIGHT))
+    board = profile.box(-OBSTACLE_DISTANCE, (STAKE_WIDTH, width - 2 * BOARD_GAP, BOARD_HEIGHT))
     cut = (3 * STAKE_WIDTH, NOTCH[0], NOTCH[1] + 0.02)  # beyond the board's faces
-    return Shape.difference(board, path.box(-OBSTACLE_DISTANCE, cut, above=BOARD_HEIGHT - NOTCH[1]))
+    return Shape.difference(
+        board, profile.box(-OBSTACLE_DISTANCE, cut, above=BOARD_HEIGHT - NOTCH[1])
+    )
 
 
 def _scene(

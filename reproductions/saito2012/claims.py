@@ -26,31 +26,32 @@ from reproductions.saito2012.cases import (
     NOTCHED_BOARD,
     WIDE_STAKES,
 )
-from reproductions.saito2012.measures import REST_SPEED, Course
+from reproductions.saito2012.measures import REST_SPEED, CaseHistory
 
-#: An obstacle that holds more than the first share of all snow holds snow back; one that holds less
-#: than the second holds hardly any.
-MIN_HELD_SHARE, MAX_UNHELD_SHARE = 0.10, 0.03
+#: Share of all snow above which an obstacle holds snow back.
+MIN_HELD_SHARE = 0.10
+#: Share of all snow below which an obstacle holds hardly any.
+MAX_UNHELD_SHARE = 0.03
 
 
 @dataclass(frozen=True)
-class Courses:
+class CaseHistories:
     """All cases that are computed, by their names."""
 
-    by_name: Mapping[str, Course]
+    by_name: Mapping[str, CaseHistory]
 
-    def of(self, name: str) -> Course:
+    def of(self, name: str) -> CaseHistory:
         """Return a case; raises LookupError if it is not complete."""
-        course = self.by_name.get(name)
-        if course is None:
+        history = self.by_name.get(name)
+        if history is None:
             raise LookupError(name)
-        return course
+        return history
 
-    def wooden(self, obstacle: str) -> Course:
+    def wooden(self, obstacle: str) -> CaseHistory:
         """Return the wooden slope with an obstacle."""
         return self.of(f"wooden slope, {obstacle}")
 
-    def slope(self, number: int, model: str) -> Course:
+    def slope(self, number: int, model: str) -> CaseHistory:
         """Return slope 1 or 2."""
         return self.of(f"slope {number}, {model}")
 
@@ -67,78 +68,81 @@ def judge_bounds(value: float, low: float, high: float, text: str) -> Finding:
     return Finding(verdict, text)
 
 
-def reaches_the_foot(data: Courses) -> Finding:
+def reaches_the_foot(data: CaseHistories) -> Finding:
     """Test whether the avalanche without obstacle lies at the foot of the slope at 4 s."""
-    course = data.wooden(NO_OBSTACLE)
-    fronts = ", ".join(f"{course.front(course.at(t)):.2f}" for t in (1, 2, 3, 4))
-    share = course.passed(course.at(4))
+    history = data.wooden(NO_OBSTACLE)
+    fronts = ", ".join(f"{history.front(history.at(t)):.2f}" for t in (1, 2, 3, 4))
+    share = history.passed(history.at(4))
     text = f"front at {fronts} m after 1, 2, 3, 4 s; {100 * share:.0f} % below 0.3 m at 4 s"
     return judge_bounds(share, 0.5, 0.8, text)
 
 
-def held_share(obstacle: str, data: Courses) -> tuple[float, str]:
+def held_share(obstacle: str, data: CaseHistories) -> tuple[float, str]:
     """Return the share of the snow that lies above the obstacle because of it, with a text."""
-    course, without = data.wooden(obstacle), data.wooden(NO_OBSTACLE)
-    held, free = course.held(course.at(4)), without.held(without.at(4))
-    return held - free, f"{100 * held:.1f} % lie above it at 4 s, {100 * free:.1f} % without it"
+    history, without = data.wooden(obstacle), data.wooden(NO_OBSTACLE)
+    held, free = history.held(history.at(4)), without.held(without.at(4))
+    return (
+        held - free,
+        f"{100 * held:.1f} % above the obstacle at 4 s; without it {100 * free:.1f} %",
+    )
 
 
-def holds(obstacle: str, data: Courses) -> Finding:
+def holds(obstacle: str, data: CaseHistories) -> Finding:
     """Test whether an obstacle holds snow back that would pass without it."""
     share, text = held_share(obstacle, data)
     return judge_bounds(share, MAX_UNHELD_SHARE, MIN_HELD_SHARE, text)
 
 
-def leaks(obstacle: str, data: Courses) -> Finding:
+def leaks(obstacle: str, data: CaseHistories) -> Finding:
     """Test whether snow still passes an obstacle from 3 to 4 s."""
-    course = data.wooden(obstacle)
-    early, late = course.passed(course.at(3)), course.passed(course.at(4))
+    history = data.wooden(obstacle)
+    early, late = history.passed(history.at(3)), history.passed(history.at(4))
     text = f"{100 * early:.1f} % have passed at 3 s, {100 * late:.1f} % at 4 s"
     return judge_bounds(late - early, 0.001, 0.005, text)
 
 
-def holds_hardly_any(obstacle: str, data: Courses) -> Finding:
+def holds_hardly_any(obstacle: str, data: CaseHistories) -> Finding:
     """Test whether an obstacle holds back hardly any snow."""
     share, text = held_share(obstacle, data)
     return judge_bounds(-share, -MIN_HELD_SHARE, -MAX_UNHELD_SHARE, text)
 
 
-def leaks_at_edges(data: Courses) -> Finding:
+def leaks_at_edges(data: CaseHistories) -> Finding:
     """Test whether most snow that passes the board from 3 to 4 s passes at its edges."""
-    course = data.wooden(NOTCHED_BOARD)
-    width = course.snow[0].positions[:, 1].max()  # half the slope's width minus half a spacing
-    share = course.passed_at_edges(course.at(3), course.at(4), float(width) - 1.25 * BOARD_GAP)
+    history = data.wooden(NOTCHED_BOARD)
+    width = history.snow[0].positions[:, 1].max()  # half the slope's width minus half a spacing
+    share = history.passed_at_edges(history.at(3), history.at(4), float(width) - 1.25 * BOARD_GAP)
     return judge_bounds(share, 0.3, 0.5, f"{100 * share:.0f} % of what passes from 3 to 4 s")
 
 
-def never_stops(data: Courses) -> Finding:
+def never_stops(data: CaseHistories) -> Finding:
     """Test whether Bingham snow still moves at the end."""
     return all_of([_moves(data.slope(number, BINGHAM)) for number in (1, 2)])
 
 
-def stops(data: Courses) -> Finding:
+def stops(data: CaseHistories) -> Finding:
     """Test whether the combined model's snow rests at the end."""
     findings = [_moves(data.slope(number, COMBINED)) for number in (1, 2)]
     opposite = {CONFIRMED: CONTRADICTED, CONTRADICTED: CONFIRMED, UNDECIDED: UNDECIDED}
     return all_of([Finding(opposite[finding.verdict], finding.sentence) for finding in findings])
 
 
-def _moves(course: Course) -> Finding:
-    end = course.snow[-1]
-    speed, front = course.speed(end), course.front(end) - course.front(course.snow[-6])
+def _moves(history: CaseHistory) -> Finding:
+    end = history.snow[-1]
+    speed, front = history.speed(end), history.front(end) - history.front(history.snow[-6])
     text = (
-        f"{course.case.name}: {speed:.3g} m/s on average after {end.time:.0f} s, its front "
+        f"{history.case.name}: {speed:.3g} m/s on average after {end.time:.0f} s, its front "
         f"{front:+.2f} m in the last five"
     )
     return judge_bounds(speed, REST_SPEED, 5 * REST_SPEED, text)
 
 
-def spreads_wider(data: Courses) -> Finding:
+def spreads_wider(data: CaseHistories) -> Finding:
     """Test whether Bingham snow spreads wider than that of the combined model."""
     widths = []
     for model in (BINGHAM, COMBINED):
-        course = data.slope(1, model)
-        widths.append(course.width(course.snow[-1]))
+        history = data.slope(1, model)
+        widths.append(history.width(history.snow[-1]))
     if widths[0] == 0:
         raise LookupError("slope 1 in space: here it is a section")
     text = f"{widths[0]:.1f} m, combined model {widths[1]:.1f} m"
@@ -150,7 +154,7 @@ def undecided_without(what: str) -> Finding:
     return Finding(UNDECIDED, f"{what} are not available")
 
 
-WOODEN_CLAIMS: list[Claim[Courses]] = [
+WOODEN_CLAIMS: list[Claim[CaseHistories]] = [
     Claim(
         "experiments, fig. 14",
         "Without an obstacle the snow is deposited at the foot of the slope.",
@@ -197,7 +201,7 @@ WOODEN_CLAIMS: list[Claim[Courses]] = [
         lambda data: undecided_without("the photographs"),
     ),
 ]
-SLOPE_CLAIMS: list[Claim[Courses]] = [
+SLOPE_CLAIMS: list[Claim[CaseHistories]] = [
     Claim(
         "slope 1, fig. 10",
         "With the Bingham model alone the snow never stops.",

@@ -9,19 +9,21 @@ import numpy as np
 
 from reproductions.saito2012.cases import Case
 from reproductions.saito2012.runs import Snow
-from snowshed.base.arrays import Floats
+from snowshed.base.arrays import Booleans, Floats
 
 MOVING_KIND = 0
 #: Share of the moving snow behind the front; single grains run ahead of it.
 FRONT_QUANTILE = 0.99
-#: Largest distance above an obstacle, m, and largest speed, m/s, of snow that it holds.
-HELD_LENGTH, HELD_SPEED = 0.8, 0.3
+#: Largest distance above an obstacle of snow that it holds, m.
+HELD_LENGTH = 0.8
+#: Largest speed of this snow, m/s.
+HELD_SPEED = 0.3
 #: Largest mean speed of snow at rest, m/s.
 REST_SPEED = 0.02
 
 
 @dataclass(frozen=True)
-class Course:
+class CaseHistory:
     """A case over time.
 
     Attributes
@@ -34,11 +36,11 @@ class Course:
 
     case: Case
     snow: Sequence[Snow]
-    released: Floats
+    released: Booleans
 
     @classmethod
-    def of(cls, case: Case, snow: Sequence[Snow]) -> Course:
-        """Return the course of the stored states of a case, which must include the first."""
+    def of(cls, case: Case, snow: Sequence[Snow]) -> CaseHistory:
+        """Return the history of the stored states of a case, which must include the first."""
         return cls(case, snow, snow[0].kinds == MOVING_KIND)
 
     @property
@@ -54,11 +56,11 @@ class Course:
         raise LookupError(f"{self.case.name} at {time:g} s")
 
     def distances(self, snow: Snow) -> Floats:
-        """Return the distances of the released snow along its path, m."""
-        return self.case.path.along(snow.positions[self.released].astype(float))
+        """Return the distances of the released snow along the profile, m."""
+        return self.case.profile.along(snow.positions[self.released].astype(float))
 
     def front(self, snow: Snow) -> float:
-        """Return the position of the front along the path, m."""
+        """Return the position of the front along the profile, m."""
         return float(np.quantile(self.distances(snow), FRONT_QUANTILE))
 
     def fronts(self) -> Floats:

@@ -22,9 +22,9 @@ from snowshed.running.simulation import Simulation
 from snowshed.scene.scene import SceneLike
 
 CHECKPOINT, FAILURE = "checkpoint.bin", "failed.txt"
-#: For estimates of run time: particle steps per second, and typical speed of the snow relative to
-#: free fall.
-PARTICLE_STEPS_PER_S, SPEED_OVER_FREE_FALL = 1e5, 0.3
+# For estimates of run time.
+PARTICLE_STEPS_PER_S = 1e5
+SPEED_OVER_FREE_FALL = 0.3  # typical speed of the snow relative to free fall
 PROGRESS_PARTS = 64  # progress reports between two stored times
 
 
@@ -75,7 +75,7 @@ class CaseStage:
             return 0.0
         simulation = self._simulation(0)
         spacing = float(getattr(self.case.scene.numerics, "spacing", 0) or 0.01)
-        speed = SPEED_OVER_FREE_FALL * math.sqrt(2 * 9.81 * self.case.path.corners[0][1])
+        speed = SPEED_OVER_FREE_FALL * math.sqrt(2 * 9.81 * self.case.profile.corners[0][1])
         steps = left * self.case.interval * speed / (0.2 * spacing)
         return steps * simulation.particle_count / PARTICLE_STEPS_PER_S
 

@@ -13,8 +13,8 @@ from functools import cached_property
 from pathlib import Path
 
 from reproductions.saito2012.cases import Resolution, cases
-from reproductions.saito2012.claims import Courses
-from reproductions.saito2012.measures import Course
+from reproductions.saito2012.claims import CaseHistories
+from reproductions.saito2012.measures import CaseHistory
 from reproductions.saito2012.runs import CaseStage
 
 
@@ -31,11 +31,11 @@ class AvalancheComputation:
         self.stages = [CaseStage(case, folder / "cases") for case in cases(resolution)]
 
     @cached_property
-    def courses(self) -> Courses:
+    def histories(self) -> CaseHistories:
         """The complete cases; read it when everything is computed."""
-        return Courses(
+        return CaseHistories(
             {
-                stage.case.name: Course.of(stage.case, stage.snow())
+                stage.case.name: CaseHistory.of(stage.case, stage.snow())
                 for stage in self.stages
                 if stage.state().complete
             }

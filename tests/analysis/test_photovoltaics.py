@@ -31,7 +31,7 @@ MONTHLY = pd.DataFrame(
 PANEL = {"surface_tilt": 35.0, "slant_height": 3.0, "lower_edge_height": 0.6}
 
 
-def test_the_own_pile_is_that_of_the_model_where_it_has_its_angle():
+def test_the_own_pile_agrees_with_the_model_at_its_fixed_angle():
     loss = loss_townsend(MONTHLY, **PANEL)
     assert loss["loss_own_pile"][0] == loss["loss_fixed_pile"][0] > 0.0
     assert loss["loss_own_pile"][1] < loss["loss_fixed_pile"][1]  # a flatter pile interferes less
@@ -61,7 +61,7 @@ def test_no_snow_slides_while_the_pile_reaches_the_edge():
         coverage_nrel(fall, sun, warm, 40.0, never.iloc[:-1])
 
 
-def test_a_season_month_after_month():
+def test_a_season_is_summed_by_month():
     season = pd.DataFrame(
         {
             "event": pd.array([None, 1, 2], dtype="Int64"),
@@ -85,7 +85,7 @@ def test_a_season_month_after_month():
     assert blocked_days(season, 0.03).tolist() == [False, False, True]
 
 
-def made_season(dates, fall, blocked):
+def synthetic_season(dates, fall, blocked):
     return pd.DataFrame(
         {
             "date": [day.isoformat() for day in dates],
@@ -105,24 +105,24 @@ NOTHING = pd.DataFrame({"event": [], "volume_m3": [], "width_m": []})
 
 
 @pytest.mark.parametrize("hours", [1, 6, 24])
-def test_days_count_by_dates_however_long_the_rows_are(hours):
+def test_days_are_counted_by_date_for_rows_of_any_length(hours):
     """12 cm on every sixth day; the pile reaches the edge from 10 January on."""
     dates = pd.date_range("2024-12-01", "2025-01-31 23:00", freq=f"{hours}h")
     day = (dates - dates[0]).days
     fall = np.where(day % 6 == 0, 0.12 * hours / 24, 0.0)
     table = monthly_table(
-        made_season(dates, fall, dates >= pd.Timestamp("2025-01-10")), NOTHING, 0.02
+        synthetic_season(dates, fall, dates >= pd.Timestamp("2025-01-10")), NOTHING, 0.02
     )
     assert table["snow_total"].tolist() == pytest.approx([72.0, 60.0])
     assert table["snow_events"].tolist() == [6, 5]
     assert table["blocked_days"].tolist() == [0, 22]
 
 
-def test_what_a_row_says_holds_until_the_next():
-    """Rows of snowfalls only: the pile blocks from 5 January to 31 March, also in February."""
+def test_a_row_holds_until_the_next():
+    """Only snowfalls have rows: the pile blocks from 5 January to 31 March, also in February."""
     dates = pd.to_datetime(["2024-12-01", "2025-01-05", "2025-01-20", "2025-03-31"])
     table = monthly_table(
-        made_season(dates, [0.4, 0.4, 0.4, 0.0], [False, True, True, True]), NOTHING, 0.02
+        synthetic_season(dates, [0.4, 0.4, 0.4, 0.0], [False, True, True, True]), NOTHING, 0.02
     )
     assert table["blocked_days"].tolist() == [0, 27, 28, 31]
     assert table["snow_total"].tolist() == pytest.approx([40.0, 80.0, 0.0, 0.0])
@@ -133,8 +133,10 @@ def test_what_a_row_says_holds_until_the_next():
 def test_far_dates_are_refused():
     dates = pd.to_datetime(["1700-12-01", "2025-01-05"])
     with pytest.raises(InputError, match="it spans 1700-12-01 to 2025-01-05; at most"):
-        monthly_table(made_season(dates, [0.1, 0.1], [False, False]), NOTHING, 0.02)
-    wrong = made_season(dates, [0.1, 0.1], [False, False]).assign(date=["0224-01-01", "2024-01-02"])
+        monthly_table(synthetic_season(dates, [0.1, 0.1], [False, False]), NOTHING, 0.02)
+    wrong = synthetic_season(dates, [0.1, 0.1], [False, False]).assign(
+        date=["0224-01-01", "2024-01-02"]
+    )
     with pytest.raises(InputError, match="column date"):
         monthly_table(wrong, NOTHING, 0.02)
 

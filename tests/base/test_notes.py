@@ -7,8 +7,8 @@ import pytest
 
 from snowshed import SnowshedNote
 from snowshed.base.notes import issue_note, record_notes
-from snowshed.cli.common_options import quiet_option
 from snowshed.cli.main import main
+from snowshed.cli.options.common import quiet_option
 
 
 @click.command()
@@ -26,7 +26,7 @@ def test_the_command_line_prints_a_note_unless_quiet(capsys):
     assert capsys.readouterr().err == "note: feet became metres\n"
 
 
-def test_recorded_notes_are_said_again_and_stay_errors_where_these_are_wanted():
+def test_recorded_notes_are_issued_again_and_can_be_errors():
     with pytest.warns(SnowshedNote, match="feet became metres"), record_notes() as notes:
         issue_note("feet became metres")
         issue_note("feet became metres")

@@ -1,4 +1,4 @@
-"""Shares are written in percent by one function, which never writes 1e+02 %."""
+"""Percentages are written by a function that never writes 1e+02 %."""
 
 import re
 
@@ -7,7 +7,7 @@ from helpers.paths import ROOT
 
 FOLDERS = ("python", "validation", "reproductions")
 FILES = [file for name in FOLDERS for file in (ROOT / name).rglob("*.py") if file.is_file()]
-#: Few significant digits, of which 100 has one more than two.
+#: Formats of one or two significant digits, in which 100 becomes 1e+02.
 ROUNDED = re.compile(r"\{[^{}]*:\.[12]g\}\s?%")
 
 
@@ -15,5 +15,5 @@ ROUNDED = re.compile(r"\{[^{}]*:\.[12]g\}\s?%")
 def test_no_percentage_is_rounded_to_powers_of_ten(folder):
     files = [file for file in FILES if file.is_relative_to(ROOT / folder)]
     assert files
-    found = {str(file): ROUNDED.findall(file.read_text(encoding="utf-8")) for file in files}
-    assert {name: texts for name, texts in found.items() if texts} == {}
+    matches = {str(file): ROUNDED.findall(file.read_text(encoding="utf-8")) for file in files}
+    assert {name: texts for name, texts in matches.items() if texts} == {}

@@ -29,12 +29,12 @@ from snowshed.scene import Domain, Motion, Obstacle, Panel, Scene, Seeding, Shap
         (lambda: setattr(Panel(), "_tilt", 1), "Panel._tilt: "),
     ],
 )
-def test_a_misspelt_name_is_an_error_that_names_the_class_and_the_right_one(use, message):
+def test_a_misspelt_name_is_an_error_that_names_the_class_and_a_field(use, message):
     with pytest.raises(InputError, match=message):
         use()
 
 
-def test_unknown_attributes_are_as_python_has_them():
+def test_unknown_fields_are_attribute_errors_and_type_errors():
     assert not hasattr(Panel(), "tlit")
     for builtin in (AttributeError, TypeError):
         assert issubclass(UnknownFieldError, builtin)
@@ -72,7 +72,7 @@ def test_a_refused_value_leaves_the_old_one():
     assert panel.tilt == 40
 
 
-def test_numpy_and_paths_become_what_json_has():
+def test_numpy_values_and_paths_become_json_values():
     domain = Domain(min=np.array([0.5, 1], dtype=np.float32), max=[np.int64(2), 3])
     assert (domain.min, domain.max) == ((0.5, 1.0), (2, 3))
     assert type(Panel(tilt=np.float32(45)).tilt) is float
@@ -82,20 +82,20 @@ def test_numpy_and_paths_become_what_json_has():
     assert Shape.mesh(Path("a") / "b.stl").file == str(Path("a") / "b.stl")
 
 
-def test_a_dict_where_a_component_belongs_becomes_one():
+def test_a_dict_becomes_a_component():
     scene = Scene(panel={"tilt": 40}, obstacles=[{"shape": {"type": "box"}}])
     assert scene.panel == Panel(tilt=40)
     assert scene.obstacles == [Obstacle(shape=Shape(type="box"))]
 
 
-def test_a_dict_that_is_added_to_a_list_is_not_passed_on_unseen():
+def test_a_dict_added_to_a_list_is_checked_when_the_scene_is_written():
     scene = Scene(obstacles=[])
     scene.obstacles.append({"nam": "post"})
     with pytest.raises(InputError, match=r"^/obstacles/0/nam: unknown key; .* did you mean name"):
         scene.to_data()
 
 
-def test_the_words_of_pvlib_are_the_same_fields():
+def test_names_of_pvlib_are_aliases_of_fields():
     panel = Panel(surface_tilt=40, slant_height=2, lower_edge_height=1)
     assert panel == Panel(tilt=40, length=2, height=1)
     panel.surface_tilt = 50

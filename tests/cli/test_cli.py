@@ -14,7 +14,7 @@ from snowshed.cli import main as cli
 from snowshed.cli.commands.panel import panel
 from snowshed.cli.deferred import Deferred
 from snowshed.cli.main import main
-from snowshed.cli.scene_options import PREFIXED_SECTIONS, SHORT_NAMES, option_name
+from snowshed.cli.options.scene import PREFIXED_SECTIONS, SHORT_NAMES, option_name
 from snowshed.scene.schema import scene_parameters
 
 TINY = [
@@ -23,13 +23,13 @@ TINY = [
 ]
 
 
-def scene_of(capsys, *options):
+def scene_data(capsys, *options):
     assert main(["scene", *options]) == 0
     return json.loads(capsys.readouterr().out)
 
 
 def test_the_command_of_the_lab_experiment(capsys):
-    data = scene_of(
+    data = scene_data(
         capsys,
         *("--height", "0.33", "--length", "0.245", "--width", "0.213", "--tilt", "50"),
         *("--thickness", "0.02", "--events", "5", "--dim", "3", "--friction", "0.3"),
@@ -42,7 +42,7 @@ def test_the_command_of_the_lab_experiment(capsys):
     assert (data["events"]["count"], data["dimension"]) == (5, 3)
 
 
-def test_every_parameter_has_an_option_of_its_own():
+def test_every_parameter_has_its_own_option():
     names = [option_name(parameter.path) for parameter in scene_parameters()]
     assert len(set(names)) == len(names)
     paths = {parameter.path for parameter in scene_parameters()}
@@ -54,14 +54,14 @@ def test_every_parameter_has_an_option_of_its_own():
 
 
 def test_options_override_the_snow_and_the_snow_overrides_the_preset(capsys):
-    data = scene_of(capsys, "--preset", "lab-50", "--snow", "reference", "--density", "300")
+    data = scene_data(capsys, "--preset", "lab-50", "--snow", "reference", "--density", "300")
     assert data["snow"]["cohesion"] == 0.1
     assert data["snow"]["density"] == 300
     assert data["panel"]["tilt"] == 50
 
 
 def test_options_of_every_kind(capsys):
-    data = scene_of(
+    data = scene_data(
         capsys,
         *("--preset", "geometry", "--panel-thickness", "0.05", "--ground-tilt", "-3"),
         *("--energy", "--domain-min", "-9,-9", "--domain-max", "9,9", "--between", "reseed"),
@@ -75,7 +75,7 @@ def test_options_of_every_kind(capsys):
     assert data["events"]["between"] == "reseed"
 
 
-def test_former_options_are_taken_and_hidden(capsys):
+def test_former_options_work_and_are_hidden(capsys):
     assert main(["scene", "--preset", "lab-50", "--step-factor", "0.5"]) == 0
     assert json.loads(capsys.readouterr().out)["numerics"]["courant_factor"] == 0.5
     assert (
@@ -91,25 +91,25 @@ def test_former_options_are_taken_and_hidden(capsys):
     assert "--step-factor" not in capsys.readouterr().out
 
 
-def test_without_a_command_the_help_is_shown_as_help(capsys):
+def test_without_a_command_the_help_is_printed_to_stdout(capsys):
     assert main([]) == 0
     shown = capsys.readouterr()
     assert shown.out.startswith("Usage: snowshed") and len(shown.out.splitlines()) > 10
     assert shown.err == ""
 
 
-def test_help_is_short_and_help_all_is_whole(capsys):
+def test_help_is_short_and_help_all_is_complete(capsys):
     assert main(["panel", "--help"]) == 0
     short = capsys.readouterr().out
     assert main(["panel", "--help-all"]) == 0
-    whole = capsys.readouterr().out
+    complete = capsys.readouterr().out
     assert "--tilt" in short and "--flip-ratio" not in short
-    assert "--flip-ratio" in whole and "--step-factor" not in whole
-    assert main(["panel", "--help"]) == 0  # as before
-    assert len(short.splitlines()) < 70 < len(whole.splitlines())
+    assert "--flip-ratio" in complete and "--step-factor" not in complete
+    assert main(["panel", "--help"]) == 0  # unchanged by --help-all
+    assert len(short.splitlines()) < 70 < len(complete.splitlines())
 
 
-def test_odd_scenes_and_results_are_told(tmp_path, capsys):
+def test_unusual_scenes_and_results_are_noted(tmp_path, capsys):
     coarse = ("--dim", "2", "--height", "0.33", "--length", "0.245", "--thickness", "0.02")
     odd = ("--dx", "0.05", "--tilt", "20", "--friction", "2", "--max-time", "0.1")
     allowed = ("--allow-sparse", "--width", "0.2")
@@ -182,7 +182,7 @@ def test_schema(capsys):
         (["--dx", "1e-7"], "memory"),
     ],
 )
-def test_bad_options_are_one_line_code_2_and_nothing_behind(tmp_path, capsys, options, message):
+def test_bad_options_give_one_line_code_2_and_no_files(tmp_path, capsys, options, message):
     out = tmp_path / "out"
     assert main(["panel", *TINY, *options, "-o", str(out)]) == 2
     shown = capsys.readouterr()
@@ -195,17 +195,17 @@ def test_bad_options_are_one_line_code_2_and_nothing_behind(tmp_path, capsys, op
 @pytest.mark.parametrize("command", ["run", "plan"])
 def test_bad_scenes_are_refused(bad_scene, tmp_path, capsys, command):  # noqa: F811
     file, message = bad_scene
-    before = sorted(tmp_path.rglob("*"))
+    files_before = sorted(tmp_path.rglob("*"))
     output = ["-o", str(tmp_path / "out")] if command == "run" else []
     assert main([command, str(file), *output]) == 2
-    said = capsys.readouterr()
-    assert said.out == ""
-    assert said.err.startswith("error: ") and said.err.count("\n") == 1, said.err
-    assert message in said.err
-    assert sorted(tmp_path.rglob("*")) == before
+    shown = capsys.readouterr()
+    assert shown.out == ""
+    assert shown.err.startswith("error: ") and shown.err.count("\n") == 1, shown.err
+    assert message in shown.err
+    assert sorted(tmp_path.rglob("*")) == files_before
 
 
-def test_files_and_folders_that_do_not_serve(tmp_path, capsys, finished):
+def test_unusable_files_and_folders_are_refused(tmp_path, capsys, finished):
     scene = str(finished / "scene.json")
     assert main(["run", str(tmp_path / "none.json"), "-o", str(tmp_path / "out")]) == 2
     assert "none.json: no such file" in capsys.readouterr().err
@@ -220,17 +220,17 @@ def test_files_and_folders_that_do_not_serve(tmp_path, capsys, finished):
     assert not (tmp_path / "out").exists()
 
 
-def test_no_command_is_a_failure_and_help_is_not(capsys):
+def test_an_unknown_command_is_an_error_and_help_is_not(capsys):
     assert main(["--help"]) == 0
     assert "panel" in capsys.readouterr().out
     assert main(["fly"]) == 2
 
 
-def test_ctrl_c_says_how_to_go_on(tmp_path, capsys, monkeypatch):
-    def pressed(*_):
+def test_ctrl_c_says_how_to_resume(tmp_path, capsys, monkeypatch):
+    def interrupt(*_):
         signal.raise_signal(signal.SIGINT)
 
-    monkeypatch.setattr("snowshed.running.run._Observer.event_begun", pressed)
+    monkeypatch.setattr("snowshed.running.run._Observer.event_begun", interrupt)
     out = tmp_path / "out"
     assert main(["panel", *TINY, "-q", "-o", str(out)]) == 130
     message = capsys.readouterr().err
@@ -249,7 +249,7 @@ def test_a_failed_simulation_is_code_3(tmp_path, capsys, monkeypatch):
     assert capsys.readouterr().err == "error: time step underflow\n"
 
 
-def test_python_m(tmp_path):
+def test_the_package_runs_as_a_module(tmp_path):
     done = subprocess.run(
         [sys.executable, "-m", "snowshed", "--version"], capture_output=True, text=True
     )
@@ -257,7 +257,7 @@ def test_python_m(tmp_path):
     assert _core.version in done.stdout
 
 
-def test_commands_of_packages_are_imported_when_they_run():
+def test_commands_are_imported_when_they_run():
     packages = tuple({f"snowshed.cli.commands.{module}" for _, module, _ in cli.DEFERRED})
     modules = modules_after("from snowshed.cli.main import main; main(['--help'])")
     assert [name for name in modules if name.startswith(packages)] == []
@@ -312,16 +312,16 @@ def test_a_dry_run_prints_the_cost_and_needs_no_folder(tmp_path, capsys, monkeyp
 
 
 def commands_with_options():
-    """Every command with its options, without hidden commands."""
+    """Return the options of each command that is not hidden."""
 
     def walk(command, name):
         command = command.load() if isinstance(command, Deferred) else command
         if isinstance(command, click.Group):
-            for each, child in command.commands.items():
+            for child_name, child in command.commands.items():
                 if not child.hidden:
-                    yield from walk(child, f"{name} {each}".strip())
+                    yield from walk(child, f"{name} {child_name}".strip())
         else:
-            yield name, {option for one in command.params for option in one.opts}
+            yield name, {option for parameter in command.params for option in parameter.opts}
 
     return dict(walk(cli.cli, ""))
 

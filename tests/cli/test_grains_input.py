@@ -37,20 +37,20 @@ def refused(folder, capsys, message, *options, files=("labels.npy",), **case):
     ],
     ids=["float", "bool", "big_endian", "flat", "fortran", "negative", "large", "air", "empty"],
 )
-def test_what_are_no_labels_is_refused(tmp_path, capsys, labels, message):
+def test_images_that_are_not_labels_are_refused(tmp_path, capsys, labels, message):
     write_labels(tmp_path, labels)
     refused(tmp_path, capsys, message)
 
 
-def test_a_missing_or_other_file_is_refused(tmp_path, capsys):
+def test_a_missing_file_or_another_format_is_refused(tmp_path, capsys):
     refused(tmp_path, capsys, "labels.npy: no such file", files=())
     (tmp_path / "image.tif").write_bytes(b"II*\0")
-    refused(tmp_path, capsys, "image.tif: no NPY file", file="image.tif", files=["image.tif"])
+    refused(tmp_path, capsys, "image.tif: not an NPY file", file="image.tif", files=["image.tif"])
     (tmp_path / "labels.npy").write_bytes(b"not an array")
     refused(tmp_path, capsys, "not a .npy file", files=["image.tif", "labels.npy"])
 
 
-def test_headers_that_promise_too_much_are_refused(tmp_path, capsys):
+def test_headers_larger_than_their_file_are_refused(tmp_path, capsys):
     write_labels(tmp_path)
     good = (tmp_path / "labels.npy").read_bytes()
     for shape in (b"(99999, 99999, 99999)", b"(12, 4, 5)"):
@@ -76,19 +76,19 @@ def test_headers_that_promise_too_much_are_refused(tmp_path, capsys):
         ("stretch", ["--stress", 1], "No such option"),
     ],
 )  # fmt: skip
-def test_what_cannot_be_loaded_so_is_refused(tmp_path, capsys, kind, options, message):
+def test_impossible_loading_is_refused(tmp_path, capsys, kind, options, message):
     write_labels(tmp_path)
     refused(tmp_path, capsys, message, *options, kind=kind)
 
 
-def test_a_voxel_must_have_a_size(tmp_path, capsys):
+def test_a_voxel_size_is_required(tmp_path, capsys):
     write_labels(tmp_path)
     assert main(["grains", "compress", str(tmp_path / "labels.npy"), "-o", "x"]) == 2
     assert "--voxel" in capsys.readouterr().err
     refused(tmp_path, capsys, "/sample/voxel_size", "--voxel", 0)
 
 
-def test_resuming_with_another_image_names_it(tmp_path, capsys):
+def test_resuming_with_another_image_names_the_file(tmp_path, capsys):
     write_labels(tmp_path)
     options = ["--strain", 1e-4, "--density-scaling", 100]
     assert grains(tmp_path, *options) == 0
@@ -100,7 +100,7 @@ def test_resuming_with_another_image_names_it(tmp_path, capsys):
     assert "labels.npy: has changed since the checkpoint" in capsys.readouterr().err
 
 
-def test_an_example_that_cannot_run_leaves_nothing(tmp_path, capsys):
+def test_an_example_that_cannot_run_leaves_no_files(tmp_path, capsys):
     folder = tmp_path / "out"
     folder.mkdir()
     (folder / "mine.txt").write_text("keep")

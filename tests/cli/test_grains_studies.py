@@ -11,7 +11,7 @@ from snowshed.cli.main import main
 
 @pytest.fixture
 def samples(tmp_path):
-    """Two samples of one density, with holes at different positions."""
+    """Two samples of equal density, with holes at different positions."""
     files = [tmp_path / f"{name}.npy" for name in "ab"]
     for number, file in enumerate(files):
         labels = column_of_grains(4, 4).repeat(4, 1).repeat(4, 2)
@@ -25,14 +25,14 @@ def run(*arguments):
 
 
 @pytest.mark.parametrize(("command", "tests"), [("sensitivity", 26), ("material", 8)])
-def test_a_plan_tells_how_many_tests_there_are(samples, tmp_path, capsys, command, tests):
+def test_a_dry_run_counts_the_tests(samples, tmp_path, capsys, command, tests):
     assert run(command, *samples, "--voxel", VOXEL, "-o", tmp_path / "out", "--dry-run") == 0
     shown = capsys.readouterr().out
     assert f"{tests} runs" in shown
     assert not (tmp_path / "out/runs").exists()
 
 
-def test_turned_samples_are_three_of_each(samples, tmp_path, capsys):
+def test_turning_makes_three_samples_of_each(samples, tmp_path, capsys):
     options = ("--voxel", VOXEL, "-o", tmp_path / "out", "--dry-run", "--turned")
     assert run("material", *samples, *options) == 0
     assert "20 runs" in capsys.readouterr().out
@@ -52,12 +52,12 @@ def test_turned_samples_are_three_of_each(samples, tmp_path, capsys):
     ],
 )
 def test_bad_input_ends_with_2_and_is_named(samples, tmp_path, capsys, arguments, message):
-    given = [one.format(a=samples[0]) for one in arguments]
-    assert run(*given, "-o", tmp_path / "out", "--dry-run") == 2
+    completed = [argument.format(a=samples[0]) for argument in arguments]
+    assert run(*completed, "-o", tmp_path / "out", "--dry-run") == 2
     assert message in capsys.readouterr().err
 
 
-def test_a_scene_takes_the_snow_of_a_file(tmp_path, capsys):
+def test_a_scene_can_use_the_snow_of_a_file(tmp_path, capsys):
     snow = {"density": 180.0, "preconsolidation_pressure": 3e3, "provenance": {"made": "by hand"}}
     file = tmp_path / "mine.json"
     file.write_text(json.dumps(snow))

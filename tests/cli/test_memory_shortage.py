@@ -7,7 +7,7 @@ from snowshed.io import csv_table
 from snowshed.io.csv_table import read_csv
 
 
-def test_a_file_that_needs_too_much_is_named(tmp_path, monkeypatch, capsys):
+def test_a_file_that_needs_too_much_memory_is_named(tmp_path, monkeypatch, capsys):
     file = tmp_path / "table.csv"
     file.write_text("hash,event\n")
 
@@ -18,12 +18,12 @@ def test_a_file_that_needs_too_much_is_named(tmp_path, monkeypatch, capsys):
     with pytest.raises(MemoryError):
         read_csv(file)
     assert main(["regress", str(file), "-o", str(tmp_path / "out")]) == 3
-    said = capsys.readouterr().err
-    assert said.startswith(f"error: out of memory while {file} was read")
-    assert "particles" not in said
+    message = capsys.readouterr().err
+    assert message.startswith(f"error: out of memory while {file} was read")
+    assert "particles" not in message
 
 
-def test_a_run_that_needs_too_much_is_told_so(tmp_path, monkeypatch, capsys):
+def test_a_run_that_needs_too_much_memory_gets_advice(tmp_path, monkeypatch, capsys):
     from snowshed.running import run as running
 
     def exhausted(*_, **__):

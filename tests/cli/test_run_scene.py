@@ -16,11 +16,11 @@ WORK = _core.expected_work(LAB.core)  # particle updates
 
 def announced(capsys, scene, *speeds):
     """Return the lines on stderr after reports with these speeds, in updates per second."""
-    shown = []
-    report = announcing_long_run(scene, shown.append)
+    reported = []
+    report = announcing_long_run(scene, reported.append)
     for speed in speeds:
         report(Progress(0.1, 0, 5, "events", updates_per_s=speed))
-    assert [progress.updates_per_s for progress in shown] == list(speeds)
+    assert [progress.updates_per_s for progress in reported] == list(speeds)
     return capsys.readouterr().err.splitlines()
 
 
@@ -36,12 +36,12 @@ def test_only_runs_over_the_limit_are_announced(capsys, seconds, lines):
     assert len(announced(capsys, LAB, WORK / seconds)) == lines
 
 
-def test_a_slide_has_a_time_limit_and_is_not_announced(capsys, tmp_path):
+def test_a_slide_is_not_announced(capsys, tmp_path):
     scene = example_slide(tmp_path).resolve()
     assert announced(capsys, scene, 1e-9) == []
 
 
-def test_a_run_simulates_its_scene_only(tmp_path, monkeypatch):
+def test_a_run_simulates_only_its_scene(tmp_path, monkeypatch):
     def refuse(*_):
         raise AssertionError("the run measures its speed on another simulation")
 

@@ -1,4 +1,4 @@
-"""``snowshed slide`` with ranges, and the pages."""
+"""``snowshed slide`` with ranges, and its pages."""
 
 import json
 
@@ -11,10 +11,10 @@ from snowshed.io.raster.raster import read_raster
 
 
 def snowshed(*arguments: object) -> int:
-    return main([str(one) for one in arguments])
+    return main([str(argument) for argument in arguments])
 
 
-def test_ranges_give_maps_a_page_and_numbers_and_go_on(tmp_path, capsys):
+def test_ranges_give_maps_page_and_summary_and_are_resumed(tmp_path, capsys):
     command = ("slide", "--example", "--max-time", 1.0, "--range", "mu=0.3:0.5",
                "--range", "thickness=0.4:0.6", "--runs", 2, "--jobs", 1,
                "-o", tmp_path / "maps")  # fmt: skip
@@ -34,13 +34,13 @@ def test_ranges_give_maps_a_page_and_numbers_and_go_on(tmp_path, capsys):
     page = Page((folder / "hazard.html").read_text())
     assert all(source.startswith("data:") for source in page.sources)
     assert any("Of 2 slides" in text for text in page.text)
-    before = (folder / "runs/store.sqlite").read_bytes()
+    store = (folder / "runs/store.sqlite").read_bytes()
     assert snowshed(*command) == 0  # nothing is computed again
-    assert len(before) == (folder / "runs/store.sqlite").stat().st_size
+    assert len(store) == (folder / "runs/store.sqlite").stat().st_size
 
 
 @pytest.mark.parametrize(
-    ("option", "said"),
+    ("option", "message"),
     [
         ("mux=1:2", "'mux' is none of mu, xi, E, thickness"),
         ("mu=0.3", "not of the form NAME=LOW:HIGH"),
@@ -49,33 +49,33 @@ def test_ranges_give_maps_a_page_and_numbers_and_go_on(tmp_path, capsys):
         ("cell=1:4", "'cell' is none of"),
     ],
 )
-def test_wrong_ranges_are_refused_before_anything_is_written(tmp_path, capsys, option, said):
+def test_wrong_ranges_are_refused_and_leave_no_files(tmp_path, capsys, option, message):
     assert snowshed("slide", "--example", "--range", option, "-o", tmp_path / "maps") == 2
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
 
 
-def test_a_sample_that_cannot_be_drawn_is_refused_before_anything_is_written(tmp_path, capsys):
+def test_an_impossible_sample_is_refused_and_leaves_no_files(tmp_path, capsys):
     command = ("slide", "--example", "--range", "mu=0.3:0.5", "--sampling", "sobol", "--runs", 5)
     assert snowshed(*command, "-o", tmp_path / "maps") == 2
     assert "5 is not a power of two" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
 
 
-def test_the_page_of_a_slide_needs_no_other_file_and_says_what_to_know(tmp_path, capsys):
+def test_the_page_of_a_slide_is_self_contained_and_has_its_notes(tmp_path, capsys):
     assert snowshed("slide", "--example", "--max-time", 1.0, "-o", tmp_path / "out") == 0
-    said = "was still moving at the time limit"
-    assert said in capsys.readouterr().out
-    assert said in json.loads((tmp_path / "out/slide.json").read_text())["notes"][-1]
+    note = "was still moving at the time limit"
+    assert note in capsys.readouterr().out
+    assert note in json.loads((tmp_path / "out/slide.json").read_text())["notes"][-1]
     html = (tmp_path / "out/slide.html").read_text()
     page = Page(html)
-    assert said in html and "://" not in html
+    assert note in html and "://" not in html
     assert all(source.startswith("data:") for source in page.sources)
     assert ["slab", "0.5"] in [row[:2] for row in page.rows]
     assert ["friction", "0.325"] in [row[:2] for row in page.rows]
 
 
-def test_the_pages_can_be_read(tmp_path):
+def test_the_pages_are_readable_on_telephone_and_screen(tmp_path):
     assert snowshed("slide", "--example", "--max-time", 1.0, "-q", "-o", tmp_path / "out") == 0
     check_page(tmp_path / "out/slide.html")
     ranges = ("--range", "mu=0.3:0.5", "--runs", 2, "--jobs", 1, "-q")

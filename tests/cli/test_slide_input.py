@@ -35,8 +35,8 @@ def slide(folder, raster=None, rings=WITHIN, crs="EPSG:31287", options=(), **fie
         write_ascii_grid(folder / "dem.asc", raster or plane())
     fields = fields or {"thickness": 0.5}
     write_polygons(folder / "rel.geojson", rings, crs, **fields)
-    given = ["--terrain", folder / "dem.asc", "--release", folder / "rel.geojson"]
-    return main(["slide", *map(str, given), "-o", str(folder / "out"), "-q", *map(str, options)])
+    files = ["--terrain", folder / "dem.asc", "--release", folder / "rel.geojson"]
+    return main(["slide", *map(str, files), "-o", str(folder / "out"), "-q", *map(str, options)])
 
 
 def refused(folder, capsys, message, files, **case):
@@ -67,7 +67,7 @@ def refused(folder, capsys, message, files, **case):
         "feet_high", "feet_wide", "wide", "feet_steep",
     ],
 )  # fmt: skip
-def test_what_cannot_be_is_refused(tmp_path, capsys, case, message):
+def test_implausible_input_is_refused(tmp_path, capsys, case, message):
     refused(tmp_path, capsys, message, {"dem.asc", "rel.geojson"}, **case)
 
 
@@ -87,13 +87,13 @@ def test_release_areas_must_not_overlap(tmp_path, capsys):
     write_ascii_grid(tmp_path / "dem.asc", plane())
     areas = [(WITHIN, {"name": "A"}), (box(20, 20, 40, 40), {"name": "B"})]
     write_features(tmp_path / "rel.geojson", areas)
-    given = ["--terrain", tmp_path / "dem.asc", "--release", tmp_path / "rel.geojson"]
+    arguments = ["--terrain", tmp_path / "dem.asc", "--release", tmp_path / "rel.geojson"]
     options = ["--thickness", "0.5", "-o", tmp_path / "out"]
-    assert main(["slide", *map(str, given + options)]) == 2
+    assert main(["slide", *map(str, arguments + options)]) == 2
     assert "rel.geojson: A and B overlap" in capsys.readouterr().err
 
 
-def test_the_prj_beside_an_ascii_grid_counts(tmp_path, capsys):
+def test_the_prj_file_of_an_ascii_grid_is_read(tmp_path, capsys):
     rasterio = pytest.importorskip("rasterio")
     system = rasterio.crs.CRS.from_epsg(2056)
     (tmp_path / "dem.prj").write_text(system.to_wkt(version="WKT1_ESRI"))
@@ -104,7 +104,7 @@ def test_the_prj_beside_an_ascii_grid_counts(tmp_path, capsys):
     assert rasterio.open(tmp_path / "out/peaks/pft.asc").crs.to_epsg() == 2056
 
 
-def test_a_copy_of_terrain_is_not_left_behind(tmp_path, capsys):
+def test_the_copy_of_terrain_is_removed_on_failure(tmp_path, capsys):
     rasterio = pytest.importorskip("rasterio")
     with rasterio.open(
         tmp_path / "dem.tif", "w", driver="GTiff", height=30, width=40, count=1, dtype="float64",
@@ -112,12 +112,12 @@ def test_a_copy_of_terrain_is_not_left_behind(tmp_path, capsys):
     ) as target:  # fmt: skip
         target.write(plane().heights[::-1], 1)
     write_polygons(tmp_path / "rel.geojson", box(60, 10, 90, 30), thickness=0.5)
-    given = ["--terrain", tmp_path / "dem.tif", "--release", tmp_path / "rel.geojson"]
-    assert main(["slide", *map(str, given), "-o", str(tmp_path / "out"), "-q"]) == 2
+    arguments = ["--terrain", tmp_path / "dem.tif", "--release", tmp_path / "rel.geojson"]
+    assert main(["slide", *map(str, arguments), "-o", str(tmp_path / "out"), "-q"]) == 2
     assert {file.name for file in tmp_path.iterdir()} == {"dem.tif", "rel.geojson"}
 
 
-def test_snow_that_falls_into_a_hole_of_the_path_is_told(tmp_path, capsys):
+def test_snow_lost_in_a_hole_of_the_terrain_is_noted(tmp_path, capsys):
     raster = plane()
     raster.heights[:, 20:24] = np.nan
     assert slide(tmp_path, raster, options=["--max-time", "8", "--no-bonds"]) == 0
@@ -134,19 +134,26 @@ def depth_raster(folder, heights, west=12.0, south=12.0):
 DEPTH = np.full((4, 4), 0.5)
 
 
-def test_a_raster_of_thickness_makes_the_release(tmp_path):
+def test_a_raster_of_thickness_defines_the_release(tmp_path):
     write_ascii_grid(tmp_path / "dem.asc", plane())
     values = DEPTH.copy()
     values[1:3, 1] = 0.8
     values[0, 0] = 0.0
     depth = depth_raster(tmp_path, values)
-    given = ["--terrain", tmp_path / "dem.asc", "--thickness-raster", depth, "--max-time", "0.1"]
-    assert main(["slide", *map(str, given), "-o", str(tmp_path / "out"), "-q"]) == 0
+    arguments = [
+        "--terrain",
+        tmp_path / "dem.asc",
+        "--thickness-raster",
+        depth,
+        "--max-time",
+        "0.1",
+    ]
+    assert main(["slide", *map(str, arguments), "-o", str(tmp_path / "out"), "-q"]) == 0
     summary = json.loads((tmp_path / "out/slide.json").read_text())
     sloping = 16.0 / np.cos(np.radians(38.0))
     assert summary["released_kg"] == pytest.approx(values.sum() * sloping * 300.0, rel=1e-6)
-    found = read_raster(tmp_path / "out/peaks/pft.asc")
-    assert found.heights.max() == pytest.approx(0.8, rel=0.25)
+    thickness = read_raster(tmp_path / "out/peaks/pft.asc")
+    assert thickness.heights.max() == pytest.approx(0.8, rel=0.25)
 
 
 @pytest.mark.parametrize(
@@ -160,15 +167,15 @@ def test_a_raster_of_thickness_makes_the_release(tmp_path):
     ],
     ids=["negative", "gap", "hole", "zero", "twice"],
 )
-def test_a_raster_of_thickness_must_say_it_all(tmp_path, capsys, change, options, message):
+def test_a_raster_of_thickness_must_be_complete(tmp_path, capsys, change, options, message):
     write_ascii_grid(tmp_path / "dem.asc", plane())
     values = DEPTH.copy()
     values[1, 1] = change
     depth = depth_raster(tmp_path, values)
     if options == ("--release",):
         options = ("--release", write_polygons(tmp_path / "rel.geojson", box(11, 11, 25, 25)))
-    given = ["--terrain", tmp_path / "dem.asc", "--thickness-raster", depth, *options]
-    assert main(["slide", *map(str, given), "-o", str(tmp_path / "out"), "-q"]) == 2
+    arguments = ["--terrain", tmp_path / "dem.asc", "--thickness-raster", depth, *options]
+    assert main(["slide", *map(str, arguments), "-o", str(tmp_path / "out"), "-q"]) == 2
     assert message in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
 
@@ -182,7 +189,7 @@ def test_a_raster_of_thickness_must_cover_the_release(tmp_path, capsys):
     )  # fmt: skip
 
 
-def test_resuming_with_changed_files_is_refused_and_names_them(tmp_path, capsys):
+def test_resuming_with_changed_files_is_refused_by_name(tmp_path, capsys):
     assert slide(tmp_path, options=["--max-time", "0.1"]) == 0
     resume = ["--resume", "--max-time", "0.1"]
     assert slide(tmp_path, options=resume) == 0
@@ -209,8 +216,8 @@ def test_the_mass_balance_closes(tmp_path):
     options = ["--entrainment-areas", tmp_path / "ent.geojson", "--max-time", "25", "--no-bonds"]
     assert slide(tmp_path, options=options) == 0
     kg = json.loads((tmp_path / "out/slide.json").read_text())
-    came = kg["released_kg"] + kg["entrained_kg"]
-    went = kg["left_terrain_kg"] + kg["on_terrain_kg"]
+    supplied = kg["released_kg"] + kg["entrained_kg"]
+    remaining = kg["left_terrain_kg"] + kg["on_terrain_kg"]
     assert kg["entrained_kg"] > 0
     assert kg["left_terrain_kg"] > 0
-    assert went == pytest.approx(came, rel=1e-12)
+    assert remaining == pytest.approx(supplied, rel=1e-12)

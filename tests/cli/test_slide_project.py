@@ -1,4 +1,4 @@
-"""AvaFrame projects on the command line: interruption and resuming, and complete refusals."""
+"""AvaFrame projects on the command line: interruption, resuming, and refusals."""
 
 import json
 import re
@@ -34,24 +34,24 @@ def interrupted(project, out, number, *options):
     while not (out / "film.bin").exists() and run.poll() is None:
         time.sleep(0.01)
     run.send_signal(number)
-    said = run.communicate()[1]
+    messages = run.communicate()[1]
     assert run.returncode == 130
-    (hint,) = re.findall(r"interrupted; resume with: (.*)", said)
-    program, *again = shlex.split(hint)
-    assert (program, again[0], again[-1]) == ("snowshed", "slide", "--resume")
-    assert {*map(str, options), str(project), str(out)} <= {*again}
-    return again
+    (hint,) = re.findall(r"interrupted; resume with: (.*)", messages)
+    program, *resume = shlex.split(hint)
+    assert (program, resume[0], resume[-1]) == ("snowshed", "slide", "--resume")
+    assert {*map(str, options), str(project), str(out)} <= {*resume}
+    return resume
 
 
-def test_the_hint_after_an_interrupt_goes_on_with_all_simulations(tmp_path):
+def test_the_hint_after_an_interrupt_resumes_all_simulations(tmp_path):
     """The hint repeats the options of the command line."""
     ini = "tEnd = 6\ndeltaTh = 0.02\n"
     project = write_project(tmp_path / "a project", ini, releases=("north", "south"))
     out = tmp_path / "out"
     options = ["--no-bonds", "--stop-ratio", "0.0", "--thickness", "0.75"]
-    again = interrupted(project, out, signal.SIGINT, *options)
+    resume = interrupted(project, out, signal.SIGINT, *options)
     assert not list(out.glob("south_*"))
-    assert main(again) == 0
+    assert main(resume) == 0
     names = {file.name.split("_")[0] for file in out.glob("Outputs/com1DFA/peakFiles/*.asc")}
     assert names == {"north", "south"}
     for scene in (out / "scene.json", *out.glob("south_*/scene.json")):
@@ -60,15 +60,15 @@ def test_the_hint_after_an_interrupt_goes_on_with_all_simulations(tmp_path):
     assert (out / "Inputs/dem.asc").is_file()
 
 
-def test_an_interrupt_while_pictures_are_drawn_keeps_the_next_slide_from_running(
+def test_an_interrupt_while_pictures_are_drawn_stops_the_next_slide(
     tmp_path, capsys, monkeypatch, drawn
 ):
     project = write_project(tmp_path / "project", "tEnd = 0.05\n", releases=("a", "b"))
     draw = SlideRun.draw
 
-    def interrupt(*given):
+    def interrupt(*arguments):
         signal.raise_signal(signal.SIGTERM)
-        draw(*given)
+        draw(*arguments)
 
     monkeypatch.setattr(SlideRun, "draw", interrupt)
     assert slide(project, tmp_path / "out", "-q") == 130
@@ -77,7 +77,7 @@ def test_an_interrupt_while_pictures_are_drawn_keeps_the_next_slide_from_running
     assert (tmp_path / "out/slide.html").is_file()
 
 
-def test_what_a_later_release_cannot_run_with_is_refused_before_the_first(tmp_path, capsys):
+def test_an_invalid_later_release_is_refused_before_the_first_slide(tmp_path, capsys):
     project = write_project(tmp_path / "project", "tEnd = 0.05\n", releases=("a", "b"))
     write_polygons(project / "Inputs/REL/b.geojson", box(60, 10, 90, 30), thickness=0.5)
     assert slide(project, tmp_path / "out", "-q") == 2
@@ -88,12 +88,14 @@ def test_what_a_later_release_cannot_run_with_is_refused_before_the_first(tmp_pa
 def test_settings_that_the_scene_refuses_are_located_in_the_ini(tmp_path, capsys):
     project = write_project(tmp_path / "project", "deltaTh = 1e-12\n")
     assert slide(project, tmp_path / "out", "-q") == 2
-    said = capsys.readouterr().err
-    assert "com5SnowSlideCfg.ini, line 3: deltath: /numerics/layer_thickness: 1e-12 m makes" in said
+    message = capsys.readouterr().err
+    assert (
+        "com5SnowSlideCfg.ini, line 3: deltath: /numerics/layer_thickness: 1e-12 m makes" in message
+    )
     assert not (tmp_path / "out").exists()
 
 
-def test_outputs_that_cannot_be_written_are_no_fault_of_the_input(tmp_path, capsys, monkeypatch):
+def test_outputs_that_cannot_be_written_give_code_3(tmp_path, capsys, monkeypatch):
     from snowshed import InputError
 
     def fail(*_):
@@ -102,11 +104,11 @@ def test_outputs_that_cannot_be_written_are_no_fault_of_the_input(tmp_path, caps
     project = write_project(tmp_path / "project", "tEnd = 0.05\n")
     monkeypatch.setattr("snowshed.results.avaframe.write_avaframe_outputs", fail)
     assert slide(project, tmp_path / "out", "-q") == 3
-    said = capsys.readouterr().err
-    assert "the slide has ended, but its outputs could not be written: no rasterio" in said
+    message = capsys.readouterr().err
+    assert "the slide has ended, but its outputs could not be written: no rasterio" in message
 
 
-def test_links_are_refused_before_anything_is_written(tmp_path, capsys):
+def test_links_out_of_the_project_are_refused(tmp_path, capsys):
     project = write_project(tmp_path / "project", "tEnd = 0.05\n")
     (project / "Inputs/LINES").symlink_to("/")
     assert slide(project, tmp_path / "out", "-q") == 2
@@ -114,7 +116,7 @@ def test_links_are_refused_before_anything_is_written(tmp_path, capsys):
     assert [file.name for file in tmp_path.iterdir()] == ["project"]
 
 
-def test_notes_of_readers_are_quiet_where_asked(tmp_path, capsys):
+def test_quiet_silences_the_notes_of_readers(tmp_path, capsys):
     """Warnings of GDAL become notes."""
     pyogrio = pytest.importorskip("pyogrio")
     import numpy as np
@@ -133,7 +135,7 @@ def test_notes_of_readers_are_quiet_where_asked(tmp_path, capsys):
     file.write_bytes(content)
     assert slide(project, tmp_path / "out", "-q") == 0
     assert not capsys.readouterr().err
-    assert slide(project, tmp_path / "again") == 0
+    assert slide(project, tmp_path / "loud") == 0
     printed = capsys.readouterr()
     assert "note: " in printed.out + printed.err
 
@@ -151,14 +153,14 @@ def test_layers_are_chosen_on_the_command_line(tmp_path, capsys):
             *(file, np.array([ring], dtype=object), [np.array([0.5])], np.array(["thickness"])),
             crs="EPSG:31287", geometry_type="Polygon", layer=name, append=file.exists(),
         )  # fmt: skip
-    given = ["slide", "--terrain", project / "Inputs/dem.asc", "--release", file, "-q"]
-    given = [str(word) for word in (*given, "--max-time", 0.05, "-o", tmp_path / "out")]
-    assert main(given) == 2
+    command = ["slide", "--terrain", project / "Inputs/dem.asc", "--release", file, "-q"]
+    command = [str(word) for word in (*command, "--max-time", 0.05, "-o", tmp_path / "out")]
+    assert main(command) == 2
     assert "has 2 layers: 'old', 'new'; choose one (--layer NAME)" in capsys.readouterr().err
     forest = ["--layer", "new", "--resistance-areas", str(file)]
-    assert main([*given, *forest]) == 2
+    assert main([*command, *forest]) == 2
     assert "choose one (--resistance-layer NAME)" in capsys.readouterr().err
-    assert main([*given, *forest, "--resistance-layer", "old"]) == 0
+    assert main([*command, *forest, "--resistance-layer", "old"]) == 0
     terrain = json.loads((tmp_path / "out/scene.json").read_text())["terrain"]
     assert terrain["release"][0]["outline"][0][0] in (40, 50)
     assert terrain["resistance"][0]["outline"][0][0] in (10, 20)

@@ -16,7 +16,7 @@ rasterio = pytest.importorskip("rasterio")
 
 pytestmark = pytest.mark.usefixtures("undrawn")
 
-#: m: 33 degrees toward the east.
+#: Elevations, m: a slope of 33 degrees that falls to the east.
 STEEP = 900.0 - 0.65 * CELL * np.arange(30)[None, :] * np.ones((30, 1))
 FORM = {"transform": rasterio.Affine(CELL, 0, -CELL / 2, 0, -CELL, 29.5 * CELL)}
 WITHIN = box(20, 40, 50, 80)
@@ -26,8 +26,8 @@ def slide(folder, *options, thickness=0.5, rings=WITHIN):
     """Run a short slide on dem.tif or dem.asc; return the exit code."""
     dem = next(folder.glob("dem.*"))
     write_polygons(folder / "rel.geojson", rings, "EPSG:25833", thickness=thickness)
-    given = ["--terrain", dem, "--release", folder / "rel.geojson", "--max-time", "0.1"]
-    return main(["slide", *map(str, [*given, "-o", folder / "out", *options])])
+    arguments = ["--terrain", dem, "--release", folder / "rel.geojson", "--max-time", "0.1"]
+    return main(["slide", *map(str, [*arguments, "-o", folder / "out", *options])])
 
 
 def released(folder):
@@ -39,7 +39,7 @@ def test_a_note_is_on_the_terminal_in_the_json_on_the_page_and_in_the_scene(
 ):
     write_geotiff(tmp_path / "dem.tif", STEEP / 0.3048, change=in_unit("ft"), **FORM)
     assert slide(tmp_path) == 0
-    note = "dem.tif: its values were turned into metres; one unit is 0.3048 m"
+    note = "dem.tif: its values were converted to metres; one unit is 0.3048 m"
     printed = capsys.readouterr()
     assert printed.out.count(note) == 1 and note not in printed.err
     assert note in json.loads((tmp_path / "out/slide.json").read_text())["notes"]
@@ -49,9 +49,9 @@ def test_a_note_is_on_the_terminal_in_the_json_on_the_page_and_in_the_scene(
     assert json.loads((tmp_path / "out/scene.json").read_text())["terrain"]["notes"] == note
 
 
-def test_notes_are_told_where_no_summary_has_them(tmp_path, capsys, monkeypatch):
+def test_notes_without_a_summary_are_printed(tmp_path, capsys, monkeypatch):
     write_geotiff(tmp_path / "dem.tif", STEEP / 0.3048, change=in_unit("ft"), **FORM)
-    note = "dem.tif: its values were turned into metres; one unit is 0.3048 m"
+    note = "dem.tif: its values were converted to metres; one unit is 0.3048 m"
     assert slide(tmp_path, "--dry-run") == 0
     assert capsys.readouterr().err.count(note) == 1
 
@@ -64,7 +64,7 @@ def test_notes_are_told_where_no_summary_has_them(tmp_path, capsys, monkeypatch)
     assert printed.err.count(note) == 1 and note not in printed.out
 
 
-def test_the_same_mass_in_metres_feet_decimetres_and_another_band(tmp_path):
+def test_units_factors_and_bands_give_the_same_mass(tmp_path):
     masses = []
     for name, bands, dtype, change, options in (
         ("metres", STEEP, "float64", None, ()),
@@ -91,15 +91,15 @@ def test_the_same_mass_in_metres_feet_decimetres_and_another_band(tmp_path):
     ],
     ids=["scale", "centimetres", "band"],
 )
-def test_a_raster_of_thickness_is_read_alike(tmp_path, change, options):
+def test_units_factors_and_bands_give_the_same_thickness(tmp_path, change, options):
     write_ascii_grid(tmp_path / "dem.asc", plane())
     depth = np.full((SIDE, SIDE), 0.0)
     depth[4:8, 4:8] = 0.5
     bands = np.stack([depth + 7, depth]) if options else depth * 100
     form = {"crs": None, "transform": rasterio.Affine(2, 0, 11, 0, -2, 35)}
     write_geotiff(tmp_path / "depth.tif", bands, change=change, **form)
-    given = ["--terrain", tmp_path / "dem.asc", "--thickness-raster", tmp_path / "depth.tif"]
-    command = ["slide", *map(str, [*given, "-o", tmp_path / "out"]), "--max-time", "0.1", "-q"]
+    arguments = ["--terrain", tmp_path / "dem.asc", "--thickness-raster", tmp_path / "depth.tif"]
+    command = ["slide", *map(str, [*arguments, "-o", tmp_path / "out"]), "--max-time", "0.1", "-q"]
     assert main([*command, *options]) == 0
     sloping = (4 * 2.0) ** 2 / np.cos(np.radians(38.0))
     assert released(tmp_path) == pytest.approx(0.5 * sloping * 300.0, rel=1e-6)
@@ -131,7 +131,7 @@ def test_a_cliff_under_the_release_is_refused(tmp_path, capsys, name, height, me
     refused(tmp_path, capsys, message)
 
 
-def test_a_cliff_beside_the_release_is_ground_and_one_below_may_be_believed(tmp_path):
+def test_a_cliff_is_accepted_beside_the_release_and_under_it_on_request(tmp_path):
     heights = STEEP.copy()
     heights[15, 25] -= 40.0
     heights[15, 6] -= 40.0
@@ -142,14 +142,14 @@ def test_a_cliff_beside_the_release_is_ground_and_one_below_may_be_believed(tmp_
 
 
 @pytest.mark.parametrize("options", [("--thickness", "50"), ()])
-def test_fifty_metres_of_snow_are_not_believed(tmp_path, capsys, options):
+def test_fifty_metres_of_snow_are_refused(tmp_path, capsys, options):
     write_geotiff(tmp_path / "dem.tif", STEEP, **FORM)
     message = "50 m of snow; at most 10 m are plausible; is it in centimetres?"
     refused(tmp_path, capsys, message, *options, thickness=0.5 if options else 50)
     assert slide(tmp_path, "-q", "--max-thickness", "12", thickness=11) == 0
 
 
-def test_nor_are_they_in_a_raster_or_in_a_scene(tmp_path, capsys):
+def test_fifty_metres_of_snow_are_refused_in_rasters_and_scenes(tmp_path, capsys):
     write_geotiff(tmp_path / "dem.tif", STEEP, **FORM)
     depth = np.where(STEEP < 890, 50.0, 0.4)
     write_geotiff(tmp_path / "depth.tif", depth, **FORM)
@@ -162,13 +162,13 @@ def test_nor_are_they_in_a_raster_or_in_a_scene(tmp_path, capsys):
     scene.terrain.release[0].thickness = 50
     (tmp_path / "thick.json").write_text(json.dumps(scene.to_data()))
     capsys.readouterr()
-    assert main(["run", str(tmp_path / "thick.json"), "-o", str(tmp_path / "other"), "-q"]) == 2
+    assert main(["run", str(tmp_path / "thick.json"), "-o", str(tmp_path / "thick"), "-q"]) == 2
     message = "/terrain/release/0/thickness: 50 m of snow; at most 10 m are accepted"
     assert message in capsys.readouterr().err
-    assert not (tmp_path / "other").exists()
+    assert not (tmp_path / "thick").exists()
 
 
-def test_a_scene_by_hand_has_the_same_ground(tmp_path, capsys):
+def test_terrain_is_checked_in_handwritten_scenes(tmp_path, capsys):
     heights = STEEP.copy()
     heights[20, 20] = 0.0
     write_ascii_grid(tmp_path / "dem.asc", Raster(heights[::-1], 0.0, 0.0, CELL))
@@ -180,7 +180,7 @@ def test_a_scene_by_hand_has_the_same_ground(tmp_path, capsys):
     assert "/terrain/file: elevations of" in capsys.readouterr().err
 
 
-def test_terrain_of_many_cells_needs_to_be_asked_for(tmp_path, capsys):
+def test_the_limit_of_cells_can_be_raised(tmp_path, capsys):
     write_geotiff(tmp_path / "dem.tif", STEEP, **FORM)
     refused(tmp_path, capsys, "has 900 cells; at most 899 are allowed", "--max-cells", "899")
     assert slide(tmp_path, "-q", "--max-cells", "900") == 0
@@ -189,13 +189,13 @@ def test_terrain_of_many_cells_needs_to_be_asked_for(tmp_path, capsys):
 @pytest.mark.parametrize(
     "option", ["--band", "--thickness-band", "--max-slope", "--max-thickness", "--max-cells"]
 )
-def test_what_belongs_to_a_raster_needs_one(tmp_path, capsys, option):
+def test_raster_options_need_a_raster(tmp_path, capsys, option):
     assert main(["slide", "--example", option, "1", "-o", str(tmp_path / "out")]) == 2
     assert f"{option}: only with --terrain" in capsys.readouterr().err
 
 
-def test_no_place_has_a_speed_where_snow_never_was(tmp_path):
-    """The maps agree although the mean speed of the default mode fades beyond the snow."""
+def test_maps_have_speed_and_pressure_only_within_the_snow(tmp_path):
+    """The maps agree, although the mean speed of the default mode fades out beyond the snow."""
     write_geotiff(tmp_path / "dem.tif", STEEP, **FORM)
     assert slide(tmp_path, "-q", "--no-bonds", "--max-time", "6") == 0
     pft, pfv, ppr = (

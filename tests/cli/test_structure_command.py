@@ -42,7 +42,7 @@ def test_options_are_the_arguments_of_the_builder(tmp_path):
     assert ResolvedScene.load(file).data == expected.resolve().data
 
 
-def test_a_scene_is_set_on_terrain(tmp_path):
+def test_a_scene_is_placed_on_terrain(tmp_path):
     panel = single_panel(height=1.0, length=1.0, tilt=40.0, snow=0.1, dx=0.1)
     panel.resolve().save(tmp_path / "panel.json")
     hill = Raster(np.arange(12.0)[:, None] * np.ones(12), 0.0, 0.0, 1.0)
@@ -50,10 +50,10 @@ def test_a_scene_is_set_on_terrain(tmp_path):
     words = ["terrain", tmp_path / "panel.json", tmp_path / "hill.asc", "--origin", 5, 8]
     words += ["--azimuth", 180, "--x", -1, 3, "-o", tmp_path / "on.json"]
     assert main(["structure", *map(str, words)]) == 0
-    place = {"origin": (5, 8), "azimuth": 180, "x": (-1, 3)}
-    expected = on_terrain(panel, tmp_path / "hill.asc", tmp_path / "expected.npy", **place)
-    given, wanted = np.load(tmp_path / "on.npy"), np.load(tmp_path / "expected.npy")
-    assert np.array_equal(given, wanted)
+    position = {"origin": (5, 8), "azimuth": 180, "x": (-1, 3)}
+    expected = on_terrain(panel, tmp_path / "hill.asc", tmp_path / "expected.npy", **position)
+    by_command, by_function = np.load(tmp_path / "on.npy"), np.load(tmp_path / "expected.npy")
+    assert np.array_equal(by_command, by_function)
     scene = ResolvedScene.load(tmp_path / "on.json").data
     assert scene["obstacles"][0]["shape"]["file"].endswith("on.npy")
     assert len(scene["obstacles"]) == len(expected.obstacles)
@@ -82,14 +82,14 @@ def test_wrong_structures_are_refused(words, message, tmp_path, capsys):
 
 
 @pytest.mark.parametrize("group", ["structure", "study", "grains"])
-def test_a_group_of_commands_alone_shows_its_help(group, capsys):
+def test_a_group_without_a_command_prints_its_help(group, capsys):
     assert main([group]) == 0
     shown = capsys.readouterr()
     assert shown.err == "" and shown.out.count("\n") > 8
 
 
 @pytest.mark.parametrize(
-    ("typed", "offered"),
+    ("typed", "offers"),
     [
         ("snowshed pan", ["plain,panel"]),
         ("snowshed panel --preset lab", ["plain,lab-40", "plain,lab-50"]),
@@ -98,14 +98,14 @@ def test_a_group_of_commands_alone_shows_its_help(group, capsys):
         ("snowshed structure gab", ["plain,gable-roof"]),
     ],
 )
-def test_the_shell_completes_names(typed, offered):
+def test_the_shell_completes_names(typed, offers):
     words = typed.split()
-    asked = {"_SNOWSHED_COMPLETE": "bash_complete", "COMP_WORDS": typed}
+    completion = {"_SNOWSHED_COMPLETE": "bash_complete", "COMP_WORDS": typed}
     command = [sys.executable, "-c", "from snowshed.cli.start import main; main()"]
     done = subprocess.run(
         command,
-        env={**os.environ, **asked, "COMP_CWORD": str(len(words) - 1)},
+        env={**os.environ, **completion, "COMP_CWORD": str(len(words) - 1)},
         capture_output=True,
         text=True,
     )
-    assert done.stdout.split() == offered
+    assert done.stdout.split() == offers

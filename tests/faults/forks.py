@@ -1,4 +1,4 @@
-"""Commands in forks of one process, which has imported their modules: that saves most of a start.
+"""Commands in forks of a process that has imported their modules, which saves most of a start.
 
 The program reads one request per line, and answers with the exit code of the fork that ran it.
 """

@@ -35,7 +35,7 @@ CLEARANCE = (
     *("--slope-length", "0.4", "--tilt", "60", "--heights", "0.3", "--draws", "1"),
     *("--jobs", "1", "-q"),
 )
-#: Each command, whose files are in {inputs}, and the options with which it resumes.
+#: Commands with their files in {inputs}, and the options with which they resume.
 PROGRAMS = {
     "snowshed-run": ([SCRIPTS / "snowshed-run", "{inputs}/scene.json", "--quiet"], ["--resume"]),
     "run": ([SNOWSHED, "run", "{inputs}/scene.json", "-q"], ["--resume"]),
@@ -50,12 +50,12 @@ PROGRAMS = {
     "clearance": ([SNOWSHED, "clearance", "{inputs}/winter.csv", *CLEARANCE], []),
 }
 KINDS = ("kill", "full")
-#: Operations tried in the quick tests, if a program has more than two.
-SAMPLES = {"snowshed-run": 16}
+#: Number of operations in the quick tests of a program; the default is two.
+SAMPLE_COUNTS = {"snowshed-run": 16}
 #: Programs in the quick tests; the others share their writers.
-SAMPLED = ("snowshed-run", "run", "season", "study", "slide", "clearance")
+SAMPLED_PROGRAMS = ("snowshed-run", "run", "season", "study", "slide", "clearance")
 #: Files that hold wall times.
-DIFFERENT = (
+VARYING_FILES = (
     *("run.json", "events.csv", "store.sqlite", "store.sqlite-shm", "store.sqlite-wal"),
     *("measurements.jsonl", "results.csv", "results.json", "scores.csv", "errors.csv"),
 )
@@ -70,7 +70,7 @@ preset = "lab-50"
 numerics.dx = 0.02
 events.max_time = 0.05
 """
-WALL_TIMES = ["wall_s", "updates_per_s"]  # columns that no two runs have in common
+WALL_TIME_COLUMNS = ["wall_s", "updates_per_s"]  # of tables
 
 
 @pytest.fixture(scope="session")
@@ -86,7 +86,7 @@ def faults(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def inputs(tmp_path_factory):
-    """The files that the commands take."""
+    """Input files of the commands."""
     folder = tmp_path_factory.mktemp("inputs")
     (folder / "slide").mkdir()
     short = {"output.snapshot_interval": 0.2, "numerics.threads": 1}
@@ -110,17 +110,17 @@ def inputs(tmp_path_factory):
     return folder
 
 
-def in_a_process(words, environment):
+def run_separately(words, environment):
     """Run a command line as a user does."""
     environment = {**os.environ, **environment}
     return subprocess.run(words, env=environment, capture_output=True, text=True, timeout=300)
 
 
 class Program:
-    """One of `PROGRAMS` with faults in its files, started by a function like `in_a_process`."""
+    """One of `PROGRAMS` with faults in its files, started by a function like `run_separately`."""
 
     def __init__(self, name, inputs, library, base, start):
-        self.command, self.going_on = PROGRAMS[name]
+        self.command, self.resume_options = PROGRAMS[name]
         self.inputs = inputs
         self.library = library
         self.base = base
@@ -144,74 +144,74 @@ class Program:
         done = self.run(folder, FAULT_KIND=kind, FAULT_AT=str(at))
         if kind == "full":
             self.check_full(done, folder, at)
-        resumed = self.run(folder, *self.going_on)
+        resumed = self.run(folder, *self.resume_options)
         if "nothing to resume" in resumed.stderr or "no such folder" in resumed.stderr.lower():
             resumed = self.run(folder)
         assert resumed.returncode == 0, (kind, at, resumed.stderr)
         return folder
 
     def check_full(self, done, folder, at):
-        """The message names the file, and the code does not promise that nothing was written."""
-        said = done.stderr.strip().rpartition("\n")[2]
-        told = said.startswith("error: ") and str(folder) in said and done.returncode == 3
-        assert done.returncode == 0 or told, (at, done.returncode, done.stderr)
+        """The error names the file, and the exit code is 3; 2 would mean that no files exist."""
+        message = done.stderr.strip().rpartition("\n")[2]
+        reported = message.startswith("error: ") and str(folder) in message and done.returncode == 3
+        assert done.returncode == 0 or reported, (at, done.returncode, done.stderr)
         assert "Traceback" not in done.stderr, (at, done.stderr)
 
 
 def contents(folder):
-    """Return the content that must be the same: names and bytes, tables without wall times."""
-    found = {}
+    """Return the content that runs must share: names and bytes, tables without wall times."""
+    content_by_name = {}
     for path in sorted(folder.rglob("*")):
         name = path.relative_to(folder).as_posix()
         assert not LEFTOVER.match(path.name), name
-        of_fold = "folds" in path.parts  # with its processor time
-        if path.name in DIFFERENT or of_fold or path.suffix in (".png", ".html"):
-            found[name] = "there"
+        is_fold = "folds" in path.parts  # holds processor times, which vary
+        if path.name in VARYING_FILES or is_fold or path.suffix in (".png", ".html"):
+            content_by_name[name] = "present"
         elif path.is_file():
-            found[name] = path.read_bytes()
-    for name in found:
+            content_by_name[name] = path.read_bytes()
+    for name in content_by_name:
         if name.endswith("events.csv") and "/" not in name.removeprefix("run/"):
             table = pd.read_csv(folder / name)
-            assert set(WALL_TIMES) & set(table)
-            found[name] = table.drop(columns=WALL_TIMES, errors="ignore").to_csv()
+            assert set(WALL_TIME_COLUMNS) & set(table)
+            content_by_name[name] = table.drop(columns=WALL_TIME_COLUMNS, errors="ignore").to_csv()
     if (folder / "store.sqlite").is_file():
-        found["store.sqlite"] = read_table(folder).to_csv()
-    return found
+        content_by_name["store.sqlite"] = read_table(folder).to_csv()
+    return content_by_name
 
 
 def check(program, sample=None):
     folder, count = program.undisturbed()
-    wanted = contents(folder)
+    expected = contents(folder)
     assert count > 10
     stride = 1 if sample is None else max(1, count * len(KINDS) // sample)
     cases = [(kind, at) for kind in KINDS for at in range(1, count + 1)][stride // 2 :: stride]
     for kind, at in cases:
-        left = program.disturbed(kind, at)
-        found = contents(left)
-        assert found.keys() == wanted.keys(), (kind, at)
-        assert [key for key in wanted if found[key] != wanted[key]] == [], (kind, at)
-        shutil.rmtree(left)
+        folder_after = program.disturbed(kind, at)
+        result = contents(folder_after)
+        assert result.keys() == expected.keys(), (kind, at)
+        assert [key for key in expected if result[key] != expected[key]] == [], (kind, at)
+        shutil.rmtree(folder_after)
 
 
 @pytest.fixture(scope="module")
 def forks(faults, tmp_path_factory):
-    """One process for the commands of all tests, which share its imported modules."""
+    """A process whose forks run the commands of all tests with its imported modules."""
     with Forks(tmp_path_factory.mktemp("forks"), faults) as process:
         yield process
 
 
-def started(name, forks):
+def start_function(name, forks):
     """Return the function that starts a program; a compiled one has a separate process."""
-    return in_a_process if name == "snowshed-run" else forks.run
+    return run_separately if name == "snowshed-run" else forks.run
 
 
-@pytest.mark.parametrize("name", SAMPLED)
-def test_a_command_goes_on_after_some_operations(name, inputs, faults, forks, tmp_path):
-    program = Program(name, inputs, faults, tmp_path, started(name, forks))
-    check(program, SAMPLES.get(name, 2))
+@pytest.mark.parametrize("name", SAMPLED_PROGRAMS)
+def test_a_command_resumes_after_some_operations(name, inputs, faults, forks, tmp_path):
+    program = Program(name, inputs, faults, tmp_path, start_function(name, forks))
+    check(program, SAMPLE_COUNTS.get(name, 2))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_a_command_goes_on_after_every_operation(name, inputs, faults, forks, tmp_path):
-    check(Program(name, inputs, faults, tmp_path, started(name, forks)))
+def test_a_command_resumes_after_every_operation(name, inputs, faults, forks, tmp_path):
+    check(Program(name, inputs, faults, tmp_path, start_function(name, forks)))

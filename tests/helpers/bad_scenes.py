@@ -1,4 +1,4 @@
-"""Scenes that must be refused, as changes to a good one, each with a part of the message."""
+"""Invalid scenes: changes to a valid scene, each with a part of its error message."""
 
 import json
 from pathlib import Path
@@ -7,13 +7,13 @@ from typing import Any
 import pytest
 from conftest import tiny_scene
 
-# A tetrahedron without its last face, and one with it.
+# A tetrahedron without its last face, and the complete tetrahedron.
 OPEN_MESH = "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n"
 CLOSED_MESH = OPEN_MESH + "f 2 3 4\n"
 
 
-def mesh(file: str, **more: Any) -> dict:
-    return {"shape": {"type": "mesh", "file": file, **more}}
+def mesh(file: str, **fields: Any) -> dict:
+    return {"shape": {"type": "mesh", "file": file, **fields}}
 
 
 BAD_SCENES = {
@@ -54,7 +54,7 @@ def merged(data: Any, changes: Any) -> Any:
 
 @pytest.fixture(params=BAD_SCENES.values(), ids=BAD_SCENES.keys())
 def bad_scene(request: pytest.FixtureRequest, tmp_path: Path) -> tuple[Path, str]:
-    """A scene file, alone in its folder with the meshes, and a part of the error message."""
+    """A scene file in a folder with its meshes, and a part of the error message."""
     changes, message = request.param
     data = merged(tiny_scene().resolve().data, changes)
     (tmp_path / "open.obj").write_text(OPEN_MESH)

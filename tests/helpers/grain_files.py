@@ -6,7 +6,7 @@ VOXEL = 1e-4  # m
 
 
 def column_of_grains(count=3, side=4):
-    """Return labels of square grains of equal height, one on another, (nz, ny, nx)."""
+    """Return labels of square grains of equal height, stacked along z, (nz, ny, nx)."""
     labels = np.repeat(np.arange(1, count + 1, dtype=np.int32), side)
     return np.broadcast_to(labels[:, None, None], (count * side, side, side)).copy()
 

@@ -1,4 +1,4 @@
-"""A listener on the loopback address, which files of strangers must not reach."""
+"""A listener on the loopback address, which files under test must not contact."""
 
 import socket
 import threading
@@ -16,7 +16,7 @@ class Listener:
 
     @property
     def address(self):
-        """Return the address that files name."""
+        """Return the address that files under test contain."""
         return f"http://127.0.0.1:{self.port}"
 
     def _listen(self):

@@ -1,4 +1,4 @@
-"""HTML pages, read as a browser would."""
+"""HTML pages, parsed for tests."""
 
 from html.parser import HTMLParser
 from typing import Optional
@@ -23,12 +23,12 @@ class Page(HTMLParser):
         assert not self.open
 
     def handle_starttag(self, tag: str, attributes: list[tuple[str, Optional[str]]]) -> None:
-        """Note the ids, links and images of a tag."""
-        found = dict(attributes)
-        self.ids += [found["id"]] if "id" in found else []
-        self.links += [found["href"]] if "href" in found else []
-        self.sources += [found["src"]] if "src" in found else []
-        self.images += [found["src"]] if tag == "img" else []
+        """Gather the ids, links and images of a tag."""
+        values = dict(attributes)
+        self.ids += [values["id"]] if "id" in values else []
+        self.links += [values["href"]] if "href" in values else []
+        self.sources += [values["src"]] if "src" in values else []
+        self.images += [values["src"]] if tag == "img" else []
         if tag == "tr":
             self.rows.append([])
         if tag in ("td", "th"):
@@ -41,7 +41,7 @@ class Page(HTMLParser):
         assert self.open.pop() == tag
 
     def handle_data(self, data: str) -> None:
-        """Gather text, and that of cells."""
+        """Gather the text of the page and of table cells."""
         if "style" not in self.open:
             self.text.append(data)
         if self.open and self.open[-1] in ("td", "th"):

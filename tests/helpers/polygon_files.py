@@ -10,7 +10,7 @@ shapely = pytest.importorskip("shapely")
 
 
 def write(path, shapes, crs="EPSG:25833", kind="Polygon", **fields):
-    """Write geometries with GDAL, in the format of the name."""
+    """Write geometries with GDAL, in the format of the file's ending."""
     geometries = np.array([shapely.to_wkb(shape) for shape in shapes], dtype=object)
     values = [np.array(column) for column in fields.values()]
     with warnings.catch_warnings():

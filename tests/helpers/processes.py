@@ -31,7 +31,7 @@ def snowshed_command(*arguments: object, **options) -> subprocess.Popen:
 
 
 def modules_after(code: str) -> set[str]:
-    """Return the modules that a new Python knows after it has run some code."""
+    """Return the modules that a new Python process has loaded after it ran some code."""
     code += "; import sys; print(); print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     return set(done.stdout.splitlines()[-1].split())

@@ -4,22 +4,22 @@ import numpy as np
 
 SIDE, CELL = 12, 5.0
 WEST, NORTH = 500_000.0, 6_700_060.0
-#: m, the northernmost row first: 16.7 degrees toward the east.
+#: Elevations, m, northernmost row first: a slope of 16.7 degrees that falls to the east.
 SLOPE = 900.0 - 0.3 * CELL * np.arange(SIDE)[None, :] - 0.02 * np.arange(SIDE)[:, None]
 
 
-def write_geotiff(path, bands=SLOPE, dtype="float64", change=None, **more):
+def write_geotiff(path, bands=SLOPE, dtype="float64", change=None, **options):
     """Write a GeoTIFF of one or several bands; `change` gets the open file."""
     import rasterio
 
     bands = np.asarray(bands)
     bands = bands if bands.ndim == 3 else bands[None]
-    form = {
+    profile = {
         "driver": "GTiff", "count": len(bands), "height": bands.shape[1], "width": bands.shape[2],
         "dtype": dtype, "crs": "EPSG:25833",
         "transform": rasterio.Affine(CELL, 0, WEST, 0, -CELL, NORTH),
     }  # fmt: skip
-    with rasterio.open(path, "w", **{**form, **more}) as file:
+    with rasterio.open(path, "w", **{**profile, **options}) as file:
         file.write(bands.astype(dtype))
         if change is not None:
             change(file)
@@ -45,11 +45,11 @@ def in_unit(unit):
 
 
 def grid_text(values=SLOPE, header="", **changed):
-    """Return an ESRI ASCII grid as text; `changed` words of the header."""
-    facts = {
+    """Return an ESRI ASCII grid as text; `changed` replaces entries of the header."""
+    entries = {
         "ncols": values.shape[1], "nrows": values.shape[0], "xllcorner": WEST,
         "yllcorner": NORTH - CELL * values.shape[0], "cellsize": CELL, **changed,
     }  # fmt: skip
-    lines = [f"{key} {value}" for key, value in facts.items() if value is not None]
+    lines = [f"{key} {value}" for key, value in entries.items() if value is not None]
     lines += [header] if header else []
     return "\n".join([*lines, *(" ".join(f"{z:.3f}" for z in row) for row in values)]) + "\n"

@@ -11,8 +11,8 @@ else:
     import tomli as tomllib
 
 
-#: The module of each requirement except NumPy.
-MODULES_OF = {
+#: The module of each required package except NumPy.
+MODULE_BY_PACKAGE = {
     "allpairspy": "allpairspy",
     "arviz": "arviz",
     "click": "click",
@@ -46,14 +46,14 @@ MODULES_OF = {
 
 
 def required() -> tuple[set[str], dict[str, set[str]]]:
-    """Names of the requirements of snowshed itself and of each extra, without extras of extras."""
+    """Return the required packages of snowshed and of each extra that combines no others."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     extras = {
-        extra: {_name(one) for one in listed}
+        extra: {_name(requirement) for requirement in listed}
         for extra, listed in project["optional-dependencies"].items()
-        if not any(one.startswith("snowshed[") for one in listed)
+        if not any(requirement.startswith("snowshed[") for requirement in listed)
     }
-    return {_name(one) for one in project["dependencies"]}, extras
+    return {_name(requirement) for requirement in project["dependencies"]}, extras
 
 
 def _name(requirement: str) -> str:

@@ -22,7 +22,7 @@ def write_polygons(path, rings=SQUARE, crs="EPSG:31287", **fields):
 
 
 def write_features(path, features, crs="EPSG:31287"):
-    """Write a GeoJSON file with polygons: rings and fields of each."""
+    """Write a GeoJSON file; `features` holds the rings and fields of each polygon."""
     collection = {
         "type": "FeatureCollection",
         "crs": {"type": "name", "properties": {"name": crs}},
@@ -47,7 +47,7 @@ def plane(degrees=38.0, columns=40, rows=30, cell=2.0):
 
 
 def write_project(folder, ini="", releases=("rel",), raster=None):
-    """Write an AvaFrame project: a plane, release areas of half a metre, and an ini if given."""
+    """Write an AvaFrame project: terrain, release areas 0.5 m thick, and an ini if given."""
     inputs = folder / "Inputs"
     for name in releases:
         write_polygons(inputs / "REL" / f"{name}.geojson", thickness=0.5)

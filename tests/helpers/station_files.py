@@ -1,4 +1,4 @@
-"""Weather of stations as tests make it: GHCN-daily by station, and SMET."""
+"""Synthetic weather of stations, written as GHCN-daily by station and as SMET."""
 
 import math
 from datetime import timedelta
@@ -19,12 +19,12 @@ def warmth(day, south=False):
 
 
 def snows(day):
-    """Return whether it snows on a day: every sixth from December to March."""
+    """Return whether it snows on a day: every sixth day from December to March."""
     return day.month in (12, 1, 2, 3) and day.toordinal() % 6 == 0
 
 
 def ghcn(file, rows):
-    """Write days with their elements, in the units of GHCN-daily; None: not in the file."""
+    """Write days with their elements, in the units of GHCN-daily; None leaves an element out."""
     with file.open("w") as text:
         for day, elements in rows:
             for name, value in elements.items():
@@ -34,7 +34,7 @@ def ghcn(file, rows):
 
 
 def elements(day, snow=120.0, warm=None, **others):
-    """Return a day with its temperature, and new snow (mm) where it snows."""
+    """Return the elements of a day: temperatures, and new snow (mm) if it snows."""
     mean = 10.0 * (warmth(day) if warm is None else warm)
     new = None if snow is None else snow if snows(day) else 0.0
     return {"TMAX": mean + 40.0, "TMIN": mean - 40.0, "SNOW": new, **others}

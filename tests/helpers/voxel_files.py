@@ -1,4 +1,4 @@
-"""Three-dimensional images in every format that is read."""
+"""Three-dimensional images in every supported format."""
 
 import zlib
 
@@ -13,8 +13,8 @@ TYPES = {
 }  # fmt: skip
 
 
-def of_type(kind):
-    """Return voxels that need the whole range of a type."""
+def voxels_of_type(kind):
+    """Return voxels that span the full range of a type."""
     dtype = np.dtype(kind)
     if dtype.kind == "u":
         return VOXELS.astype(dtype) * dtype.type(np.iinfo(dtype).max // 250)

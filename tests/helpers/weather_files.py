@@ -1,33 +1,33 @@
-"""Weather files made in the layout of their providers: three days, of which one has snow.
+"""Weather files in the layouts of their providers: three days, with snowfall on the second.
 
-`FILES` has one file of each format and five damaged ones; `VARIANTS` has the other layouts in which
-a provider writes the same days.
+`FILES` has a file of each format and five damages to it; `VARIANTS` has further layouts of the same
+days.
 """
 
 import gzip
 
-#: Of each day: mean temperature, degrees C; precipitation, mm; depth of the snow cover, m.
+#: Mean temperature (degrees C), precipitation (mm) and depth of the snow cover (m) of each day.
 DAYS = ((-5.0, 0.0, 1.10), (-7.0, 24.0, 1.40), (-6.0, 0.0, 1.35))
 NEW_SNOW = 0.3  # m, on the second day
 
 
-def hours(step=1, before=False):
+def hours(step=1, past_precipitation=False):
     """Yield day, hour, temperature, precipitation and depth, every `step` hours.
 
-    Precipitation is that of the `step` hours after this time, or before it.
+    Precipitation fell in the `step` hours after this time or, if `past_precipitation`, before it.
     """
     last = 0.0
     for day, (warm, rain, depth) in enumerate(DAYS, 1):
         for hour in range(0, 24, step):
             wave = 2.0 if hour < 12 else -2.0
-            yield day, hour, warm + wave, (last if before else rain) * step / 24, depth
+            yield day, hour, warm + wave, (last if past_precipitation else rain) * step / 24, depth
             last = rain
 
 
 def smet_rows(pattern, step=1):
     return "".join(
         pattern.format(f"2024-01-{day:02d}T{hour:02d}:00", warm + 273.15, depth, rain) + "\n"
-        for day, hour, warm, rain, depth in hours(step, before=True)
+        for day, hour, warm, rain, depth in hours(step, past_precipitation=True)
     )
 
 
@@ -49,7 +49,7 @@ units_multiplier = 1 1 1 1 1 1 0.01 1 1 1
 plot_unit        = time K - m/s ° W/m2 m kg/m2 K K
 [DATA]
 """ + smet_rows("{0}   {1:.2f}   0.520    2.0   -999       0   {2:.2f}  {3:.3f}   273.85   261.75 ")
-SMET = "\n".join(  # depths in cm, as of the stations of the SLF
+SMET = "\n".join(  # depths in cm, as at stations of the SLF
     line.replace(" 1.10 ", " 110.000 ").replace(" 1.40 ", " 140.000 ").replace(" 1.35 ", " -999 ")
     if line.startswith("2024-01-0")
     else line
@@ -63,7 +63,7 @@ longitude  = 9.8
 altitude   = 1500
 nodata = -9999
 tz     = +01
-fields = julian TA RH HS HNW   # as of older stations
+fields = julian TA RH HS HNW   # as at older stations
 units_offset = 0 273.15 0 0 0
 units_multiplier  = 1 1 0.01 0.01 1
 [DATA]
@@ -131,13 +131,13 @@ def epw_rows(missing_depth="999", minute=60, older=False):
 
 
 EPW = EPW_HEADER + epw_rows()
-TMY3_BEFORE = (
+TMY3_RADIATION = (
     ["ETR (W/m^2)", "ETRN (W/m^2)"]
-    + [f"{one} {part}" for one in ("GHI", "DNI", "DHI")
+    + [f"{name} {part}" for name in ("GHI", "DNI", "DHI")
        for part in ("(W/m^2)", "source", "uncert (%)")]
 )  # fmt: skip
 TMY3_HEAD = [
-    "Date (MM/DD/YYYY)", "Time (HH:MM)", *TMY3_BEFORE,
+    "Date (MM/DD/YYYY)", "Time (HH:MM)", *TMY3_RADIATION,
     "Dry-bulb (C)", "Dry-bulb source", "Dry-bulb uncert (code)",
     "Dew-point (C)", "Dew-point source", "Dew-point uncert (code)",
     "Alb (unitless)", "Alb source", "Alb uncert (code)",
@@ -193,15 +193,15 @@ BY_STATION_HEAD = "ID,DATE,ELEMENT,DATA_VALUE,M_FLAG,Q_FLAG,S_FLAG,OBS_TIME\n"
 
 
 def summaries(scale=None, begin=("STATION", "DATE", "LATITUDE", "LONGITUDE", "ELEVATION", "NAME")):
-    """Return daily summaries; `scale` makes a cell of an element's value in units of GHCN-daily."""
+    """Return daily summaries; `scale` converts values from the units of GHCN-daily to cells."""
     constant = {
         "STATION": "USC00050848", "LATITUDE": "39.9919", "LONGITUDE": "-105.2667",
         "ELEVATION": "1671.5", "NAME": "HINTERALP, CO US",
     }  # fmt: skip
     columns = [part for element in ELEMENTS for part in (element, f"{element}_ATTRIBUTES")]
-    rows = [",".join(f'"{one}"' for one in (*begin, *columns))]
+    rows = [",".join(f'"{column}"' for column in (*begin, *columns))]
     for day in (1, 2, 3):
-        cells = [f'"{constant.get(one, f"2024-01-{day:02d}")}"' for one in begin]
+        cells = [f'"{constant.get(column, f"2024-01-{day:02d}")}"' for column in begin]
         for element, values in ELEMENTS.items():
             value = values[day - 1]
             failed = element == "SNWD" and day == 3
@@ -257,9 +257,9 @@ HAL;20240103;-6.0;-;0;-
 """
 TEN_MINUTES = "station_abbr;reference_timestamp;tre200s0;ure200s0;rre150z0;htoauts0\n" + "".join(
     f"HAL;{day:02d}.01.2024 {hour:02d}:{minute:02d};{warm:.1f};88.1;"
-    f"{(before if minute == 0 else now) / 6:.4f};"
+    f"{(past if minute == 0 else now) / 6:.4f};"
     f"{'' if day == 3 else f'{100 * depth:.0f}'}\n"
-    for (day, hour, warm, now, depth), (*_, before, _) in zip(hours(), hours(before=True))
+    for (day, hour, warm, now, depth), (*_, past, _) in zip(hours(), hours(past_precipitation=True))
     for minute in range(0, 60, 10)
 )
 IMIS_HEAD = (
@@ -272,8 +272,8 @@ IMIS = IMIS_HEAD + "".join(
     for day, hour, warm, _, depth in hours()
 )
 
-#: By format: the file, the day's new snow in m (None: by a rule), and five damages: the line, what
-#: stands there, what replaces it, and what the error says.
+#: By format: content; new snow of the second day, m (None: estimated by a rule); and five damages:
+#: line, text, replacement, error message.
 FILES = {
     "SMET": (SMET, None, [
         (43, "268.15", "cold", "line 43, column TA: 'cold' is not a number"),
@@ -348,14 +348,14 @@ FILES = {
     ]),
 }  # fmt: skip
 
-#: Further layouts of the same days: format, what is special, content, whether the new snow of the
+#: Further layouts of the same days: format, peculiarity, content, and whether the new snow of the
 #: second day is measured.
 VARIANTS = [
     ("SMET", "version 0.99, Julian dates, degrees C and cm by factors", SMET_OLD, False),
-    ("iCSV", "units, time zones, columns named once more", ICSV_UNITS, False),
-    ("EPW", "of PVGIS: minute 0", EPW_HEADER + epw_rows(minute=0), False),
+    ("iCSV", "units, time zones, column names repeated", ICSV_UNITS, False),
+    ("EPW", "PVGIS: minute 0", EPW_HEADER + epw_rows(minute=0), False),
     ("EPW", "cp1252", EPW.replace("a test", "Gl\u00e4rnisch\u2026").encode("cp1252"), False),
-    ("TMY3", "of SolarAnywhere: midnight is 00:00", tmy3("00:00"), False),
+    ("TMY3", "SolarAnywhere: midnight is 00:00", tmy3("00:00"), False),
     ("GHCN-daily, by station", "gzip", gzip.compress(BY_STATION.encode(), mtime=0), True),
     ("GHCN-daily, by station", "columns named", BY_STATION_HEAD + BY_STATION, True),
     ("GHCN-daily, summaries", "ordered, metric", summaries(metric, ORDERED), True),

@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all, and files that are never destroyed."""
+"""Files appear complete or not at all, and existing files are never destroyed."""
 
 import errno
 import os
@@ -12,7 +12,7 @@ from snowshed import InputError
 from snowshed.io.atomic import remove_leftovers, replacing, replacing_folder, write_text
 
 
-def test_what_is_no_file_is_refused_and_stays(tmp_path):
+def test_pipes_folders_and_devices_are_refused_and_stay(tmp_path):
     os.mkfifo(tmp_path / "pipe")
     (tmp_path / "folder").mkdir()
     for name in ("pipe", "folder"):
@@ -23,7 +23,7 @@ def test_what_is_no_file_is_refused_and_stays(tmp_path):
         write_text("/dev/null", "x")
 
 
-def test_a_link_stays_and_its_file_is_replaced(tmp_path):
+def test_a_link_stays_and_its_target_is_replaced(tmp_path):
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "elsewhere" / "a").write_text("older")
     (tmp_path / "link").symlink_to("elsewhere/a")
@@ -32,7 +32,7 @@ def test_a_link_stays_and_its_file_is_replaced(tmp_path):
     assert (tmp_path / "elsewhere" / "a").read_text() == "new"
 
 
-def test_a_failure_leaves_the_older_file_alone_and_names_it(tmp_path):
+def test_a_failure_keeps_the_older_file_and_names_it(tmp_path):
     file = tmp_path / "a.txt"
     file.write_text("older")
     with pytest.raises(OSError, match=r"a\.txt") as raised, replacing(file) as beside:
@@ -43,7 +43,7 @@ def test_a_failure_leaves_the_older_file_alone_and_names_it(tmp_path):
     assert file.read_text() == "older"
 
 
-def test_leftovers_are_removed_where_the_folder_is_ours(tmp_path):
+def test_leftovers_are_removed_in_the_folder_and_below(tmp_path):
     ours, elsewhere = tmp_path / "ours", tmp_path / "elsewhere"
     leftover = ".partial-0123456789abcdef-a"
     for folder in (ours, ours / "below" / "deeper", elsewhere):
@@ -58,9 +58,9 @@ def test_leftovers_are_removed_where_the_folder_is_ours(tmp_path):
 
 
 @pytest.mark.parametrize("kind", ["file", "folder"])
-def test_what_a_killed_process_left_is_removed_and_what_a_living_one_writes_stays(kind, tmp_path):
-    target, other = tmp_path / "new", tmp_path / ".partial-0123456789abcdef-another"
-    other.mkdir()
+def test_leftovers_of_killed_processes_are_removed_but_not_of_living_ones(kind, tmp_path):
+    target, user_folder = tmp_path / "new", tmp_path / ".partial-0123456789abcdef-another"
+    user_folder.mkdir()
     writing = replacing_folder if kind == "folder" else replacing
     fill = (
         "import os, signal, sys\n"
@@ -76,13 +76,13 @@ def test_what_a_killed_process_left_is_removed_and_what_a_living_one_writes_stay
         with pytest.raises(ZeroDivisionError), writing(target):
             assert beside.exists()
             raise ZeroDivisionError
-        whole = beside / "a" if kind == "folder" else beside
-        whole.write_text("whole")
-    assert {path.name for path in tmp_path.iterdir()} == {"new", other.name}
-    assert (target / "a" if kind == "folder" else target).read_text() == "whole"
+        result = beside / "a" if kind == "folder" else beside
+        result.write_text("complete")
+    assert {path.name for path in tmp_path.iterdir()} == {"new", user_folder.name}
+    assert (target / "a" if kind == "folder" else target).read_text() == "complete"
 
 
-def test_a_link_and_a_pipe_in_place_of_what_was_left_harm_nothing(tmp_path):
+def test_links_and_pipes_with_names_of_leftovers_are_harmless(tmp_path):
     victim = tmp_path / "victim"
     victim.write_text("precious")
     link = tmp_path / ".partial-0123456789abcdef-new"
@@ -94,9 +94,7 @@ def test_a_link_and_a_pipe_in_place_of_what_was_left_harm_nothing(tmp_path):
     assert (tmp_path / "new").read_text() == "x"
 
 
-def test_a_file_that_is_taken_for_abandoned_before_it_is_locked_is_made_again(
-    tmp_path, monkeypatch
-):
+def test_a_file_that_is_removed_before_it_is_locked_is_created_again(tmp_path, monkeypatch):
     def remove_once(descriptor, _):
         monkeypatch.undo()
         [new] = tmp_path.iterdir()
@@ -107,12 +105,12 @@ def test_a_file_that_is_taken_for_abandoned_before_it_is_locked_is_made_again(
         assert beside.exists()
 
 
-def test_many_processes_that_write_one_file_remove_nothing_of_each_other(tmp_path):
+def test_many_processes_that_write_the_same_file_do_not_disturb_each_other(tmp_path):
     write = (
         "import sys\n"
         "from snowshed.io.atomic import write_text\n"
         "for _ in range(300):\n"
-        "    write_text(sys.argv[1], 'whole')\n"
+        "    write_text(sys.argv[1], 'complete')\n"
     )
     words = [sys.executable, "-c", write, tmp_path / "new"]
     writers = [subprocess.Popen(words, stderr=subprocess.PIPE, text=True) for _ in range(3)]

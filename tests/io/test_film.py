@@ -1,4 +1,4 @@
-"""Films as docs/reference/film.md describes them, in files written by hand."""
+"""Reading films that follow docs/reference/film.md."""
 
 import json
 import struct
@@ -18,36 +18,36 @@ def file(tmp_path):
 
 
 @pytest.mark.parametrize("axes", ["xz", "xyz"])
-def test_a_film_is_read_as_it_is_described(file, axes):
+def test_a_film_is_read_as_documented(file, axes):
     frames = film_files.falling_film(axes=axes)
     file.write_bytes(film_files.film_bytes(frames, axes=axes))
     film = Film(file)
     assert film.dimension == len(axes) and film.whole and film.interval == 0.02
-    assert [one.particles for one in film.frames] == [len(frame[2]) for frame in frames]
-    for found, (time, event, ids, events, places, codes) in zip(film, frames):
-        assert (found.time, found.event) == (time, event)
-        assert np.array_equal(found.ids, ids) and np.array_equal(found.events, events)
+    assert [entry.particles for entry in film.frames] == [len(frame[2]) for frame in frames]
+    for result, (time, event, ids, events, positions, codes) in zip(film, frames):
+        assert (result.time, result.event) == (time, event)
+        assert np.array_equal(result.ids, ids) and np.array_equal(result.events, events)
         expected = np.zeros((len(ids), 3))
-        expected[:, [0, 2] if axes == "xz" else [0, 1, 2]] = places * film.quantum
-        assert np.array_equal(found.positions, expected)
-        assert np.array_equal(found.codes, codes)
+        expected[:, [0, 2] if axes == "xz" else [0, 1, 2]] = positions * film.quantum
+        assert np.array_equal(result.positions, expected)
+        assert np.array_equal(result.codes, codes)
 
 
-def test_particles_that_come_and_go_keep_their_places(file):
-    """A film whose list of particles changes in every frame, which may happen in a slide."""
+def test_particles_that_appear_and_vanish_keep_their_positions(file):
+    """The list of particles changes in every frame, as it may in a slide."""
     random = np.random.default_rng(4)
     frames = []
     for number in range(12):
         ids = np.flatnonzero(random.random(60) < 0.7)
-        places = (ids[:, None] * [5, -7, 11] + np.multiply(number, [3, 1, -2])).astype(int)
-        frames.append((0.1 * number, 1, ids, 1 + ids % 3, places, ids[:, None] - number))
+        positions = (ids[:, None] * [5, -7, 11] + np.multiply(number, [3, 1, -2])).astype(int)
+        frames.append((0.1 * number, 1, ids, 1 + ids % 3, positions, ids[:, None] - number))
     file.write_bytes(film_files.film_bytes(frames))
-    for found, frame in zip(Film(file), frames):
-        assert np.array_equal(found.positions, frame[4] * 2.0**-10)
-        assert np.array_equal(found.codes, frame[5]) and np.array_equal(found.events, frame[3])
+    for result, frame in zip(Film(file), frames):
+        assert np.array_equal(result.positions, frame[4] * 2.0**-10)
+        assert np.array_equal(result.codes, frame[5]) and np.array_equal(result.events, frame[3])
 
 
-def test_values_are_exact_to_a_step_or_to_a_hundredth(file):
+def test_values_are_exact_to_a_step_or_to_one_percent(file):
     file.write_bytes(film_files.film_bytes(film_files.falling_film(20, 4)))
     quantity = Film(file).quantities[0]
     for value in (0.0, 0.004, 0.3, 25.0, -140.0):
@@ -56,19 +56,19 @@ def test_values_are_exact_to_a_step_or_to_a_hundredth(file):
 
 
 @pytest.mark.parametrize("version", [1, 2])
-def test_a_film_that_is_cut_off_anywhere_keeps_its_whole_frames_and_says_so(file, version):
+def test_a_truncated_film_keeps_its_complete_frames_with_a_note(file, version):
     frames = film_files.falling_film(20, 4)
-    whole = film_files.film_bytes(frames, version=version)
+    content = film_files.film_bytes(frames, version=version)
     ends = [len(film_files.film_bytes(frames[:count], version=version)) for count in range(5)]
-    for length in range(ends[0], len(whole)):
-        file.write_bytes(whole[:length])
+    for length in range(ends[0], len(content)):
+        file.write_bytes(content[:length])
         film = Film(file)
         assert len(film.frames) == sum(end <= length for end in ends[1:])
         assert film.whole == (length in ends) and not film.closed and film.notes
     assert len(list(film)) == 3
 
 
-def test_a_film_that_is_complete_says_so(file):
+def test_a_complete_film_is_closed_and_has_no_notes(file):
     frames = film_files.falling_film(20, 4)
     file.write_bytes(film_files.film_bytes(frames, closed=True))
     film = Film(file)
@@ -78,11 +78,11 @@ def test_a_film_that_is_complete_says_so(file):
         Film(file)
 
 
-def test_a_frame_that_is_missing_repeated_or_moved_is_damage(file):
+def test_missing_repeated_and_moved_frames_are_refused(file):
     frames = film_files.falling_film(20, 5)
     ends = [len(film_files.film_bytes(frames[:count])) for count in range(6)]
-    whole = film_files.film_bytes(frames, closed=True)
-    head, *pieces = [whole[a:b] for a, b in zip([0, *ends], [*ends, len(whole)])]
+    content = film_files.film_bytes(frames, closed=True)
+    head, *pieces = [content[a:b] for a, b in zip([0, *ends], [*ends, len(content)])]
     for order in ([0, 2, 3, 4, 5], [0, 1, 1, 2, 3, 4, 5], [0, 2, 1, 3, 4, 5], [0, 1, 2, 3, 5]):
         file.write_bytes(head + b"".join(pieces[k] for k in order))
         with pytest.raises(InputError, match=r"film\.bin, byte \d+: damaged"):
@@ -90,12 +90,12 @@ def test_a_frame_that_is_missing_repeated_or_moved_is_damage(file):
 
 
 @pytest.mark.parametrize("version", [1, 2])
-def test_a_film_with_any_bit_changed_is_refused_or_said_to_be_cut_off(file, version):
+def test_a_film_with_a_changed_bit_is_refused_or_noted_as_truncated(file, version):
     frames = film_files.falling_film(10, 3, axes="xz")
-    whole = film_files.film_bytes(frames, axes="xz", version=version, closed=version == 2)
+    content = film_files.film_bytes(frames, axes="xz", version=version, closed=version == 2)
     start = len(film_files.film_bytes([], axes="xz", version=version))
-    for at in range(len(whole)):
-        damaged = bytearray(whole)
+    for at in range(len(content)):
+        damaged = bytearray(content)
         damaged[at] ^= 1 << at % 8
         file.write_bytes(damaged)
         try:
@@ -107,28 +107,28 @@ def test_a_film_with_any_bit_changed_is_refused_or_said_to_be_cut_off(file, vers
         assert version == 1 and at > start and not film.whole and film.notes
 
 
-def test_no_damage_is_shown(file):
-    """Every damage is an error, or ends the film before it with a note."""
+def test_no_damaged_film_is_shown(file):
+    """Every damage is an error."""
     frames = film_files.falling_film(40, 6)
-    whole = film_files.film_bytes(frames, closed=True)
+    content = film_files.film_bytes(frames, closed=True)
     random = np.random.default_rng(7)
     for _ in range(400):
-        damaged = bytearray(whole)
-        for at in random.integers(0, len(whole), random.integers(1, 4)):
+        damaged = bytearray(content)
+        for at in random.integers(0, len(content), random.integers(1, 4)):
             damaged[at] = random.integers(0, 256)
         file.write_bytes(damaged)
-        if damaged == whole:
+        if damaged == content:
             continue
         with pytest.raises(InputError, match=r"film\.bin"):
             list(Film(file))
 
 
-def forged(raw=b"\0" * 40, **facts):
-    """Return a film of one frame with any content and a correct checksum."""
-    honest = {"time": 0.0, "event": 1, "lists": 1, "particles": 5}
+def forged(raw=b"\0" * 40, **fields):
+    """Return a film of a single frame with any content and a correct checksum."""
+    valid = {"time": 0.0, "event": 1, "lists": 1, "particles": 5}
     head = film_files.header()
-    before = struct.unpack_from("<I", head, 16)[0]
-    return head + film_files.record(raw, before=before, **{**honest, **facts})
+    header_sum = struct.unpack_from("<I", head, 16)[0]
+    return head + film_files.record(raw, previous=header_sum, **{**valid, **fields})
 
 
 @pytest.mark.parametrize(
@@ -158,7 +158,7 @@ def test_forged_films_are_refused(file, content):
         list(Film(file))
 
 
-def test_more_bytes_than_deflate_can_make_are_refused_before_they_are_allocated(file):
+def test_impossible_sizes_are_refused_before_memory_is_allocated(file):
     packed = zlib.compress(b"\0" * 100)
     head = struct.pack("<dIIIIII", 0.0, 1, 1, 10, 1 << 30, len(packed), 0)
     record = struct.pack("<II", 0x4D415246, zlib.crc32(head + packed)) + head + packed

@@ -1,4 +1,4 @@
-"""Endless files in all places where a command or another file names them."""
+"""Endless files as arguments of commands and in other files."""
 
 import subprocess
 import sys
@@ -6,7 +6,7 @@ import sys
 import pytest
 
 from snowshed import InputError
-from snowshed.analysis import load_model
+from snowshed.analysis.regression import load_model
 from snowshed.io.film import Film
 from snowshed.io.vtk.vtp import read_particles
 from snowshed.study import Study
@@ -24,7 +24,7 @@ ENDLESS = "/dev/zero"
         (["season", ENDLESS, "--dim", "2", "--height", "1", "--length", "1", "--tilt", "40"], 64),
     ],
 )
-def test_files_without_end_are_refused(arguments, limit, tmp_path):
+def test_endless_files_are_refused(arguments, limit, tmp_path):
     (tmp_path / "study.toml").write_text(f'name = "a"\n[scene]\nfile = "{ENDLESS}"\n')
     code = [sys.executable, "-m", "snowshed", *arguments, "-o", "out"]
     done = subprocess.run(code, cwd=tmp_path, capture_output=True, text=True, timeout=60)
@@ -34,7 +34,7 @@ def test_files_without_end_are_refused(arguments, limit, tmp_path):
 
 
 @pytest.mark.parametrize("read", [load_model, read_particles, Study.load, Film])
-def test_a_file_without_end_is_refused_by_its_name_once(tmp_path, read):
+def test_the_error_of_an_endless_file_names_it_once(tmp_path, read):
     (tmp_path / "zero").symlink_to("/dev/zero")
     with pytest.raises(InputError) as refused:
         read(tmp_path / "zero")

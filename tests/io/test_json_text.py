@@ -7,7 +7,7 @@ import pytest
 from conftest import tiny_scene
 
 from snowshed import InputError, ResolvedScene, Scene, Snow, _core
-from snowshed.cli.scene_options import json_object
+from snowshed.cli.options.scene import json_object
 from snowshed.io.json_file import parse_object
 from snowshed.io.json_text import loads
 
@@ -22,13 +22,13 @@ TWICE = [
 
 @pytest.mark.parametrize(("text", "path", "line"), TWICE)
 def test_a_repeated_key_is_refused_with_path_and_line(text, path, line):
-    for given in (text, text.encode(), text.encode("utf-16")):
+    for encoded in (text, text.encode(), text.encode("utf-16")):
         with pytest.raises(ValueError, match="appears twice") as error:
-            loads(given)
+            loads(encoded)
         assert str(error.value) == f"{path}: this key appears twice, the second time in line {line}"
 
 
-def test_what_is_there_once_is_read_as_json_reads_it():
+def test_unique_keys_are_read_as_json_reads_them():
     text = json.dumps(tiny_scene().resolve().data)
     assert loads(text) == json.loads(text)
     assert loads('{"a": {"a": [{"a": 1}, {"a": 1}]}}') == {"a": {"a": [{"a": 1}, {"a": 1}]}}
@@ -42,12 +42,12 @@ def test_files_with_a_repeated_key_are_refused(tmp_path, read):
     text = json.dumps(tiny_scene().resolve().data["snow"])
     if read is Snow.load:
         file.write_text(text[:-1] + ',\n "density": 300}')
-        where = "/density"
+        position = "/density"
     else:
         scene = tiny_scene().resolve().json.replace(text, "")
         file.write_text(scene.replace('"density":', '"density": 1,\n "density":', 1))
-        where = "/snow/density"
-    with pytest.raises(InputError, match=rf"{where}: this key appears twice, .*line \d+"):
+        position = "/snow/density"
+    with pytest.raises(InputError, match=rf"{position}: this key appears twice, .*line \d+"):
         read(file)
 
 

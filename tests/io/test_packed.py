@@ -1,4 +1,4 @@
-"""Packed files, pipes, and lines that would cost too much; no test depends on the clock."""
+"""Packed files, pipes, and lines that need too much memory or time."""
 
 import gzip
 import lzma
@@ -26,7 +26,7 @@ def xz(content, **options):
 
 
 @pytest.mark.parametrize("pack", [gzip.compress, xz])
-def test_members_are_read_one_after_another(pack, tmp_path):
+def test_members_of_packed_files_are_joined(pack, tmp_path):
     half = len(TABLE) // 2
     for packed in (
         pack(TABLE),
@@ -38,7 +38,7 @@ def test_members_are_read_one_after_another(pack, tmp_path):
         assert unpacked(packed, tmp_path / "a") == TABLE
 
 
-def test_parts_that_do_not_fit_into_one_feed_give_the_same(tmp_path):
+def test_packed_files_larger_than_the_buffer_are_read(tmp_path):
     noise = os.urandom(300_000)
     for pack in (gzip.compress, xz):
         assert unpacked(pack(noise), tmp_path / "a") == noise
@@ -71,9 +71,9 @@ def test_parts_that_do_not_fit_into_one_feed_give_the_same(tmp_path):
         (b"SMET 1.1 ASCII\n[HEADER]\nfields = timestamp TA\n[DATA]\n" + b"1 " * 500_000,
          "line 5: longer than 64 KB"),
     ],
-    ids=lambda one: one[:24] if isinstance(one, str) else "",
+    ids=lambda value: value[:24] if isinstance(value, str) else "",
 )  # fmt: skip
-def test_what_costs_too_much_is_refused_as_weather(content, message, tmp_path):
+def test_excessive_weather_files_are_refused(content, message, tmp_path):
     (tmp_path / "a").write_bytes(content)
     with pytest.raises(InputError, match=re.escape(message)):
         read_station(tmp_path / "a")
@@ -99,13 +99,13 @@ def test_a_dictionary_larger_than_the_limit_is_refused(tmp_path):
         (b"a,b\n" + b"1,2\n" * 300_002, "not a table: more than 300000 rows"),
     ],
 )
-def test_what_costs_too_much_is_refused_as_a_table(content, message, tmp_path):
+def test_excessive_tables_are_refused(content, message, tmp_path):
     (tmp_path / "a").write_bytes(content)
     with pytest.raises(InputError, match=re.escape(message)):
         list(read_text_table(tmp_path / "a", "", lambda *_: None).rows)
 
 
-def test_a_packed_table_is_read_like_the_one_inside(tmp_path):
+def test_a_packed_table_is_read(tmp_path):
     (tmp_path / "a").write_bytes(gzip.compress(TABLE))
     assert read_text_table(tmp_path / "a", "", lambda *_: None).rows[0].cells["snowfall_m"] == "0.1"
     assert read_csv(tmp_path / "a")["snowfall_m"].tolist() == [0.1]
@@ -114,7 +114,7 @@ def test_a_packed_table_is_read_like_the_one_inside(tmp_path):
 LINES = 'a,b\r\n"x\r\ny",1\r"",2\n3,4'
 
 
-def test_lines_end_as_those_of_other_systems(tmp_path):
+def test_line_ends_of_other_systems_are_read(tmp_path):
     (tmp_path / "a").write_bytes(LINES.encode())
     table = read_text_table(tmp_path / "a", "", lambda *_: None)
     assert [tuple(row.cells.values()) for row in table.rows] == [("x\r\ny", "1"), ("", "2"),
@@ -140,7 +140,7 @@ def test_a_pipe_with_a_writer_is_read(tmp_path):
     writer.join()
 
 
-def test_what_is_longer_than_the_limit_is_not_read(tmp_path):
+def test_files_beyond_the_limit_are_not_read(tmp_path):
     with (tmp_path / "sparse").open("wb") as file:
         file.truncate(1 << 40)
     with pytest.raises(InputError, match="sparse: longer than 64 MB"):

@@ -1,4 +1,4 @@
-"""Pipes and sockets in place of files, which would make a reader wait forever."""
+"""Pipes and sockets instead of files, for which a reader would wait forever."""
 
 import os
 import socket
@@ -48,8 +48,8 @@ def test_a_pipe_in_a_scene_is_refused(pipe, shape):
 
 
 def test_a_socket_is_refused(tmp_path):
-    with socket.socket(socket.AF_UNIX) as one:
-        one.bind(str(tmp_path / "a"))
+    with socket.socket(socket.AF_UNIX) as server:
+        server.bind(str(tmp_path / "a"))
         for read in (Scene.load, ResolvedScene.load):
             with pytest.raises((InputError, OSError)):
                 read(tmp_path / "a")
@@ -59,8 +59,8 @@ def test_a_socket_is_refused(tmp_path):
 def test_commands_do_not_wait_for_a_pipe(pipe, tmp_path, command):
     out = ["-o", tmp_path / "out"] if command == "run" else []
     done = snowshed_command(command, pipe, *out)
-    _, said = done.communicate(timeout=60)
-    assert done.returncode == 2 and "a.stl: not a regular file" in said
+    _, messages = done.communicate(timeout=60)
+    assert done.returncode == 2 and "a.stl: not a regular file" in messages
 
 
 def test_the_executable_does_not_wait_for_a_pipe(pipe, tmp_path):

@@ -22,19 +22,19 @@ def law() -> CamClay:
     )
 
 
-def test_moduli(law):
+def test_moduli_follow_from_youngs_modulus_and_poissons_ratio(law):
     assert law.bulk == pytest.approx(1e6 / (3 * 0.4))
     assert law.shear == pytest.approx(1e6 / 2.6)
 
 
 def test_initial_strain_gives_the_initial_strength(law):
     ev = law.initial_plastic_strain(P0)
-    assert ev == pytest.approx(-0.084, abs=5e-4)  # facts of the thesis's calibrated snow
+    assert ev == pytest.approx(-0.084, abs=5e-4)  # as the thesis states
     assert law.preconsolidation(ev) == pytest.approx(P0)
     assert law.preconsolidation(0.1) == 0
 
 
-def test_elastic_states_stay(law):
+def test_elastic_states_are_unchanged(law):
     ev = law.initial_plastic_strain(P0)
     assert law.yield_function(0.5 * P0, 0.0, P0) < 0
     assert law.return_map(0.5 * P0, 0.0, ev) == (0.5 * P0, 0.0, ev)
@@ -46,7 +46,7 @@ def test_elastic_states_stay(law):
     [(p, q) for p in (-1e5, -2e3, 1e4, 1e6) for q in (0.0, 2e3, 1e5)]
     + [(p, q) for p in (0.0, 0.4 * P0) for q in (2e3, 1e5)],
 )
-def test_what_is_outside_returns_to_the_yield_surface(law, p, q):
+def test_states_outside_return_to_the_yield_surface(law, p, q):
     ev = law.initial_plastic_strain(P0)
     assert law.yield_function(p, q, P0) > 0
     p1, q1, ev1 = law.return_map(p, q, ev)

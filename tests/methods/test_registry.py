@@ -1,6 +1,7 @@
-"""A method is a folder and a name in the registry; the rest of the package knows none by name."""
+"""A method is a folder and a name in the registry; the rest of the package names none."""
 
 import ast
+import re
 from pathlib import Path
 
 import pytest
@@ -27,24 +28,26 @@ PACKAGE = ROOT / "python" / "snowshed"
 
 PRESSED = LoadingStage(kind="compress", strain=2e-3, speed=0.05)
 
-#: Modules and folders that name a method, with the reason; a module names one method or all.
+#: Modules and folders that may name a method, with the reason. Each module names at most one,
+#: except those in `NAME_ALL`.
 NAME_METHODS = {
     "methods/registry.py": "the registry",
     "methods/summary.py": "the number of grains was a figure with the name `grains`",
     "cli/main.py": "two commands have the names of their methods",
     "cli/": "a command may run scenes of one method, and the self-test has a check of each",
     "scene/builders/": "a builder makes scenes of one method",
-    "plot/slide_figure.py": "draws maps, which slides alone have",
-    "plot/slide_page.py": "shows maps, which slides alone have",
-    "plot/loading_figure.py": "draws curves, which loading tests alone have",
+    "plot/slide_figure.py": "draws maps, which only slides have",
+    "plot/slide_page.py": "shows maps, which only slides have",
+    "plot/loading_figure.py": "draws curves, which only loading tests have",
     "plot/force_chains.py": "draws contacts of grains",
-    "running/slide.py": "runs a slide from files in one call",
     "results/avaframe.py": "writes the files of another program for slides",
     "analysis/": "an analysis may ask about the results of one method",
 }
 NAME_ALL = {"methods/registry.py", "cli/main.py"}
+#: Modules in the folders of methods that import higher layers.
+PLUG_INS = ("run", "simulate", "states")
 #: Modules for all methods in folders that may name a method.
-SERVE_ALL = {"cli/run_scene.py", "cli/run_output.py"}
+SERVE_ALL = {"cli/run_scene.py", "cli/output/results.py"}
 
 
 def modules():
@@ -71,20 +74,20 @@ def named_methods(tree):
         if isinstance(node, ast.Constant) and node not in examples
     ]
     texts += [str(node.module) for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
-    found = {text for text in texts if text in METHODS}
+    methods = {text for text in texts if text in METHODS}
     inside = [text.split(".")[2] for text in texts if text.startswith("snowshed.methods.")]
-    return found | {name.partition(":")[0] for name in inside} & set(FOLDERS)
+    return methods | {name.partition(":")[0] for name in inside} & set(FOLDERS)
 
 
-def test_no_module_knows_a_method_by_name():
+def test_general_modules_name_no_method():
     wrong = {}
     for name, tree in modules():
         allowed = name in NAME_METHODS or any(
-            name.startswith(place) for place in NAME_METHODS if place.endswith("/")
+            name.startswith(folder) for folder in NAME_METHODS if folder.endswith("/")
         )
-        most = len(METHODS) if name in NAME_ALL else int(allowed and name not in SERVE_ALL)
-        if len(found := named_methods(tree)) > most:
-            wrong[name] = found
+        limit = len(METHODS) if name in NAME_ALL else int(allowed and name not in SERVE_ALL)
+        if len(methods := named_methods(tree)) > limit:
+            wrong[name] = methods
     assert wrong == {}
 
 
@@ -95,23 +98,31 @@ def test_every_folder_of_a_method_is_in_the_registry():
     assert inside == set(FOLDERS) == set(METHODS)
 
 
-def test_the_parts_of_every_method_are_there():
+def test_every_method_has_a_run_class_and_its_readers():
     for method in METHODS.values():
         assert issubclass(method.run_class(), MethodRun), method.name
         for result, reader in method.results.items():
             assert callable(imported(reader)), (method.name, result)
             assert hasattr(Results, result), result
+        for result, function in method.in_memory.items():
+            assert callable(imported(function)), (method.name, result)
+            assert hasattr(Simulation, result) and result in method.results
 
 
-def test_nobody_imports_a_plug_in():
-    """A method's ``run`` imports higher layers; only the method's entry names it, as text."""
+def is_plug_in(name):
+    """Return whether a dotted name is a plug-in or a name in one."""
+    return re.match(rf"snowshed\.methods\.\w+\.({'|'.join(PLUG_INS)})(\.|$)", name)
+
+
+def test_no_module_imports_a_plug_in():
+    """Only texts name plug-ins: the method's entry, and the stubs of packages."""
     wrong = [
         f"{path.relative_to(PACKAGE)}, line {node.lineno}"
         for path in PACKAGE.rglob("*.py")
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
         if isinstance(node, (ast.Import, ast.ImportFrom))
-        for name in [getattr(node, "module", None), *(alias.name for alias in node.names)]
-        if name and name.startswith("snowshed.methods.") and name.split(".")[3:4] == ["run"]
+        for alias in node.names
+        if is_plug_in(f"{getattr(node, 'module', '')}.{alias.name}".strip("."))
     ]
     assert wrong == []
 
@@ -131,23 +142,25 @@ def runs(tmp_path_factory):
     }
 
 
-def test_results_have_what_the_method_has_and_say_so_otherwise(runs):
+def test_results_have_only_the_attributes_of_their_method(runs):
     assert set(runs) == set(METHODS)
-    every = {result for method in METHODS.values() for result in method.results}
+    all_results = {result for method in METHODS.values() for result in method.results}
     for name, results in runs.items():
-        for result in every:
+        for result in all_results:
             if result in METHODS[name].results:
                 assert getattr(results, result) is not None
                 continue
-            has = ", ".join(METHODS[name].results)
-            with pytest.raises(InputError, match=f'method "{name}" has no {result}; it has {has}'):
+            available = ", ".join(METHODS[name].results)
+            with pytest.raises(
+                InputError, match=f'method "{name}" has no {result}; it has {available}'
+            ):
                 getattr(results, result)
         if "stack" not in METHODS[name].results:
             with pytest.raises(InputError, match=f'method "{name}" has no events; it has summary'):
                 _ = results.events
 
 
-def test_results_are_what_the_run_measured(runs):
+def test_results_agree_with_the_run(runs):
     stack, last = runs["mpm"].stack, runs["mpm"].events.iloc[-1]
     assert stack.height == pytest.approx(last.height_m, rel=1e-5)
     maps, summary = runs["slide"].maps, runs["slide"].summary
@@ -158,7 +171,7 @@ def test_results_are_what_the_run_measured(runs):
     assert runs["grains"].forces.attrs["units"]["force_x_n"] == "N"
 
 
-def test_functions_of_a_method_take_the_simulation_that_users_have(tmp_path):
+def test_functions_of_methods_take_a_public_simulation(tmp_path):
     slide = Simulation(example_slide(tmp_path))
     slide.begin_event()
     assert slide_maps(slide).thickness.max() > 0.0
@@ -171,7 +184,7 @@ def test_functions_of_a_method_take_the_simulation_that_users_have(tmp_path):
     assert title.startswith("Stack after event 1")
 
 
-def test_snow_that_cannot_age_is_refused_before_anything_is_written(tmp_path):
+def test_ageing_is_refused_before_writing_if_the_method_lacks_it(tmp_path):
     ageing = imported("snowshed.running:Ageing")(settling="vionnet-2012")
     for name in set(METHODS) - {"mpm"}:
         assert not METHODS[name].ages
@@ -181,39 +194,39 @@ def test_snow_that_cannot_age_is_refused_before_anything_is_written(tmp_path):
 
 
 class BlockRun(MethodRun):
-    """A run of the stand-in, which writes the largest distance of the snow."""
+    """A run of the stand-in, which writes the largest x of its particles."""
 
     UNIT = "blocks"
 
     def finish(self):
         """Write the largest x of the particles."""
-        place = self.simulation.positions()[:, 0].max()
-        (self.folder / "block.txt").write_text(f"{place:.6f}")
+        reach = self.simulation.positions()[:, 0].max()
+        (self.folder / "block.txt").write_text(f"{reach:.6f}")
 
 
-def read_place(folder: Path) -> float:
+def read_reach(folder: Path) -> float:
     """Read what `BlockRun` wrote."""
     return float((folder / "block.txt").read_text())
 
 
-def test_an_entry_is_all_that_python_needs_of_a_method(tmp_path, monkeypatch, capsys):
-    """A stand-in for a method of the core needs one entry and one class."""
+def test_a_registry_entry_and_a_run_class_add_a_method(tmp_path, monkeypatch, capsys):
+    """A stand-in for a method needs a registry entry and a run class."""
     entry = Method(
         name="mps",
         title="A block",
         settings=MpsSettings,
         run=f"{__name__}:BlockRun",
-        results={"place": f"{__name__}:read_place"},
+        results={"reach": f"{__name__}:read_reach"},
     )
     monkeypatch.setitem(METHODS, "mps", entry)
     scene = tiny_mps(**{"events": {"count": 2, "max_time": 0.05}})
-    told = []
-    results = snowshed.run(scene, tmp_path / "out", progress=told.append)
-    assert told[-1].description.startswith("2/2 blocks")
-    assert results.result("place") > 0.1
+    reports = []
+    results = snowshed.run(scene, tmp_path / "out", progress=reports.append)
+    assert reports[-1].description.startswith("2/2 blocks")
+    assert results.result("reach") > 0.1
     assert [row["event"] for row in BlockRun.rows(tmp_path / "out")] == [1, 2]
-    with pytest.raises(InputError, match='method "mps" has no maps; it has place'):
+    with pytest.raises(InputError, match='method "mps" has no maps; it has reach'):
         _ = results.maps
     assert main(["run", str(tmp_path / "out/scene.json"), "-o", str(tmp_path / "two")]) == 0
-    assert read_place(tmp_path / "two") == results.result("place")
+    assert read_reach(tmp_path / "two") == results.result("reach")
     assert str(tmp_path / "two") in capsys.readouterr().out

@@ -10,11 +10,11 @@ def numerics(scene):
     return scene.resolve().data["numerics"]
 
 
-def test_a_scheme_decides_the_settings_of_a_preset():
+def test_a_scheme_overrides_the_settings_of_a_preset():
     """A preset states all settings, which would contradict another scheme."""
     scene = Scene.preset("lab-50").set("numerics.scheme", "objective")
-    told = numerics(scene)
-    assert (told["transfer"], told["damping_rate"], told["contact"]) == (
+    settings = numerics(scene)
+    assert (settings["transfer"], settings["damping_rate"], settings["contact"]) == (
         "affine_flip",
         380.0,
         "touch",
@@ -22,13 +22,13 @@ def test_a_scheme_decides_the_settings_of_a_preset():
     assert numerics(scene.set("numerics.scheme", "thesis")) == numerics(Scene.preset("lab-50"))
 
 
-def test_a_scheme_decides_what_was_set_before_it():
+def test_a_scheme_overrides_earlier_settings():
     slower = Scene.preset("lab-50").set("numerics.damping_rate", 95.0)
     assert numerics(slower.set("numerics.scheme", "objective"))["damping_rate"] == 380.0
 
 
 @pytest.mark.parametrize("order", [1, -1])
-def test_settings_that_are_given_with_a_scheme_stand_in_any_order(order):
+def test_a_scheme_and_settings_may_be_given_in_any_order(order):
     given = {"numerics.scheme": "objective", "numerics.damping_length": 0.02}
     scene = Scene.preset("lab-50").update(dict(list(given.items())[::order]))
     assert numerics(scene)["damping_length"] == 0.02
@@ -38,14 +38,14 @@ def test_settings_that_are_given_with_a_scheme_stand_in_any_order(order):
 
 
 @pytest.mark.parametrize("order", [1, -1])
-def test_factors_of_a_study_stand_beside_a_scheme_in_any_order(order):
+def test_a_scheme_and_factors_of_a_study_may_be_given_in_any_order(order):
     factors = {"numerics.scheme": ["objective"], "numerics.damping_length": [0.02]}
     study = Study.product(Scene.preset("lab-50"), dict(list(factors.items())[::order]))
     (run,) = study.runs()
     assert json.loads(run.scene)["numerics"]["damping_length"] == 0.02
 
 
-def test_the_same_scheme_again_changes_nothing():
+def test_setting_the_same_scheme_again_changes_nothing():
     scene = Scene.preset("lab-50").set("numerics.flip_ratio", 0.95)
     assert numerics(scene.set("numerics.scheme", "thesis"))["flip_ratio"] == 0.95
 
@@ -59,8 +59,8 @@ def test_a_mechanism_that_contradicts_the_scheme_is_an_error():
 
 def test_the_command_takes_a_scheme(tmp_path, capsys):
     coarse = ["--dim", "2", "--dx", "0.02", "--events", "1"]
-    asked = ["panel", "--preset", "lab-50", *coarse, "--scheme", "objective"]
-    assert main([*asked, "-o", str(tmp_path / "out")]) == 0
-    shown = " ".join(capsys.readouterr().out.split())
-    assert "damping 380 1/s over 0.01 m" in shown
-    assert "lab-50 in 2D, event 1, scheme objective" in shown
+    command = ["panel", "--preset", "lab-50", *coarse, "--scheme", "objective"]
+    assert main([*command, "-o", str(tmp_path / "out")]) == 0
+    output = " ".join(capsys.readouterr().out.split())
+    assert "damping 380 1/s over 0.01 m" in output
+    assert "lab-50 in 2D, event 1, scheme objective" in output

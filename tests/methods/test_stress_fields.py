@@ -1,4 +1,4 @@
-"""The stresses of the particles, computed again from their elastic strains."""
+"""Stresses of particles agree with those computed from their elastic strains."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from snowshed import Simulation
 
 @pytest.mark.parametrize("dimension", [2, 3])
 @pytest.mark.parametrize("model", ["cam_clay", "elastic"])
-def test_stresses_are_those_of_the_elastic_strain(dimension, model):
+def test_stresses_follow_from_the_elastic_strain(dimension, model):
     scene = tiny_scene(**{"dimension": dimension, "snow.model": model, "events.count": 1})
     scene.update({"numerics.precision": "double", "snow.youngs_modulus": 2e5})
     simulation = Simulation(scene)
@@ -26,10 +26,10 @@ def test_stresses_are_those_of_the_elastic_strain(dimension, model):
     trace = np.trace(hencky, axis1=1, axis2=2)
     deviator = hencky - (trace / dimension)[:, None, None] * np.eye(dimension)
     shear = 2 * 2e5 / (2 * 1.3) * deviator
-    wanted = np.sqrt(1.5 * (shear**2).sum(axis=(1, 2)))
-    found = simulation.fields["deviatoric_stress"].by_id()
-    assert wanted.max() > 100
-    assert found == pytest.approx(wanted, rel=1e-6, abs=1e-6 * wanted.max())
+    expected = np.sqrt(1.5 * (shear**2).sum(axis=(1, 2)))
+    stress = simulation.fields["deviatoric_stress"].by_id()
+    assert expected.max() > 100
+    assert stress == pytest.approx(expected, rel=1e-6, abs=1e-6 * expected.max())
     dataset = simulation.to_xarray()
     assert dataset.deviatoric_stress.attrs["units"] == "Pa"
     if model == "elastic":
@@ -42,6 +42,6 @@ def test_stresses_are_those_of_the_elastic_strain(dimension, model):
     slope, cohesion = 0.5, 0.2  # no particle is beyond its yield surface, and some are on it
     pressure = simulation.pressures()
     inside = (pressure + cohesion * hardness) * (hardness - pressure) * slope**2
-    excess = (1 + 2 * cohesion) * found**2 - inside
+    excess = (1 + 2 * cohesion) * stress**2 - inside
     assert (excess <= 1e-6 * hardness**2 + 1e-6).all()
-    assert (np.abs(excess) < 1e-6 * found**2).any()
+    assert (np.abs(excess) < 1e-6 * stress**2).any()

@@ -14,7 +14,7 @@ import sys
 import warnings
 from pathlib import Path
 
-HANG_S = 10.0  # of processor time, which a busy machine does not change
+HANG_S = 10.0  # of processor time, which does not depend on the load of the machine
 MAX_LENGTH = 20_000  # characters of a message, which the command line cuts
 
 
@@ -25,25 +25,25 @@ def main() -> None:
     from readers import tries_of
 
     warnings.simplefilter("ignore")
-    every = [(name, seed) for name in sys.argv[5:] for seed in range(tries_of(name, tries))]
+    cases = [(name, seed) for name in sys.argv[5:] for seed in range(tries_of(name, tries))]
     good = None
-    for name, seed in every[first:]:
+    for name, seed in cases[first:]:
         if good is None or good.name != name:
             limit_memory(resource.RLIM_INFINITY)
-            good = Good(name, folder / name.replace(" ", "-"))
-            limit_memory(used() + (memory << 20))  # its modules are imported by now
-        tell(reader=name, seed=seed)
+            good = GoodFile(name, folder / name.replace(" ", "-"))
+            limit_memory(address_space() + (memory << 20))  # its modules are imported by now
+        report(reader=name, seed=seed)
         signal.setitimer(signal.ITIMER_PROF, HANG_S)  # ends the process, also in the core
         outcome = good.outcome(seed)
         signal.setitimer(signal.ITIMER_PROF, 0)
-        tell(reader=name, seed=seed, outcome=outcome)
+        report(reader=name, seed=seed, outcome=outcome)
 
 
-def tell(**facts: object) -> None:
+def report(**facts: object) -> None:
     print(json.dumps(facts), flush=True)
 
 
-class Good:
+class GoodFile:
     """A reader with its good file, and the content of that file."""
 
     def __init__(self, name: str, folder: Path) -> None:
@@ -55,7 +55,7 @@ class Good:
         folder.mkdir(parents=True)
         self.file = self.reader.make(folder)
         self.content = self.file.read_bytes()
-        self.wanted = self.reader.read(self.file)
+        self.expected = self.reader.read(self.file)
 
     def outcome(self, seed: int) -> str:
         """Return the outcome of reading the file with the changes of a seed."""
@@ -65,21 +65,21 @@ class Good:
         content = (self.reader.change or mutated)(self.content, seed)
         self.file.write_bytes(content)
         try:
-            found = self.reader.read(self.file)
+            content_read = self.reader.read(self.file)
         except REFUSED as error:
             return "refused" if len(str(error)) <= MAX_LENGTH else "LONG MESSAGE"
         except MemoryError:
             return "MEMORY"
         except BaseException as error:
             return f"TRACEBACK {type(error).__name__}: {error}"[:500]
-        return "SILENT" if self.reader.exact and found != self.wanted else "accepted"
+        return "SILENT" if self.reader.exact and content_read != self.expected else "accepted"
 
 
 def limit_memory(limit: int) -> None:
     resource.setrlimit(resource.RLIMIT_AS, (limit, resource.RLIM_INFINITY))
 
 
-def used() -> int:
+def address_space() -> int:
     """Return the address space of this process, bytes."""
     pages = int(Path("/proc/self/statm").read_text().split()[0])
     return pages * resource.getpagesize()

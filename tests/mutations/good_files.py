@@ -1,4 +1,4 @@
-"""Good files of every kind, which are then mutated."""
+"""Good files of every kind, to be mutated by the tests."""
 
 from __future__ import annotations
 
@@ -120,11 +120,11 @@ def polygons(suffix: str) -> Callable[[Path], Path]:
         if suffix == ".geojson":
             return file
         meta, _, shapes, columns = pyogrio.raw.read(file)
-        made = folder / f"b{suffix}"
+        converted = folder / f"b{suffix}"
         pyogrio.raw.write(
-            *(made, shapes, columns, meta["fields"]), crs=meta["crs"], geometry_type="Polygon"
+            *(converted, shapes, columns, meta["fields"]), crs=meta["crs"], geometry_type="Polygon"
         )
-        return made
+        return converted
 
     return make
 
@@ -167,8 +167,8 @@ def store(folder: Path) -> Path:
     with Store.create(folder / "store") as store:
         store.register("tiny", ["panel.friction"], runs)
         rows = [{"event": 1, "wall_s": 0.5, "height_m": 0.25, "ended": "rest"}]
-        kept = {1: b"particles"}
-        store.record(RunOutcome(runs[0].hash, "done", rows, {"run_wall_s": 1.0}, None, kept))
+        particles = {1: b"particles"}
+        store.record(RunOutcome(runs[0].hash, "done", rows, {"run_wall_s": 1.0}, None, particles))
         store._connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
     return folder / "store" / "store.sqlite"
 
@@ -177,14 +177,14 @@ def packed(folder: Path) -> Path:
     from snowshed.results.event_particles import EventParticles
 
     ones = np.ones(5, dtype=np.float32)
-    place = np.arange(15, dtype=np.float32).reshape(5, 3)
-    whole = EventParticles(place, ones, ones, ones > 2, 3, 0.1, 0.0)
-    (folder / "a.npz").write_bytes(whole.packed())
+    positions = np.arange(15, dtype=np.float32).reshape(5, 3)
+    particles = EventParticles(positions, ones, ones, ones > 2, 3, 0.1, 0.0)
+    (folder / "a.npz").write_bytes(particles.packed())
     return folder / "a.npz"
 
 
 def model(folder: Path) -> Path:
-    from snowshed.analysis import save_model
+    from snowshed.analysis.regression import save_model
     from snowshed.analysis.regression.ensemble import Ensemble
     from snowshed.analysis.regression.model_file import Member, StackModel
     from snowshed.analysis.regression.scaling import Scaling
@@ -214,8 +214,8 @@ def film(folder: Path) -> Path:
 
 def film_of_version_1(folder: Path) -> Path:
     frames = film_files.falling_film(40, FRAMES, axes="xz")
-    made = film_files.film_bytes(frames, axes="xz", version=1)
-    (folder / "film.bin").write_bytes(made)
+    content = film_files.film_bytes(frames, axes="xz", version=1)
+    (folder / "film.bin").write_bytes(content)
     return folder / "film.bin"
 
 
@@ -290,8 +290,10 @@ def grains_summary(folder: Path) -> Path:
 
 
 def peaks(folder: Path) -> Path:
-    some = np.arange(1, 13, dtype=np.float32).reshape(3, 4)
-    (folder / "peaks.npz").write_bytes(PeakMaps(some, 2 * some, 3 * some, 1, 2, (8, 9)).packed())
+    values = np.arange(1, 13, dtype=np.float32).reshape(3, 4)
+    (folder / "peaks.npz").write_bytes(
+        PeakMaps(values, 2 * values, 3 * values, 1, 2, (8, 9)).packed()
+    )
     return folder / "peaks.npz"
 
 

@@ -1,7 +1,7 @@
-"""Images with well-formed headers of false content: sizes, places, types and packings.
+"""Images with well-formed headers of false content: sizes, offsets, types and compressions.
 
-Each function changes a good file of a format, the same for the same seed. Checksums are computed
-again, so that readers meet the false content and not a wrong sum.
+Each function changes a good file of its format at random, by a seed. Checksums are computed again,
+so that readers meet the false content and not a wrong sum.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import random
 import struct
 import zlib
 
-NASTY = (
+EXTREMES = (
     *(0, 1, 2, 3, 7, 8, 16, 255, 256, 65_535, 65_536, 100_000, 1 << 24, 1 << 30),
     *((1 << 31) - 1, 1 << 31, (1 << 32) - 1),
 )
@@ -45,11 +45,11 @@ TAGS = (
     *(320, 322, 323, 324, 325, 330, 338, 339, 347, 32997, 34665, 50838, 50839, 65000),
 )
 ORIENTED = b"II*\0\x08\0\0\0\1\0\x12\1\3\0\1\0\0\0"  # Exif up to the value
-PACKINGS = (1, 2, 3, 4, 5, 6, 7, 8, 32773, 32946, 34712, 34925, 50000, 50001, 99)
+COMPRESSIONS = (1, 2, 3, 4, 5, 6, 7, 8, 32773, 32946, 34712, 34925, 50000, 50001, 99)
 
 
 def mha(content: bytes, seed: int) -> bytes:
-    """Return a MetaImage whose fields hold other values, some with data that unpacks to much."""
+    """Return a MetaImage whose fields hold other values, some with data that unpack to 64 MB."""
     chance = random.Random(seed)
     head, _, data = content.partition(b"ElementDataFile = LOCAL\n")
     fields = dict(line.split(" = ", 1) for line in head.decode().splitlines())
@@ -97,7 +97,7 @@ def npy(content: bytes, seed: int) -> bytes:
 
 
 def tiff(content: bytes, seed: int) -> bytes:
-    """Return a TIFF file some of whose tags hold other types, counts and values."""
+    """Return a TIFF file with other types, counts and values in some of its tags."""
     chance = random.Random(seed)
     data = bytearray(content)
     pages = list(_pages(data))
@@ -105,21 +105,21 @@ def tiff(content: bytes, seed: int) -> bytes:
         start, count = chance.choice(pages)
         entry = start + 2 + 12 * chance.randrange(count)
         end = start + 2 + 12 * count
-        what = chance.randrange(7)
-        if what == 0:
+        change = chance.randrange(7)
+        if change == 0:
             _put(data, entry, "<H", chance.choice(TAGS))
-        elif what == 1:
+        elif change == 1:
             _put(data, entry + 2, "<H", chance.choice((0, 1, 2, 3, 4, 5, 6, 7, 11, 12, 13, 16, 99)))
-        elif what == 2:
-            _put(data, entry + 4, "<I", chance.choice(NASTY))
-        elif what == 3:
-            _put(data, entry + 8, "<I", chance.choice(NASTY))
-        elif what == 4:
-            _put(data, end, "<I", chance.choice((0, 8, *(page for page, _ in pages), *NASTY)))
-        elif what == 5:
+        elif change == 2:
+            _put(data, entry + 4, "<I", chance.choice(EXTREMES))
+        elif change == 3:
+            _put(data, entry + 8, "<I", chance.choice(EXTREMES))
+        elif change == 4:
+            _put(data, end, "<I", chance.choice((0, 8, *(page for page, _ in pages), *EXTREMES)))
+        elif change == 5:
             _put(data, start, "<H", chance.choice((0, 1, count - 1, count + 1, 4096, 65_535)))
         else:
-            _set(data, start, count, 259, chance.choice(PACKINGS))
+            _set(data, start, count, 259, chance.choice(COMPRESSIONS))
     if chance.random() < 0.2:  # a large page of packed zeros
         for start, count in pages:
             for code, value in ((256, 20_000), (257, 20_000), (259, 8), (278, 20_000)):
@@ -132,52 +132,54 @@ def tiff(content: bytes, seed: int) -> bytes:
 
 def _pages(data: bytearray) -> list[tuple[int, int]]:
     """Return the start of each page of a file, and its number of tags."""
-    found = []
+    pages = []
     (start,) = struct.unpack_from("<I", data, 4)
     while start:
         (count,) = struct.unpack_from("<H", data, start)
-        found.append((start, count))
+        pages.append((start, count))
         (start,) = struct.unpack_from("<I", data, start + 2 + 12 * count)
-    return found
+    return pages
 
 
 def _set(data: bytearray, start: int, count: int, code: int, value: int) -> None:
-    """Set a tag to one number of 32 bits, if the page has it."""
+    """Set a tag to a single 32-bit number if the page has it."""
     for entry in range(start + 2, start + 2 + 12 * count, 12):
         if struct.unpack_from("<H", data, entry)[0] == code:
             data[entry : entry + 12] = struct.pack("<HHII", code, 4, 1, value & 0xFFFFFFFF)
 
 
-def _put(data: bytearray, place: int, kind: str, value: int) -> None:
+def _put(data: bytearray, offset: int, kind: str, value: int) -> None:
     mask = 0xFFFF if kind == "<H" else 0xFFFFFFFF
-    if place + struct.calcsize(kind) <= len(data):
-        struct.pack_into(kind, data, place, value & mask)
+    if offset + struct.calcsize(kind) <= len(data):
+        struct.pack_into(kind, data, offset, value & mask)
 
 
 def png(content: bytes, seed: int) -> bytes:
-    """Return a PNG file with another head, other chunks, or numbers that unpack to much."""
+    """Return a PNG file with another header, other chunks, or pixels that unpack to 64 MB."""
     chance = random.Random(seed)
-    chunks, place = [], 8
-    while place < len(content):
-        (length,) = struct.unpack_from(">I", content, place)
-        chunks.append((content[place + 4 : place + 8], content[place + 8 : place + 8 + length]))
-        place += 12 + length
+    chunks, offset = [], 8
+    while offset < len(content):
+        (length,) = struct.unpack_from(">I", content, offset)
+        chunks.append((content[offset + 4 : offset + 8], content[offset + 8 : offset + 8 + length]))
+        offset += 12 + length
     head = list(struct.unpack(">IIBBBBB", chunks[0][1]))
     for _ in range(chance.choice((0, 1, 2))):
-        at = chance.randrange(7)
-        head[at] = chance.choice(NASTY) if at < 2 else chance.choice((0, 1, 2, 3, 4, 6, 8, 16, 255))
+        field = chance.randrange(7)
+        head[field] = (
+            chance.choice(EXTREMES) if field < 2 else chance.choice((0, 1, 2, 3, 4, 6, 8, 16, 255))
+        )
     body = [(kind, ZEROS if kind == b"IDAT" and chance.random() < 0.3 else data)
             for kind, data in chunks[1:]]  # fmt: skip
     extra = chance.choice((
         (b"zTXt", b"a\0\0" + ZEROS), (b"iTXt", b"a\0\1\0\0\0" + ZEROS), (b"iCCP", b"a\0\0" + ZEROS),
         (b"eXIf", ORIENTED + bytes([chance.randrange(12), 0, 0, 0])),
-        (b"acTL", struct.pack(">II", chance.choice(NASTY), 0)), (b"PLTE", bytes(range(9))),
+        (b"acTL", struct.pack(">II", chance.choice(EXTREMES), 0)), (b"PLTE", bytes(range(9))),
         (b"tRNS", b"\0\1"), (b"IDAT", b""), (b"IEND", b""), (b"tEXt", b"x" * 1000),
     ))  # fmt: skip
     if chance.random() < 0.6:
         body.insert(chance.randrange(len(body)), extra)
-    packed = struct.pack(">IIBBBBB", *head[:2], *(one & 255 for one in head[2:]))
-    return content[:8] + b"".join(_chunk(*one) for one in [(b"IHDR", packed), *body])
+    packed = struct.pack(">IIBBBBB", *head[:2], *(value & 255 for value in head[2:]))
+    return content[:8] + b"".join(_chunk(*part) for part in [(b"IHDR", packed), *body])
 
 
 def _chunk(kind: bytes, data: bytes) -> bytes:
@@ -185,13 +187,13 @@ def _chunk(kind: bytes, data: bytes) -> bytes:
 
 
 def bmp(content: bytes, seed: int) -> bytes:
-    """Return a BMP file some of whose numbers in the head are others."""
+    """Return a BMP file with other numbers in its header."""
     chance = random.Random(seed)
     data = bytearray(content)
     for _ in range(chance.choice((1, 1, 2, 3))):
-        place, kind = chance.choice((
+        offset, kind = chance.choice((
             (2, "<I"), (10, "<I"), (14, "<I"), (18, "<I"), (22, "<I"), (26, "<H"), (28, "<H"),
             (30, "<I"), (34, "<I"), (46, "<I"), (50, "<I"),
         ))  # fmt: skip
-        _put(data, place, kind, chance.choice((*NASTY, 4, 24, 32)))
+        _put(data, offset, kind, chance.choice((*EXTREMES, 4, 24, 32)))
     return bytes(data)

@@ -1,4 +1,4 @@
-"""Maps, polygons and projects that are made to do harm."""
+"""Maps, polygons and projects that try to do harm."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ Chance = random.Random
 
 
 @dataclass(frozen=True)
-class Try:
-    """A folder to write into, targets that must not be reached, and the random numbers."""
+class Attack:
+    """A folder for hostile files, targets that nothing may reach, and random numbers."""
 
     folder: Path
     address: str
@@ -34,7 +34,7 @@ class Try:
     chance: Chance
 
     def target(self) -> str:
-        """Return a target that must not be reached."""
+        """Return a target that nothing may reach."""
         server = self.address.removeprefix("http://")
         return self.chance.choice(
             [
@@ -50,11 +50,11 @@ class Try:
         )  # fmt: skip
 
     def large(self) -> int:
-        """Return a count that is too large, or just large."""
+        """Return a large count; some exceed the limits."""
         return self.chance.choice([1000, 49_999, 60_000, 300_000])
 
     def number(self) -> str:
-        """Return a text in the place of a number."""
+        """Return a text instead of a number, or an extreme number."""
         return self.chance.choice(
             ["nan", "inf", "-inf", "1e400", "1e308", "-1", "0", "1e-300", "1e-12", "5e-324", "",
              "9" * 400, "9" * 5000, "0x1p3", "1_0", "\x1b[31m", "1|2", "0:1e-9", "0:inf", "1e300",
@@ -66,42 +66,43 @@ class Try:
 # --- polygons -----------------------------------------------------------------------------------
 
 
-def descriptions(t: Try) -> Path:
-    """Write the description of another source under a name that readers open."""
-    to, chance = t.target(), t.chance
-    layer = f'<OGRVRTLayer name="a"><SrcDataSource>{to}</SrcDataSource></OGRVRTLayer>'
+def descriptions(t: Attack) -> Path:
+    """Write a file that refers to another source, with an ending that readers open."""
+    target, chance = t.target(), t.chance
+    layer = f'<OGRVRTLayer name="a"><SrcDataSource>{target}</SrcDataSource></OGRVRTLayer>'
     vrt = f"<OGRVRTDataSource>{layer}</OGRVRTDataSource>"
-    sql = f"<SrcSQL dialect='sqlite'>SELECT * FROM '{to}'.a</SrcSQL>"
+    sql = f"<SrcSQL dialect='sqlite'>SELECT * FROM '{target}'.a</SrcSQL>"
     text = chance.choice(
         [
             vrt, vrt.replace("</OGRVRTLayer>", f"{sql}</OGRVRTLayer>"),
             f"<OGRVRTDataSource><OGRVRTUnionLayer name='u'>{layer}</OGRVRTUnionLayer>"
             "</OGRVRTDataSource>",
-            f"<OGRVRTDataSource><OGRVRTWarpedLayer>{layer}<TargetSRS>{to}</TargetSRS>"
+            f"<OGRVRTDataSource><OGRVRTWarpedLayer>{layer}<TargetSRS>{target}</TargetSRS>"
             "</OGRVRTWarpedLayer></OGRVRTDataSource>",
-            f"<OGRWFSDataSource><URL>{to}</URL></OGRWFSDataSource>",
-            json.dumps({"type": "gdal_streamed_alg", "command_line": f"gdal vector read {to}"}),
-            json.dumps({"links": [{"href": to, "rel": "data"}], "conformsTo": [to]}),
-            json.dumps({"type": "FeatureCollection", "features": [], "next": to, "note": vrt}),
-            f"<!DOCTYPE a [<!ENTITY b SYSTEM '{to}'>]><gml:FeatureCollection>&b;</gml:x>",
-            f"<kml><NetworkLink><Link><href>{to}</href></Link></NetworkLink></kml>",
-            f"<VRTDataset><SourceFilename>{to}</SourceFilename></VRTDataset>", to, f"{to}\n{vrt}",
+            f"<OGRWFSDataSource><URL>{target}</URL></OGRWFSDataSource>",
+            json.dumps({"type": "gdal_streamed_alg", "command_line": f"gdal vector read {target}"}),
+            json.dumps({"links": [{"href": target, "rel": "data"}], "conformsTo": [target]}),
+            json.dumps({"type": "FeatureCollection", "features": [], "next": target, "note": vrt}),
+            f"<!DOCTYPE a [<!ENTITY b SYSTEM '{target}'>]><gml:FeatureCollection>&b;</gml:x>",
+            f"<kml><NetworkLink><Link><href>{target}</href></Link></NetworkLink></kml>",
+            f"<VRTDataset><SourceFilename>{target}</SourceFilename></VRTDataset>", target,
+            f"{target}\n{vrt}",
         ]
     )  # fmt: skip
-    before = chance.choice(
+    prefix = chance.choice(
         ["", " ", "\ufeff", "\n" * 2000, '{"a": 1}\n', "<?xml version='1.0'?>\n"]
     )
-    content = (before + text).encode()
-    if chance.random() < 0.3:  # behind the beginning of a format that is read
+    content = (prefix + text).encode()
+    if chance.random() < 0.3:  # after the first bytes of a format that is read
         content = chance.choice([b"\0\0\x27\x0a" + bytes(20), b"SQLite format 3\0"]) + content
     file = t.folder / f"a{chance.choice(ENDINGS)}"
     file.write_bytes(content)
     for companion in (".shx", ".dbf", ".prj"):
-        file.with_suffix(companion).write_text(vrt if companion != ".prj" else to)
+        file.with_suffix(companion).write_text(vrt if companion != ".prj" else target)
     return file
 
 
-def geojson_of(t: Try, rings: Any = None, crs: Any = None, **fields: Any) -> Path:
+def geojson_of(t: Attack, rings: Any = None, crs: Any = None, **fields: Any) -> Path:
     feature = {
         "type": "Feature",
         "properties": {"thickness": 0.5, **fields},
@@ -113,15 +114,19 @@ def geojson_of(t: Try, rings: Any = None, crs: Any = None, **fields: Any) -> Pat
     return t.folder / "a.geojson"
 
 
-def systems_of_geojson(t: Try) -> Path:
-    to = t.chance.choice([t.target(), f"+init={t.target()}", f"+proj=utm +nadgrids={t.target()}"])
+def systems_of_geojson(t: Attack) -> Path:
+    target = t.chance.choice(
+        [t.target(), f"+init={t.target()}", f"+proj=utm +nadgrids={t.target()}"]
+    )
     kind = t.chance.choice(["name", "link", "EPSG", "OGC", None, 1])
     key = t.chance.choice(["name", "href", "code", "urn"])
-    crs: Any = {"type": kind, "properties": {key: to, "type": "proj4"}}
-    return geojson_of(t, crs=t.chance.choice([crs, to, [crs], {"type": kind}, {"properties": to}]))
+    crs: Any = {"type": kind, "properties": {key: target, "type": "proj4"}}
+    return geojson_of(
+        t, crs=t.chance.choice([crs, target, [crs], {"type": kind}, {"properties": target}])
+    )
 
 
-def counts_of_geojson(t: Try) -> Path:
+def counts_of_geojson(t: Attack) -> Path:
     count = t.large()
     kind = t.chance.randrange(9)
     ring = [[10 + k / count, 10 + (k * k % 97) / 9] for k in range(count)]
@@ -149,14 +154,14 @@ def counts_of_geojson(t: Try) -> Path:
     return file
 
 
-def package(t: Try) -> Path:
+def package(t: Attack) -> Path:
     return good_files.polygons(".gpkg")(t.folder)
 
 
 ENDLESS = "WITH RECURSIVE r(n) AS (SELECT 1 UNION ALL SELECT n + 1 FROM r)"
 
 
-def programs_of_packages(t: Try) -> Path:
+def programs_of_packages(t: Attack) -> Path:
     file = package(t)
     with sqlite3.connect(file) as connection:
         names = connection.execute("SELECT name FROM sqlite_master WHERE type = 'trigger'")
@@ -194,7 +199,7 @@ def programs_of_packages(t: Try) -> Path:
             try:
                 connection.execute(statement)
             except sqlite3.Error:
-                continue  # of another release of SQLite
+                continue  # not supported by this release of SQLite
     connection.close()
     if t.chance.random() < 0.2:
         file.with_name(f"{file.name}-wal").write_bytes(
@@ -206,7 +211,7 @@ def programs_of_packages(t: Try) -> Path:
     return file
 
 
-def geometries_of_packages(t: Try) -> Path:
+def geometries_of_packages(t: Attack) -> Path:
     file, chance = package(t), t.chance
     head = b"GP" + bytes([chance.randrange(2), chance.choice([1, 3, 5, 9, 11, 33, 255])])
     huge = chance.choice([0, 1, 1000, 2**31 - 1, 2**32 - 1])
@@ -225,43 +230,43 @@ def geometries_of_packages(t: Try) -> Path:
     return file
 
 
-def shapefile(t: Try) -> Path:
+def shapefile(t: Attack) -> Path:
     return good_files.polygons(".shp")(t.folder)
 
 
-def lies_of_shapefiles(t: Try) -> Path:
+def false_numbers_of_shapefiles(t: Attack) -> Path:
     file, chance = shapefile(t), t.chance
     part = file.with_suffix(chance.choice([".shp", ".shx", ".dbf"]))
     content = bytearray(part.read_bytes())
     for _ in range(chance.choice([1, 2, 5])):
-        place = chance.randrange(len(content) - 4)
+        offset = chance.randrange(len(content) - 4)
         value = chance.choice([0, 1, 2**31 - 1, 2**32 - 1, 2**16, chance.randrange(2**32)])
-        content[place : place + 4] = struct.pack(chance.choice("<>") + "I", value)
+        content[offset : offset + 4] = struct.pack(chance.choice("<>") + "I", value)
     if chance.random() < 0.3:
         content += bytes(content[100:]) * chance.choice([10, 20_000])
     part.write_bytes(content)
     return file
 
 
-def companions_of_shapefiles(t: Try) -> Path:
+def companions_of_shapefiles(t: Attack) -> Path:
     file, chance = shapefile(t), t.chance
     ending = chance.choice([".prj", ".cpg", ".dbf", ".shx", ".qix", ".sbn", ".idm", ".shp.xml"])
     part = file.with_name(file.stem + ending)
     part.unlink(missing_ok=True)
-    what = chance.randrange(4)
-    if what == 0:
+    content = chance.randrange(4)
+    if content == 0:
         os.mkfifo(part)
-    elif what == 1:
+    elif content == 1:
         part.symlink_to(chance.choice(["/dev/zero", "/", "nowhere", "/proc/self/mem"]))
-    elif what == 2:
+    elif content == 2:
         part.write_text(t.target() * chance.choice([1, 10_000]))
     else:
         part.write_bytes(chance.randbytes(chance.choice([0, 1, 33, 5000])))
     return file
 
 
-def changed(ending: str) -> Callable[[Try], Path]:
-    def make(t: Try) -> Path:
+def changed(ending: str) -> Callable[[Attack], Path]:
+    def make(t: Attack) -> Path:
         file = good_files.polygons(ending)(t.folder)
         file.write_bytes(mutated(file.read_bytes(), t.chance.randrange(10**6)))
         return file
@@ -272,7 +277,7 @@ def changed(ending: str) -> Callable[[Try], Path]:
 # --- maps and projects --------------------------------------------------------------------------
 
 
-def systems_of_grids(t: Try) -> Path:
+def systems_of_grids(t: Attack) -> Path:
     write_ascii_grid(t.folder / "a.asc", plane(columns=8, rows=6))
     words = t.chance.choice(
         [t.target(), f"+init={t.target()}", f"+proj=utm +zone=33 +nadgrids={t.target()}",
@@ -284,20 +289,20 @@ def systems_of_grids(t: Try) -> Path:
     return t.folder / "a.asc"
 
 
-def descriptions_of_rasters(t: Try) -> Path:
-    to = t.target()
-    source = f"<SimpleSource><SourceFilename>{to}</SourceFilename></SimpleSource>"
+def descriptions_of_rasters(t: Attack) -> Path:
+    target = t.target()
+    source = f"<SimpleSource><SourceFilename>{target}</SourceFilename></SimpleSource>"
     band = f'<VRTRasterBand dataType="Float32" band="1">{source}</VRTRasterBand>'
     text = t.chance.choice(
-        [f'<VRTDataset rasterXSize="9" rasterYSize="9">{band}</VRTDataset>', to,
-         f"<GDAL_WMS><Service name='TMS'><ServerUrl>{to}</ServerUrl></Service></GDAL_WMS>",
-         f"<WCS_GDAL><ServiceURL>{to}</ServiceURL></WCS_GDAL>", f"GTIFF_DIR:1:{to}",
-         json.dumps({"type": "FeatureCollection", "links": [{"href": to}]})]
+        [f'<VRTDataset rasterXSize="9" rasterYSize="9">{band}</VRTDataset>', target,
+         f"<GDAL_WMS><Service name='TMS'><ServerUrl>{target}</ServerUrl></Service></GDAL_WMS>",
+         f"<WCS_GDAL><ServiceURL>{target}</ServiceURL></WCS_GDAL>", f"GTIFF_DIR:1:{target}",
+         json.dumps({"type": "FeatureCollection", "links": [{"href": target}]})]
     )  # fmt: skip
     if t.chance.random() < 0.5:
         file = good_files.geotiff(t.folder)
-        beside = t.chance.choice([".msk", ".ovr", ".aux.xml"])
-        (t.folder / f"{file.name}{beside}").write_text(text)
+        suffix = t.chance.choice([".msk", ".ovr", ".aux.xml"])
+        (t.folder / f"{file.name}{suffix}").write_text(text)
         return file
     (t.folder / "a.tif").write_text(text)
     return t.folder / "a.tif"
@@ -310,37 +315,37 @@ KEYS = (
 )  # fmt: skip
 
 
-def inis(t: Try) -> Path:
+def inis(t: Attack) -> Path:
     lines = [f"{t.chance.choice(KEYS)} = {t.number()}" for _ in range(t.chance.choice([1, 2, 4]))]
     if t.chance.random() < 0.2:
         lines.append(t.chance.choice(["[DEFAULT]", f"[{t.target()}]", "a" * 10**6, " x\n" * 10**5]))
     return write_project(t.folder / "project", "\n".join(dict.fromkeys(lines)) + "\n")
 
 
-def links(t: Try) -> Path:
+def links(t: Attack) -> Path:
     project = write_project(t.folder / "project", "tEnd = 0.1\n")
     inputs, chance = project / "Inputs", t.chance
-    place = inputs / chance.choice(
+    link = inputs / chance.choice(
         ["LINES", "REL/b.geojson", "REL/rel.prj", "ENT", "RES/r.shp", "readme.txt", "dem.prj",
          "CFGs", "dem.asc", "com5SnowSlideCfg.ini", "../local_com5SnowSlideCfg.ini",
          "SECREL/a.gpkg", "x.csv"]
     )  # fmt: skip
-    place.parent.mkdir(exist_ok=True)
-    if place.is_dir():
-        shutil.rmtree(place)
-    place.unlink(missing_ok=True)
-    to = chance.choice(
+    link.parent.mkdir(exist_ok=True)
+    if link.is_dir():
+        shutil.rmtree(link)
+    link.unlink(missing_ok=True)
+    target = chance.choice(
         ["/", "/dev/zero", "/etc", "/proc/self", str(t.outside), str(t.outside / "a.geojson"),
-         f"../../../{t.outside.name}/a.prj", "..", ".", "nowhere", place.name, "/dev/stdin"]
+         f"../../../{t.outside.name}/a.prj", "..", ".", "nowhere", link.name, "/dev/stdin"]
     )  # fmt: skip
     if chance.random() < 0.2:
-        os.mkfifo(place)
+        os.mkfifo(link)
     else:
-        place.symlink_to(to)
+        link.symlink_to(target)
     return project
 
 
-def names(t: Try) -> Path:
+def names(t: Attack) -> Path:
     project = write_project(t.folder / "project", "tEnd = 0.1\n")
     rel = project / "Inputs/REL"
     name = t.chance.choice(
@@ -354,27 +359,27 @@ def names(t: Try) -> Path:
     return project
 
 
-def projects_with(make: Callable[[Try], Path]) -> Callable[[Try], Path]:
+def projects_with(make: Callable[[Attack], Path]) -> Callable[[Attack], Path]:
     """Put hostile polygons into a project's folder of release areas."""
 
-    def make_project(t: Try) -> Path:
+    def make_project(t: Attack) -> Path:
         project = write_project(t.folder / "project", "tEnd = 0.1\n")
         rel = project / "Inputs/REL"
         shutil.rmtree(rel)
         rel.mkdir()
-        make(Try(rel, t.address, t.outside, t.chance))
+        make(Attack(rel, t.address, t.outside, t.chance))
         return project
 
     return make_project
 
 
-MAKERS: dict[str, Callable[[Try], Path]] = {
+MAKERS: dict[str, Callable[[Attack], Path]] = {
     "descriptions": descriptions,
     "systems of geojson": systems_of_geojson,
     "counts of geojson": counts_of_geojson,
     "programs of packages": programs_of_packages,
     "geometries of packages": geometries_of_packages,
-    "lies of shapefiles": lies_of_shapefiles,
+    "lies of shapefiles": false_numbers_of_shapefiles,
     "companions of shapefiles": companions_of_shapefiles,
     "changed geojson": changed(".geojson"),
     "changed gpkg": changed(".gpkg"),

@@ -1,4 +1,4 @@
-"""Files changed at random, the same for the same seed: bits, bytes, pieces, numbers and words."""
+"""Random changes to files, by a seed: bits, bytes, pieces, numbers and words."""
 
 from __future__ import annotations
 
@@ -55,20 +55,20 @@ def _insert(content: bytes, chance: random.Random) -> bytes:
 
 
 def _digit(content: bytes, chance: random.Random) -> bytes:
-    """Change a digit, so that the result is often a good file with another content."""
-    there = [at for at, byte in enumerate(content[:100_000]) if 0x30 <= byte <= 0x39]
-    if not there:
+    """Change a digit; the result is often a valid file with another content."""
+    digits = [at for at, byte in enumerate(content[:100_000]) if 0x30 <= byte <= 0x39]
+    if not digits:
         return _flip(content, chance)
-    at = chance.choice(there)
+    at = chance.choice(digits)
     return content[:at] + b"%d" % chance.randrange(10) + content[at + 1 :]
 
 
 def _number(content: bytes, chance: random.Random) -> bytes:
-    there = list(NUMBER.finditer(content))
-    if not there:
+    numbers = list(NUMBER.finditer(content))
+    if not numbers:
         return _flip(content, chance)
-    one = chance.choice(there)
-    return content[: one.start()] + chance.choice(NUMBERS) + content[one.end() :]
+    number = chance.choice(numbers)
+    return content[: number.start()] + chance.choice(NUMBERS) + content[number.end() :]
 
 
 def _some(chance: random.Random) -> int:

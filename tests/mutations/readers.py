@@ -1,4 +1,4 @@
-"""Every reader of files, with a good file to begin with: one line in `READERS` for each.
+"""Every reader of files, with a good file: one line in `READERS` for each.
 
 A reader gets the path of a file that was changed. It may raise the exceptions that the command line
 turns into a sentence (`REFUSED`). `exact` readers must return the content of the good file, because
@@ -30,7 +30,7 @@ from helpers.grain_files import write_labels
 from helpers.voxel_files import save_metaimage, save_pages
 
 from snowshed import InputError, Results, Scene, SimulationError, Snow, _core, run_events
-from snowshed.cli.scene_options import json_object
+from snowshed.cli.options.scene import json_object
 from snowshed.io.csv_table import read_csv
 from snowshed.io.film import Film
 from snowshed.io.raster.areas import read_areas
@@ -48,30 +48,30 @@ REFUSED = (InputError, SimulationError, OSError)
 
 @dataclasses.dataclass(frozen=True)
 class Reader:
-    """A kind of file: the function that makes a good one in a folder, and the reader."""
+    """A kind of file: a function that writes a good file into a folder, and the reader."""
 
     make: Callable[[Path], Path]
     read: Callable[[Path], Any]
     exact: bool = False
-    share: float = 1.0  # of the tries that other readers get: those that start a process get fewer
+    share: float = 1.0  # of the usual number of tries; slow readers get fewer
     change: Callable[[bytes, int], bytes] | None = None  # by a seed; None: `mutated`
 
 
 # --- reading -------------------------------------------------------------------------------
 
 
-def _stand(shape: dict[str, Any], dimension: int) -> _core.Simulation:
+def _simulation_with(shape: dict[str, Any], dimension: int) -> _core.Simulation:
     scene = tiny_scene(dimension=dimension).append("obstacles", {"shape": shape})
     return _core.Simulation(scene.resolve().json, ".")
 
 
 def _as_mesh(file: Path) -> None:
-    _stand({"type": "mesh", "file": str(file), "scale": 0.1}, 3)
+    _simulation_with({"type": "mesh", "file": str(file), "scale": 0.1}, 3)
 
 
 def _as_grid(file: Path) -> None:
     shape = {"type": "grid", "file": str(file), "origin": [0, 0.2], "spacing": 0.025}
-    _stand(shape, 2)
+    _simulation_with(shape, 2)
 
 
 def _as_labels(file: Path) -> None:
@@ -87,9 +87,9 @@ def _as_scene(file: Path) -> None:
 
 def _as_checkpoint(file: Path) -> str:
     simulation = _core.Simulation.load(str(file))
-    whole = [simulation.positions(), simulation.velocities(), simulation.masses()]
+    arrays = [simulation.positions(), simulation.velocities(), simulation.masses()]
     facts = [simulation.scene, simulation.event, simulation.event_running, simulation.time_s]
-    return _digest([*(array.tobytes() for array in whole), facts])
+    return _digest([*(array.tobytes() for array in arrays), facts])
 
 
 def _as_store(file: Path) -> Any:
@@ -101,8 +101,10 @@ def _as_store(file: Path) -> Any:
     folder.mkdir()
     shutil.copy(file, folder / "store.sqlite")
     with Store.open(folder) as store:
-        kept = [store.particles(run.hash) for name in store.studies() for run in store.runs(name)]
-    return read_table(folder, timing=True).to_csv(), kept
+        particles = [
+            store.particles(run.hash) for name in store.studies() for run in store.runs(name)
+        ]
+    return read_table(folder, timing=True).to_csv(), particles
 
 
 def _as_resumed_table(file: Path) -> Any:
@@ -115,9 +117,9 @@ def _as_resumed_table(file: Path) -> Any:
 
 def _as_record(file: Path) -> str:
     """Resume a finished run with a changed run.json, unless reading already refuses it."""
-    found = Results(file.parent).run
+    record = Results(file.parent).run
     run_events(file.parent / "scene.json", file.parent, resume=True, pictures=False)
-    return json.dumps(found)
+    return json.dumps(record)
 
 
 def _as_lua(file: Path) -> None:
@@ -127,7 +129,7 @@ def _as_lua(file: Path) -> None:
 
 
 def _as_season(file: Path) -> None:
-    from snowshed.season.weather import read_season
+    from snowshed.season.weather.reading import read_season
 
     read_season(file)
 
@@ -152,7 +154,7 @@ def _as_study(file: Path) -> None:
 
 
 def _as_model(file: Path) -> Any:
-    from snowshed.analysis import load_model
+    from snowshed.analysis.regression import load_model
 
     model = load_model(file)
     return _digest([model.title, model.measure, model.inputs.tobytes(), repr(model.members)])
@@ -165,7 +167,7 @@ def _as_packed(file: Path) -> Any:
 
 
 def _as_ini(file: Path) -> None:
-    from snowshed.scene.builders.avaframe_ini import read_ini
+    from snowshed.scene.builders.avaframe.ini import read_ini
 
     read_ini(file)
 
@@ -179,15 +181,16 @@ def _as_film(file: Path) -> str:
 
     film = Film(file)
     frames = [
-        (one.time, one.event, one.ids.tobytes(), one.events.tobytes(), one.materials.tobytes(),
-         one.radii.tobytes(), one.positions.tobytes(), one.codes.tobytes())
-        for one in film
+        (frame.time, frame.event, frame.ids.tobytes(), frame.events.tobytes(),
+         frame.materials.tobytes(), frame.radii.tobytes(), frame.positions.tobytes(),
+         frame.codes.tobytes())
+        for frame in film
     ]  # fmt: skip
     summary = summarise_film(film)
     if film.notes and len(frames) < good.FRAMES:
-        raise InputError("cut off, as a killed run leaves it, which its notes say")
+        raise InputError("cut off, as its notes say; a killed run leaves such a film")
     facts = (film.dimension, film.quantum, film.interval, film.share, film.quantities)
-    return _digest([frames, facts, [one.title for one in summary.colourings]])
+    return _digest([frames, facts, [colouring.title for colouring in summary.colourings]])
 
 
 def _as_image(file: Path) -> None:
@@ -218,13 +221,15 @@ def _as_events(file: Path) -> str:
 
 def _as_film_of_run(file: Path) -> str:
     film = Results(file.parent).film
-    return _digest([(one.time, one.positions.tobytes(), one.codes.tobytes()) for one in film])
+    return _digest(
+        [(frame.time, frame.positions.tobytes(), frame.codes.tobytes()) for frame in film]
+    )
 
 
 def _as_scene_of_run(file: Path) -> str:
-    found = Results(file.parent).scene.copied_data()
-    found["numerics"].pop("threads")  # changes nothing
-    return json.dumps(found)
+    data = Results(file.parent).scene.copied_data()
+    data["numerics"].pop("threads")  # no part of the results
+    return json.dumps(data)
 
 
 def _as_outline(file: Path) -> str:
@@ -240,15 +245,15 @@ def _as_history(file: Path) -> str:
 
 
 def _as_curve(file: Path) -> str:
-    """Read a curve, and check that `snowshed-run` does not resume with a changed one."""
-    found = LoadingCurve.read(file).text()
+    """Read a curve, and check that `snowshed-run` does not resume with a changed curve."""
+    text = LoadingCurve.read(file).text()
     folder, scene = str(file.parent), str(file.parent / "scene.json")
     command = [str(Path(sys.executable).with_name("snowshed-run")), scene, "-o", folder]
     done = subprocess.run([*command, "--resume", "-q"], capture_output=True, text=True)
     if done.returncode == 2:
         raise InputError(done.stderr)
     assert done.returncode == 0, done.stderr
-    return found
+    return text
 
 
 def _as_summary(file: Path) -> str:
@@ -338,7 +343,7 @@ READERS = {
 
 
 def tries_of(name: str, tries: int) -> int:
-    """Return how many mutated files a reader gets, where most get `tries`."""
+    """Return the number of mutated files for a reader; most get `tries`."""
     return max(1, round(tries * READERS[name].share))
 
 

@@ -19,8 +19,8 @@ pytest.importorskip("pyogrio")
 pytest.importorskip("shapely")
 pytest.importorskip("rasterio")
 
-FEW, MANY = 2, 40  # of each kind: in the tests that run always, and in `make test-slow`
-MEMORY_MB = 1024  # that an input may take
+FEW, MANY = 2, 40  # inputs of each kind: in every test run, and in `make test-slow`
+MEMORY_MB = 1024  # limit for each input
 GOOD = {"accepted", "refused"}
 IN_OPEN, IN_ACCESS, IN_MODIFY = 0x20, 0x1, 0x2
 
@@ -34,7 +34,7 @@ def untouched(folder: Path):
     libc.inotify_add_watch(watch, os.fsencode(folder), IN_OPEN | IN_ACCESS | IN_MODIFY)
     before = sorted(file.name for file in folder.iterdir())
     while _events(watch):
-        pass  # of listing the folder just now
+        pass  # the listing above caused these events
     try:
         yield
         opened = _events(watch)
@@ -62,10 +62,10 @@ def outside_of(folder: Path) -> Path:
 
 def outcomes(folder: Path, tries: int, address: str, outside: Path) -> dict[tuple[str, int], str]:
     """Return the outcome of each input, by its kind and seed."""
-    found: dict[tuple[str, int], str] = {}
+    results: dict[tuple[str, int], str] = {}
     child = Path(__file__).with_name("hostile_maps_child.py")
-    while len(found) < tries * len(MAKERS):
-        command = [sys.executable, child, folder, tries, len(found), MEMORY_MB, address, outside]
+    while len(results) < tries * len(MAKERS):
+        command = [sys.executable, child, folder, tries, len(results), MEMORY_MB, address, outside]
         done = subprocess.run(
             [str(word) for word in command],
             capture_output=True,
@@ -75,25 +75,25 @@ def outcomes(folder: Path, tries: int, address: str, outside: Path) -> dict[tupl
         lines = [json.loads(line) for line in done.stdout.splitlines()]
         ended = {(line["reader"], line["seed"]): line.get("outcome") for line in lines}
         assert ended, f"a good project is not read: {done.stderr[-2000:]}"
-        found.update({key: outcome for key, outcome in ended.items() if outcome})
-        if done.returncode != 0:  # by the input that it told of last
-            found.setdefault([*ended][-1], f"DIED with {done.returncode}: {done.stderr[-500:]}")
-    return found
+        results.update({key: outcome for key, outcome in ended.items() if outcome})
+        if done.returncode != 0:  # at the input that it reported last
+            results.setdefault([*ended][-1], f"DIED with {done.returncode}: {done.stderr[-500:]}")
+    return results
 
 
 def check(folder: Path, tries: int) -> dict[str, Counter[str]]:
     outside = outside_of(folder)
     with silence() as listener, untouched(outside):
-        found = outcomes(folder / "inputs", tries, listener.address, outside)
-    bad = {key: outcome for key, outcome in found.items() if outcome not in GOOD}
+        results = outcomes(folder / "inputs", tries, listener.address, outside)
+    bad = {key: outcome for key, outcome in results.items() if outcome not in GOOD}
     assert not bad, bad
     counts: dict[str, Counter[str]] = {}
-    for (name, _), outcome in found.items():
+    for (name, _), outcome in results.items():
         counts.setdefault(name, Counter())[outcome] += 1
     return counts
 
 
-def test_the_watch_sees_what_is_opened(tmp_path):
+def test_the_watch_reports_opened_files(tmp_path):
     outside = outside_of(tmp_path)
     with pytest.raises(AssertionError), untouched(outside):
         (outside / "a.prj").read_bytes()

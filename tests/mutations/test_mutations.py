@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 from mutations.readers import READERS, tries_of
 
-FEW, MANY = 12, 440  # files of most readers: in the tests that run always, and in `make test-slow`
-MEMORY_MB, IMAGE_MB = 2048, 1024  # that reading may take; of images, which claim sizes
+FEW, MANY = 12, 440  # files of most readers: in every test run, and in `make test-slow`
+MEMORY_MB, IMAGE_MB = 2048, 1024  # limits for reading; images may claim any size
 CHILD = Path(__file__).with_name("child.py")
 GOOD = {"accepted", "refused"}
 
@@ -21,25 +21,25 @@ def outcomes(
     names: list[str], folder: Path, tries: int, memory: int = MEMORY_MB
 ) -> dict[tuple[str, int], str]:
     """Return the outcome of each file, by its reader and seed."""
-    found: dict[tuple[str, int], str] = {}
+    results: dict[tuple[str, int], str] = {}
     count = sum(tries_of(name, tries) for name in names)
-    while len(found) < count:
-        command = [sys.executable, CHILD, folder, tries, len(found), memory, *names]
+    while len(results) < count:
+        command = [sys.executable, CHILD, folder, tries, len(results), memory, *names]
         done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
         lines = [json.loads(line) for line in done.stdout.splitlines()]
         ended = {(line["reader"], line["seed"]): line.get("outcome") for line in lines}
         assert ended, f"a good file is not read: {done.stderr[-2000:]}"
-        found.update({key: outcome for key, outcome in ended.items() if outcome})
-        if done.returncode != 0:  # by the file that it told of last
-            found.setdefault([*ended][-1], f"DIED with {done.returncode}: {done.stderr[-500:]}")
-    return found
+        results.update({key: outcome for key, outcome in ended.items() if outcome})
+        if done.returncode != 0:  # at the file that it reported last
+            results.setdefault([*ended][-1], f"DIED with {done.returncode}: {done.stderr[-500:]}")
+    return results
 
 
 def check(names: list[str], folder: Path, tries: int, memory: int = MEMORY_MB) -> Counter[str]:
-    found = outcomes(names, folder, tries, memory)
-    bad = {key: outcome for key, outcome in found.items() if outcome not in GOOD}
+    results = outcomes(names, folder, tries, memory)
+    bad = {key: outcome for key, outcome in results.items() if outcome not in GOOD}
     assert not bad, bad
-    return Counter(found.values())
+    return Counter(results.values())
 
 
 def test_a_few_mutated_files(tmp_path):

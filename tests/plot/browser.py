@@ -1,4 +1,4 @@
-"""A browser without a screen, where one is installed."""
+"""A browser without a screen, if a browser is installed."""
 
 import contextlib
 import os
@@ -15,22 +15,22 @@ OPTIONS = ["--no-sandbox", "--enable-unsafe-swiftshader", "--use-angle=swiftshad
 
 @contextlib.contextmanager
 def open_page(file, *, width=900, height=700, **context):
-    """Yield a page that has been opened from disk, and what it told: errors and requests."""
+    """Yield a page that has been opened from disk, and its messages: errors and requests."""
     program = next(filter(None, map(shutil.which, PROGRAMS)), None)
     if program is None:
         pytest.skip(f"no browser is installed: none of {', '.join(PROGRAMS)}")
     interface = pytest.importorskip("playwright.sync_api")
-    told = []
+    messages = []
     with interface.sync_playwright() as playwright:
         browser = playwright.chromium.launch(
             executable_path=program, args=OPTIONS, env=_without_preloads()
         )
         page = browser.new_page(viewport={"width": width, "height": height}, **context)
-        page.on("console", lambda message: told.append(f"{message.type}: {message.text}"))
-        page.on("pageerror", lambda error: told.append(f"error: {error}"))
-        page.on("request", lambda request: told.append(request.url))
+        page.on("console", lambda message: messages.append(f"{message.type}: {message.text}"))
+        page.on("pageerror", lambda error: messages.append(f"error: {error}"))
+        page.on("request", lambda request: messages.append(request.url))
         page.goto(file.as_uri())
-        yield page, told
+        yield page, messages
         browser.close()
 
 
@@ -40,17 +40,20 @@ def _without_preloads():
 
 
 def faults_of(file, *, width=900, scheme="light"):
-    """Return what is wrong with a page as a browser shows it.
+    """Return the faults of a page in a browser.
 
     Faults are elements that cannot be read, have no name or cannot be reached by keys (see
-    audit.js), requests to other places, and errors of scripts.
+    audit.js), requests to other addresses, and errors of scripts.
     """
-    with open_page(file, width=width, color_scheme=scheme, reduced_motion="reduce") as (page, told):
-        if page.evaluate("!!document.getElementById('data')"):  # the moving view
+    with open_page(file, width=width, color_scheme=scheme, reduced_motion="reduce") as (
+        page,
+        messages,
+    ):
+        if page.evaluate("!!document.getElementById('data')"):  # an interactive view
             page.wait_for_function("document.body.dataset.ready === 'true'", timeout=120_000)
         faults = page.evaluate(AUDIT.read_text(encoding="utf-8"))
         own = (file.as_uri(), "data:", "blob:")
-        return [*faults, *(one for one in told if not one.startswith(own))]
+        return [*faults, *(message for message in messages if not message.startswith(own))]
 
 
 def check_page(file):

@@ -1,7 +1,7 @@
-"""Firefox without a screen, where it is installed, driven by WebDriver BiDi.
+"""Firefox without a screen, if it is installed, driven by WebDriver BiDi.
 
-WebGL needs a screen, if only that of Xvfb. Playwright drives only a Firefox of its own. The one
-that people have listens on a socket: https://w3c.github.io/webdriver-bidi.
+WebGL needs a screen, such as that of Xvfb. Playwright drives only a Firefox of its own. An
+ordinary Firefox listens on a socket: https://w3c.github.io/webdriver-bidi.
 """
 
 import base64
@@ -30,7 +30,7 @@ def open_in_firefox(file, folder):
     sockets = pytest.importorskip("websockets.sync.client")
     profile = folder / "profile"
     profile.mkdir()
-    (profile / "user.js").write_text('user_pref("webgl.force-enabled", true);\n')  # computed
+    (profile / "user.js").write_text('user_pref("webgl.force-enabled", true);\n')  # in software
     screen = ["xvfb-run", "-a", program] if shutil.which("xvfb-run") else [program, "--headless"]
     words = [*screen, "--no-remote", "--profile", profile]
     words += ["--remote-debugging-port", "0", "--window-size", "900,1000"]
@@ -49,9 +49,9 @@ def open_in_firefox(file, folder):
 
 def _address(process, log):
     for _ in range(600):
-        found = re.search(r"ws://[\d.:]+", log.read_text(errors="replace"))
-        if found:
-            return found[0]
+        match = re.search(r"ws://[\d.:]+", log.read_text(errors="replace"))
+        if match:
+            return match[0]
         with contextlib.suppress(subprocess.TimeoutExpired):
             process.wait(0.1)
             break
@@ -59,7 +59,7 @@ def _address(process, log):
 
 
 class FirefoxPage:
-    """A page in Firefox, and what it told: errors of its console, and requests."""
+    """A page in Firefox, with the errors of its console and its requests."""
 
     def __init__(self, socket, file):
         self.socket = socket
@@ -73,7 +73,7 @@ class FirefoxPage:
         )
 
     def call(self, method, **params):
-        """Return the result of a command; events that come meanwhile are kept."""
+        """Return the result of a command, and record the events that come meanwhile."""
         number = next(self.numbers)
         self.socket.send(json.dumps({"id": number, "method": method, "params": params}))
         while True:
@@ -81,9 +81,9 @@ class FirefoxPage:
             if message.get("id") == number:
                 assert message["type"] == "success", message
                 return message["result"]
-            self._keep(message)
+            self._record(message)
 
-    def _keep(self, message):
+    def _record(self, message):
         params = message.get("params", {})
         if message.get("method") == "network.beforeRequestSent":
             self.requests.append(params["request"]["url"])
@@ -91,15 +91,15 @@ class FirefoxPage:
             self.errors.append(params["text"])
 
     def evaluate(self, expression):
-        """Return the value of an expression; a promise is waited for."""
-        found = self.call(
+        """Return the value of an expression; wait if it is a promise."""
+        reply = self.call(
             "script.evaluate",
             expression=expression,
             target={"context": self.context},
             awaitPromise=True,
         )
-        assert found["type"] == "success", found
-        return found["result"].get("value")
+        assert reply["type"] == "success", reply
+        return reply["result"].get("value")
 
     def wait_for(self, condition):
         """Wait until an expression is true."""
@@ -109,35 +109,35 @@ class FirefoxPage:
         )
 
     def press(self, key):
-        """Press a key and let it go."""
+        """Press and release a key."""
         actions = [{"type": "keyDown", "value": key}, {"type": "keyUp", "value": key}]
         keys = {"type": "key", "id": "keys", "actions": actions}
         self.call("input.performActions", context=self.context, actions=[keys])
 
     def drag(self, start, end):
-        """Move the mouse from a point of the page to another one with its button down."""
-        (x, y), (to_x, to_y) = start, end
+        """Drag the mouse from one point of the page to another."""
+        (x, y), (end_x, end_y) = start, end
         actions = [
             {"type": "pointerMove", "x": x, "y": y},
             {"type": "pointerDown", "button": 0},
-            {"type": "pointerMove", "x": to_x, "y": to_y, "duration": 50},
+            {"type": "pointerMove", "x": end_x, "y": end_y, "duration": 50},
             {"type": "pointerUp", "button": 0},
         ]
         mouse = {"type": "pointer", "id": "mouse", "actions": actions}
         self.call("input.performActions", context=self.context, actions=[mouse])
 
     def picture(self):
-        """Return what the page shows, as bytes of a PNG."""
+        """Return a screenshot of the page as bytes of a PNG."""
         return base64.b64decode(
             self.call("browsingContext.captureScreenshot", context=self.context)["data"]
         )
 
-    def changed_picture(self, before):
-        """Return what the page shows as soon as it differs, or what it shows after some time."""
-        shown = before
+    def changed_picture(self, previous):
+        """Return the first screenshot that differs, or the last after some time."""
+        picture = previous
         for _ in range(60):
-            shown = self.picture()
-            if shown != before:
+            picture = self.picture()
+            if picture != previous:
                 break
             time.sleep(0.2)
-        return shown
+        return picture

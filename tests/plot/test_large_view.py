@@ -20,37 +20,37 @@ def slab(length, dx, **values):
     return scene.update(values)
 
 
-def opened(page):
-    """Return two pictures of the canvas, at the end and in the middle, and what went wrong."""
-    with open_page(page, reduced_motion="reduce", width=500, height=500) as (shown, told):
+def open_and_capture(page):
+    """Return pictures of the canvas at the beginning and at the end, and the errors."""
+    with open_page(page, reduced_motion="reduce", width=500, height=500) as (shown, messages):
         shown.wait_for_function(READY, timeout=300_000)
         last = shown.locator("#picture").screenshot(timeout=300_000)
         shown.focus("#picture")
         shown.keyboard.press("Home")
         first = shown.locator("#picture").screenshot(timeout=300_000)
-        return first, last, [one for one in told if not one.startswith("file:")]
+        return first, last, [message for message in messages if not message.startswith("file:")]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("length", "dx", "interval"), [(3.0, 0.06, 0.008), (10.0, 0.2, 0.016)], ids=["3 m", "10 m"]
 )
-def test_thirty_thousand_particles_in_three_hundred_frames(length, dx, interval, tmp_path):
+def test_a_long_film_of_thirty_thousand_particles_opens(length, dx, interval, tmp_path):
     """A long event: after 240 frames the interval doubles."""
     times = {"output.film_interval": interval, "events.max_time": 359 * interval}
     run_events(slab(length, dx, **times), tmp_path, pictures=False)
     film = Results(tmp_path).film
-    assert len(film.frames) >= 300 and min(one.particles for one in film.frames) >= 30_000
+    assert len(film.frames) >= 300 and min(frame.particles for frame in film.frames) >= 30_000
     page = write_view(tmp_path)
     size = page.stat().st_size
     print(f"{film.frames[-1].particles} particles, {len(film.frames)} frames: {size / 1e6:.1f} MB")
     assert size < MAX_PAGE
-    first, last, wrong = opened(page)
-    assert first != last and wrong == []
+    first, last, errors = open_and_capture(page)
+    assert first != last and errors == []
 
 
 @pytest.mark.slow
-def test_a_million_particles_open_thinned(tmp_path):
+def test_a_million_particles_open_as_a_thinned_film(tmp_path):
     times = {"output.film_interval": 0.02, "events.max_time": 0.04, "events.rest_time": 0.03}
     run_events(slab(3.0, 0.0185, **times), tmp_path, pictures=False)
     results = Results(tmp_path)
@@ -59,5 +59,5 @@ def test_a_million_particles_open_thinned(tmp_path):
     page = write_view(tmp_path)
     text = " ".join("".join(Page(page.read_text(encoding="utf-8")).text).split())
     assert "The film holds one of 2" in text and "particles, chosen by their ids" in text
-    first, last, wrong = opened(page)
-    assert first != last and wrong == []
+    first, last, errors = open_and_capture(page)
+    assert first != last and errors == []

@@ -1,4 +1,4 @@
-"""Figures of loading tests show what was measured."""
+"""Figures of loading tests show the measured curves and forces."""
 
 import numpy as np
 import pytest
@@ -50,19 +50,23 @@ def contacts(
     )
 
 
-def test_a_grain_is_pressed_away_from_the_other_and_pulled_to_it():
+def test_pressure_is_positive_and_tension_negative():
     pressed = contacts([(-3, 0, 0), (0, 0, 0)])
     assert pressed.normal_forces[0] == pytest.approx(3.0)
     assert contacts([(3, 0, 0), (0, 0, 0)]).normal_forces[0] == pytest.approx(-3.0)
-    # Over the sides the last grain lies left of the first, and is pressed to the left.
+    # Across the periodic sides, the last grain lies left of the first and is pressed to the left.
     assert contacts([(0, 0, 0), (-2, 0, 0)]).normal_forces[1] == pytest.approx(2.0)
 
 
-def test_lines_are_as_wide_as_forces_are_large_and_do_not_cross_the_picture():
+def test_line_widths_follow_forces_and_no_line_crosses_the_picture():
     from matplotlib.collections import LineCollection
 
     figure = force_figure(contacts([(-4, 0, 0), (-1, 0, 0)]), voxel_size=0.1)
-    drawn = [one for one in figure.axes[0].collections if isinstance(one, LineCollection)]
+    drawn = [
+        collection
+        for collection in figure.axes[0].collections
+        if isinstance(collection, LineCollection)
+    ]
     widths = np.concatenate([lines.get_linewidths() for lines in drawn if len(lines.get_paths())])
     assert sorted(widths) == pytest.approx([MAX_LINE_WIDTH / 4, MAX_LINE_WIDTH, MAX_LINE_WIDTH])
     segments = [s for lines in drawn for s in lines.get_segments()]
@@ -77,22 +81,30 @@ def test_a_sample_without_forces_is_drawn_without_lines():
 def lines_of(figure):
     from matplotlib.collections import LineCollection
 
-    drawn = [one for one in figure.axes[0].collections if isinstance(one, LineCollection)]
-    return {tuple(one.get_colors()[0]): len(one.get_paths()) for one in drawn if one.get_paths()}
+    drawn = [
+        collection
+        for collection in figure.axes[0].collections
+        if isinstance(collection, LineCollection)
+    ]
+    return {
+        tuple(collection.get_colors()[0]): len(collection.get_paths())
+        for collection in drawn
+        if collection.get_paths()
+    }
 
 
 def test_only_bonds_pull():
     """Both contacts are pushed along the line of their centres; the second has no bond."""
-    apart = contacts([(3, 0, 0), (2, 0, 0)])
-    assert (apart.normal_forces < 0).all()
-    assert len(lines_of(force_figure(apart, voxel_size=0.1))) == 2  # one colour each
+    pulled = contacts([(3, 0, 0), (2, 0, 0)])
+    assert (pulled.normal_forces < 0).all()
+    assert len(lines_of(force_figure(pulled, voxel_size=0.1))) == 2  # each with its colour
 
 
-def test_of_many_grains_the_forces_in_the_slice_are_drawn():
+def test_for_many_grains_only_forces_in_a_slice_are_drawn():
     count = 400
     y = np.linspace(0, 1, count)
     centres = np.stack([np.zeros(count), y, np.zeros(count)], axis=1)
-    many = GrainContacts(
+    chain = GrainContacts(
         spheres=centres,
         sphere_grains=np.arange(count),
         grains=np.stack([np.arange(count - 1), np.arange(1, count)], axis=1),
@@ -100,12 +112,12 @@ def test_of_many_grains_the_forces_in_the_slice_are_drawn():
         forces=np.tile([0.0, -1.0, 0.0], (count - 1, 1)),
         bonded=np.ones(count - 1, dtype=bool),
     )
-    figure = force_figure(many, voxel_size=0.1)
+    figure = force_figure(chain, voxel_size=0.1)
     assert sum(lines_of(figure).values()) <= 2 * 0.26 * count
     assert "in the slice" in figure.axes[0].get_title("left")
 
 
-def test_a_modulus_is_told_where_the_stress_is_linear_only():
+def test_a_modulus_is_given_only_for_a_linear_stress():
     waves = 1e5 * RAMP + 4e3 * np.sin(300 * RAMP)
     for stress, words in ((1e5 * RAMP, "tangent modulus"), (waves, "not linear")):
         stresses = {"top_stress_pa": stress, "bottom_stress_pa": stress}

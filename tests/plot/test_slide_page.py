@@ -1,4 +1,4 @@
-"""Pictures of a slide: what is laid over the terrain lies where it should."""
+"""Pictures of a slide: layers lie in the right position on the terrain."""
 
 import base64
 import io
@@ -32,10 +32,10 @@ def frame(time: float, column: int) -> Frame:
 
 
 def test_the_film_shows_the_snow_where_the_outline_is(maps):
-    """The outline is that of the cells of the first frame: its corners are theirs in percent."""
+    """The outline follows the cells of the first frame, so its corners (in percent) are theirs."""
     x0, y0 = WEST + 9.5 * CELL, SOUTH + 19.5 * CELL
     x1, y1 = x0 + 2 * CELL, y0 + 3 * CELL
-    south = [(x0, SOUTH + 5.0), (x1, SOUTH + 5.0), (x1, SOUTH + 10.0)]  # so that it is askew
+    south = [(x0, SOUTH + 5.0), (x1, SOUTH + 5.0), (x1, SOUTH + 10.0)]  # an area off the centre
     cells = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
     film = _film(maps, [cells, south], [frame(0, 10), frame(5, 28)])
     corners = np.array([pair.split(",") for pair in film.outlines[0].split()], dtype=float) / 100
@@ -51,24 +51,24 @@ def test_the_film_shows_the_snow_where_the_outline_is(maps):
     assert film.ratio == pytest.approx(width / height)
 
 
-def test_small_maps_follow_the_way_of_the_snow_and_not_its_creeping_end():
+def test_small_maps_show_the_moving_snow_rather_than_its_creeping_end():
     frames = [frame(t, min(10 + 2 * t, 30)) for t in range(60)]
-    times = [one.time for one in _moving(frames, 6)]
+    times = [moving.time for moving in _moving(frames, 6)]
     assert times[0] == 0 and times[-1] == 59
     assert all(time <= 10 for time in times[:-1]) and len(times) == 6
-    assert [one.time for one in _moving([frame(0, 10), frame(9, 10)], 6)] == [0, 9]
+    assert [moving.time for moving in _moving([frame(0, 10), frame(9, 10)], 6)] == [0, 9]
 
 
-def test_a_part_of_the_terrain_keeps_its_place(maps):
+def test_a_part_of_the_terrain_keeps_its_coordinates(maps):
     ground = maps.raster(maps.terrain)
     part = focus(ground, maps.peak_thickness > 0.0, [[(WEST + 100.0, SOUTH + 10.0)]])
     assert part[0] <= WEST + 10 * CELL and part[1] >= WEST + 30 * CELL
     assert part[2] <= SOUTH + 10.0 and part[3] >= SOUTH + 22 * CELL
-    cut = _cropped(ground, part)
-    edges = extent(cut)
+    cropped = _cropped(ground, part)
+    edges = extent(cropped)
     assert edges[0] <= part[0] and edges[1] >= part[1]
     assert edges[2] <= part[2] and edges[3] >= part[3]
     x = np.array([WEST + 77.0])
-    assert cut.height_at(x, x * 0 + SOUTH + 60.0) == ground.height_at(x, x * 0 + SOUTH + 60.0)
-    whole = focus(Raster(np.zeros((3, 4)), 0.0, 0.0, 1.0), np.zeros((3, 4), dtype=bool), [])
-    assert whole == (-0.5, 3.5, -0.5, 2.5)
+    assert cropped.height_at(x, x * 0 + SOUTH + 60.0) == ground.height_at(x, x * 0 + SOUTH + 60.0)
+    window = focus(Raster(np.zeros((3, 4)), 0.0, 0.0, 1.0), np.zeros((3, 4), dtype=bool), [])
+    assert window == (-0.5, 3.5, -0.5, 2.5)

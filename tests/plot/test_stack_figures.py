@@ -104,7 +104,7 @@ def test_the_scene_beside_the_pictures_is_complete(finished):
     assert json.loads((finished / "scene.json").read_text())["snowshed"] == 2
 
 
-def test_what_rolled_far_away_does_not_hide_the_stack():
+def test_snow_that_rolled_far_away_does_not_shrink_the_stack():
     pile = np.vstack([triangle(1.0, 0.3, count=2000), triangle(1.0, 0.1, count=200) + [50, 0, 0]])
     ones = np.ones(len(pile))
     stack = measure_stack(pile, ones, ones, dimension=2, dx=0.05)
@@ -114,7 +114,7 @@ def test_what_rolled_far_away_does_not_hide_the_stack():
     assert "97 % of the snow lies within" in figure.get_suptitle()
 
 
-def test_captions_of_a_method_whose_snow_is_in_its_settings_name_none():
+def test_captions_of_fluids_name_no_density():
     body = Body(shape=Shape.box(center=(0, 0.1), size=(0.2, 0.2)))
     scene = Scene(dimension=2, method="mps", ground=Ground(), bodies=[body])
     caption = scene_caption(scene.resolve().data)

@@ -23,7 +23,7 @@ def test_each_parameter_has_a_diagram_of_each_measure():
     assert figure.axes[0].collections[0].get_offsets().tolist() == [[40, 0.2], [50, 0.3], [60, 0.4]]
 
 
-def test_only_the_last_event_of_runs_that_ended_counts():
+def test_only_the_last_event_of_successful_runs_is_drawn():
     table = pd.DataFrame(
         {
             "hash": ["a", "a", "b", "c"],
@@ -37,7 +37,7 @@ def test_only_the_last_event_of_runs_that_ended_counts():
     assert sorted(drawn.tolist()) == [[40, 0.2], [50, 0.3]]
 
 
-def test_values_are_in_the_units_of_their_axis_and_words_beside_each_other():
+def test_numbers_are_in_units_of_the_axis_and_words_are_categories():
     values = {
         "snow.youngs_modulus": [1e5, 1e6, 1e5],
         "panel.condition": ["slip", "separate", "slip"],
@@ -46,11 +46,11 @@ def test_values_are_in_the_units_of_their_axis_and_words_beside_each_other():
     modulus, condition = figure.axes
     assert modulus.get_xlabel() == "E, MPa"
     assert modulus.collections[0].get_offsets()[:, 0].tolist() == [0.1, 1.0, 0.1]
-    assert [one.get_text() for one in condition.get_xticklabels()] == ["slip", "separate"]
+    assert [label.get_text() for label in condition.get_xticklabels()] == ["slip", "separate"]
     assert modulus.lines[0].get_ydata().tolist() == [2.0, 2.0]  # medians
 
 
 @pytest.mark.parametrize("table", [runs(height_m=[]), runs(height_m=[np.nan])])
-def test_a_study_without_results_says_so(table):
+def test_a_study_without_results_draws_a_note(table):
     figure = study_figure(table, ["panel.tilt"], "t")
-    assert [one.get_text() for one in figure.axes[0].texts] == ["nothing to show"]
+    assert [text.get_text() for text in figure.axes[0].texts] == ["nothing to show"]

@@ -1,7 +1,7 @@
 """Results of AvaFrame's projects: names, folders and settings as AvaFrame's tools read them.
 
-AvaFrame needs libraries of other versions than these tests. Where SNOWSHED_AVAFRAME_PYTHON names
-the Python of an environment with AvaFrame, that itself reads the results.
+AvaFrame needs libraries of other versions than these tests. If SNOWSHED_AVAFRAME_PYTHON names a
+Python with AvaFrame, AvaFrame itself reads the results.
 """
 
 import configparser
@@ -18,7 +18,7 @@ from helpers.slide_files import box, plane, write_polygons, write_project
 
 from snowshed.cli.main import main
 from snowshed.io.raster.raster import read_raster
-from snowshed.running.slide_history import particles_at
+from snowshed.methods import slide_states
 
 pytest.importorskip("pyogrio")
 pytest.importorskip("shapely")
@@ -65,28 +65,28 @@ def test_every_simulation_has_its_maps_and_settings(results, module):
         assert ini["GENERAL"]["simTypeActual"] == NAME.fullmatch(name)[3]
 
 
-def test_maps_at_a_time_are_of_that_time(results):
-    at = {
+def test_maps_have_the_values_of_their_time(results):
+    maps = {
         time: read_raster(next(results.glob(f"Outputs/com1DFA/*/*/rel_*_null_*_pfv_t{time}.asc")))
         for time in ("0.00", "0.05", "0.11")
     }
-    assert at["0.00"].heights.max() == 0
-    # A node's speed is a mean of those of particles; the slide gains speed.
-    fastest = particles_at(results / "scene.json", [5])[5][["ux", "uy", "uz"]]
-    expected = np.linalg.norm(fastest, axis=1).max()
-    assert 0.7 * expected < at["0.05"].heights.max() < expected
-    assert at["0.11"].heights.max() > 1.5 * expected
+    assert maps["0.00"].heights.max() == 0
+    # The speed of a node is a mean over particles; the slide accelerates.
+    (state,) = slide_states(results / "scene.json", steps=[5])
+    expected = np.linalg.norm(state.quantities["velocity"], axis=1).max()
+    assert 0.7 * expected < maps["0.05"].heights.max() < expected
+    assert maps["0.11"].heights.max() > 1.5 * expected
     final = next(results.glob("Outputs/com1DFA/peakFiles/rel_*_null_*_pfv.asc"))
-    assert (read_raster(final).heights == at["0.11"].heights).all()
+    assert (read_raster(final).heights == maps["0.11"].heights).all()
 
 
-def test_the_first_simulation_has_its_results_in_the_folder_itself(results):
+def test_the_first_simulation_writes_into_the_folder_itself(results):
     assert (results / "particles_step00001.csv").is_file()
     assert json.loads((results / "scene.json").read_text())["terrain"]["resistance"]
     assert (results / "Inputs" / "dem.asc").is_file()  # AvaFrame's pictures need it
 
 
-def test_results_have_the_format_and_the_map_of_the_terrain(tmp_path):
+def test_maps_have_the_format_and_reference_system_of_the_terrain(tmp_path):
     rasterio = pytest.importorskip("rasterio")
     project = write_project(tmp_path / "project", "tEnd = 0.06\n")
     (project / "Inputs/dem.asc").unlink()
@@ -114,14 +114,14 @@ from avaframe.in3Utils import cfgUtils, fileHandlerUtils
 from avaframe.out1Peak import outPlotAllPeak
 project = pathlib.Path(sys.argv[1])
 flags = cfgUtils.getGeneralConfig()["FLAGS"]
-found = {}
+tables = {}
 for module in ("com1DFA", "com5SnowSlide"):
     table, kinds = fileHandlerUtils.makeSimFromResDF(project, module)
     settings = cfgUtils.createConfigurationInfo(project, comModule=module)
     pictures = outPlotAllPeak.plotAllPeakFields(project, flags, module)
-    found[module] = [sorted(table["simName"]), sorted(settings["simName"]), sorted(pictures),
-                     sorted(kinds), sorted(table["releaseArea"])]
-print("FOUND" + json.dumps(found))
+    tables[module] = [sorted(table["simName"]), sorted(settings["simName"]), sorted(pictures),
+                      sorted(kinds), sorted(table["releaseArea"])]
+print("TABLES" + json.dumps(tables))
 """
 
 
@@ -132,8 +132,8 @@ def test_avaframe_reads_the_results(results):
     done = subprocess.run(
         [python, "-c", READ_BY_AVAFRAME, str(results)], capture_output=True, text=True, check=True
     )
-    for module, found in json.loads(done.stdout.rpartition("FOUND")[2]).items():
-        names, settings, pictures, kinds, releases = found
+    for module, tables in json.loads(done.stdout.rpartition("TABLES")[2]).items():
+        names, settings, pictures, kinds, releases = tables
         assert len(names) == 4, module
         assert names == settings == pictures
         assert kinds == ["FT", "pft", "pfv", "ppr"]

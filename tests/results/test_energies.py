@@ -1,4 +1,4 @@
-"""The energy balance over time: rows, picture, and the same rows when a run goes on."""
+"""The energy balance over time: rows, picture, and the same rows after resuming."""
 
 import numpy as np
 import pandas as pd
@@ -12,7 +12,7 @@ from snowshed.results.energies import draw_energies
 from snowshed.running import sequence
 
 
-def test_rows_go_from_the_beginning_of_each_event_to_its_end(finished):
+def test_rows_span_each_event(finished):
     results = Results(finished)
     table, events = results.energy_history, results.events
     assert table.attrs["units"]["kinetic_j"] == "J" and table.attrs["units"]["time_s"] == "s"
@@ -25,7 +25,7 @@ def test_rows_go_from_the_beginning_of_each_event_to_its_end(finished):
     last = table.groupby("event").last()
     at_the_end = pd.read_csv(finished / "energy.csv").set_index("event")
     pd.testing.assert_frame_equal(last[at_the_end.columns], at_the_end)
-    assert table.kinetic_j.max() > 100 * last.kinetic_j.max()  # what the ends do not tell
+    assert table.kinetic_j.max() > 100 * last.kinetic_j.max()  # the ends miss this peak
 
 
 def test_every_row_balances(finished):
@@ -50,10 +50,10 @@ def test_a_resumed_run_has_the_same_rows(finished, tmp_path, monkeypatch, event,
     scene = tiny_scene(**{"output.energy": True})
     with pytest.raises(Interrupted):
         run_events(scene, tmp_path, progress=interrupt_at(event, moment), pictures=False)
-    assert Results(tmp_path).energy_history.event.max() == event  # as far as it came
+    assert Results(tmp_path).energy_history.event.max() == event  # rows before the interrupt
     run_events(scene, tmp_path, resume=True, pictures=False)
-    whole = (finished / "energy_history.csv").read_bytes()
-    assert (tmp_path / "energy_history.csv").read_bytes() == whole
+    expected = (finished / "energy_history.csv").read_bytes()
+    assert (tmp_path / "energy_history.csv").read_bytes() == expected
 
 
 def test_the_picture_has_units_and_a_legend(finished):
@@ -76,7 +76,7 @@ def test_the_picture_has_units_and_a_legend(finished):
         assert box.x1 <= figure.bbox.x1
 
 
-def test_a_run_without_energies_says_what_keeps_them(tmp_path):
+def test_the_error_without_energies_names_the_setting(tmp_path):
     run_events(tiny_scene(**{"events.count": 1, "events.max_time": 0.1}), tmp_path, pictures=False)
     with pytest.raises(InputError, match=r"energy_history\.csv: missing; a run with output\.en"):
         draw_energies(tmp_path)

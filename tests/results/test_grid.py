@@ -15,7 +15,7 @@ BASES = ("quadratic", "cubic")
 
 
 def flying(dimension, **numerics):
-    """A ball of elastic snow that flies alone."""
+    """A ball of elastic snow in free flight."""
     ball = Shape.sphere((0.013, 0.5) if dimension == 2 else (0.013, 0.0, 0.5), 0.05)
     scene = Scene(dimension=dimension, bodies=[Body(shape=ball)])
     settings = {"dx": 0.02, "precision": "double", "sleep_speed": 0.0, "threads": 1, **numerics}
@@ -24,38 +24,38 @@ def flying(dimension, **numerics):
 
 @pytest.mark.parametrize("basis", BASES)
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_the_solvers_next_step_takes_its_velocities_from_the_same_grid(dimension, basis):
+def test_the_solver_uses_the_same_grid_in_its_next_step(dimension, basis):
     """With pure PIC and no stress, a particle gets the grid's velocity and a step of gravity."""
     simulation = Simulation(flying(dimension, basis=basis, flip_ratio=0.0))
     simulation.begin_event()
     rng = np.random.default_rng(1)
-    changes = rng.normal(0, 1e-4, (simulation.particle_count, 3))  # too slow to be strained
+    changes = rng.normal(0, 1e-4, (simulation.particle_count, 3))  # too slow to strain the snow
     changes[:, 1] *= dimension == 3
     simulation.add_velocity(changes)
-    grid, places = simulation.grid(), simulation.positions()
+    grid, positions = simulation.grid(), simulation.positions()
     before = simulation.velocities()
     simulation.step()
     axes = ["x", "z"] if dimension == 2 else ["x", "y", "z"]
-    # Velocities that the grid returns to particles, by the weights of the transfer to it.
-    shift = np.zeros_like(places)
+    # Velocities that the grid returns to particles, with the weights of the transfer to the grid.
+    shift = np.zeros_like(positions)
     shift[:, 2] = -9.81 * simulation.time_step
-    wanted = np.zeros_like(places)
-    for number, place in enumerate(places):
-        one = particles_to_grid(
-            place[None], np.zeros((1, 3)), np.ones(1), dx=0.02, dimension=dimension, basis=basis
+    expected = np.zeros_like(positions)
+    for number, position in enumerate(positions):
+        weights = particles_to_grid(
+            position[None], np.zeros((1, 3)), np.ones(1), dx=0.02, dimension=dimension, basis=basis
         )
-        nodes = {axis: one.origin[k] + 0.02 * np.arange(one.mass.shape[k])
+        nodes = {axis: weights.origin[k] + 0.02 * np.arange(weights.mass.shape[k])
                  for k, axis in enumerate(axes)}  # fmt: skip
-        near = grid.velocity.sel(nodes, method="nearest", tolerance=1e-6).values
+        node_velocities = grid.velocity.sel(nodes, method="nearest", tolerance=1e-6).values
         for k, axis in enumerate(axes):
-            wanted[number, "xyz".index(axis)] = (one.mass * near[..., k]).sum()
-    assert np.abs(before - wanted).max() > 1e-5
-    assert simulation.velocities() == pytest.approx(wanted + shift, abs=2e-9)
+            expected[number, "xyz".index(axis)] = (weights.mass * node_velocities[..., k]).sum()
+    assert np.abs(before - expected).max() > 1e-5
+    assert simulation.velocities() == pytest.approx(expected + shift, abs=2e-9)
 
 
 @pytest.mark.parametrize("transfer", ["flip", "apic"])
 @pytest.mark.parametrize("basis", BASES)
-def test_mass_and_momentum_are_kept(transfer, basis):
+def test_mass_and_momentum_are_conserved(transfer, basis):
     scene = tiny_scene(**{"numerics.transfer": transfer, "numerics.basis": basis})
     simulation = Simulation(scene)
     simulation.begin_event()
@@ -63,25 +63,25 @@ def test_mass_and_momentum_are_kept(transfer, basis):
     grid = simulation.grid()
     assert float(grid.mass.sum()) == pytest.approx(simulation.masses().sum(), rel=1e-12)
     momentum = (grid.mass * grid.velocity).sum(("x", "z")).values
-    wanted = (simulation.masses()[:, None] * simulation.velocities()).sum(axis=0)
-    assert momentum == pytest.approx(wanted[[0, 2]], rel=1e-9)
+    expected = (simulation.masses()[:, None] * simulation.velocities()).sum(axis=0)
+    assert momentum == pytest.approx(expected[[0, 2]], rel=1e-9)
     assert float(grid.density.max()) < 2 * 210
     assert grid.velocity.attrs["units"] == "m/s" and grid.x.attrs["units"] == "m"
 
 
 @pytest.mark.parametrize("basis", BASES)
-def test_apic_gives_a_rotation_exactly(basis):
+def test_apic_reproduces_a_rotation_exactly(basis):
     rng = np.random.default_rng(2)
-    places = rng.uniform(0, 0.1, (500, 3))
+    positions = rng.uniform(0, 0.1, (500, 3))
     spin = np.array([[0, -2.0, 1.0], [2.0, 0, -3.0], [-1.0, 3.0, 0]])
     grid = particles_to_grid(
-        places, places @ spin.T, np.ones(500), dx=0.02, dimension=3, basis=basis,
+        positions, positions @ spin.T, np.ones(500), dx=0.02, dimension=3, basis=basis,
         affine=np.broadcast_to(spin, (500, 3, 3)),
     )  # fmt: skip
     axes = (grid.origin[k] + 0.02 * np.arange(n) for k, n in enumerate(grid.mass.shape))
     nodes = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
-    some = grid.mass > 0
-    assert grid.velocity[some] == pytest.approx((nodes @ spin.T)[some], abs=1e-9)
+    occupied = grid.mass > 0
+    assert grid.velocity[occupied] == pytest.approx((nodes @ spin.T)[occupied], abs=1e-9)
 
 
 def test_the_grid_after_an_event_and_its_file(finished, tmp_path, capsys):
@@ -107,7 +107,7 @@ def test_the_grid_after_an_event_and_its_file(finished, tmp_path, capsys):
     assert reader.GetOutput().GetPointData().GetArray("velocity").GetNumberOfComponents() == 3
 
 
-def test_without_a_grid_it_says_so(tmp_path, finished, capsys):
+def test_missing_and_too_large_grids_are_refused(tmp_path, finished, capsys):
     with pytest.raises(InputError, match="no particles"):
         particles_to_grid(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), dx=0.1, dimension=2)
     far = np.array([[0.0, 0, 0], [1e6, 0, 1e6]])

@@ -17,33 +17,33 @@ from snowshed.results.folder import EVENT_COLUMNS, read_events
 def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):
     path = tmp_path / "a.txt"
     write_text(path, "old")
-    with pytest.raises(RuntimeError), replacing(path) as beside:
-        beside.write_text("half")
+    with pytest.raises(RuntimeError), replacing(path) as temporary:
+        temporary.write_text("half")
         raise RuntimeError
     assert path.read_text() == "old"
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_the_old_file_stands_until_the_new_one_is_whole(tmp_path):
+def test_the_old_file_remains_until_the_new_one_is_complete(tmp_path):
     path = tmp_path / "a.txt"
     write_text(path, "old")
-    with replacing(path) as beside:
-        beside.write_text("new")
+    with replacing(path) as temporary:
+        temporary.write_text("new")
         assert path.read_text() == "old"
-        assert beside.suffix == path.suffix
+        assert temporary.suffix == path.suffix
     assert path.read_text() == "new"
 
 
-def test_table_goes_on_where_it_stopped(tmp_path):
+def test_a_table_is_continued_after_its_last_event(tmp_path):
     path = tmp_path / "t.csv"
     Table(path, ("event", "x")).add([{"event": i, "x": i / 3} for i in (1, 2, 3)])
-    again = Table(path, ("event", "x"))
-    again.keep_through(2)
-    again.add([{"event": 3, "x": 1.0}])
-    whole = Table(tmp_path / "u.csv", ("event", "x"))
-    whole.add([{"event": i, "x": x} for i, x in ((1, 1 / 3), (2, 2 / 3), (3, 1.0))])
-    assert path.read_bytes() == whole.path.read_bytes()
-    assert again.total("x") == pytest.approx(2.0)
+    reopened = Table(path, ("event", "x"))
+    reopened.keep_through(2)
+    reopened.add([{"event": 3, "x": 1.0}])
+    expected = Table(tmp_path / "u.csv", ("event", "x"))
+    expected.add([{"event": i, "x": x} for i, x in ((1, 1 / 3), (2, 2 / 3), (3, 1.0))])
+    assert path.read_bytes() == expected.path.read_bytes()
+    assert reopened.total("x") == pytest.approx(2.0)
 
 
 def test_nan_is_an_empty_cell(tmp_path):
@@ -52,7 +52,7 @@ def test_nan_is_an_empty_cell(tmp_path):
     assert table.path.read_text() == "event,x\n1,\n"
 
 
-def test_folder_must_be_empty(tmp_path):
+def test_a_results_folder_must_be_empty(tmp_path):
     check_empty(tmp_path)
     check_empty(tmp_path / "new")
     (tmp_path / "file").touch()
@@ -74,7 +74,7 @@ def test_resuming_refuses_another_scene(finished, tmp_path, tiny):
         resume(tiny, tmp_path / "new")
 
 
-def test_columns_of_the_events_table(finished):
+def test_the_events_table_has_its_columns(finished):
     table = read_events(finished)
     assert list(table.columns) == list(EVENT_COLUMNS)
     assert list(EVENT_COLUMNS[:16]) == [
@@ -97,7 +97,7 @@ def test_columns_of_the_events_table(finished):
     ]
 
 
-def test_a_folder_of_the_last_version_is_reopened(tmp_path):
+def test_a_folder_of_an_earlier_version_is_resumed(tmp_path):
     scene = tiny_scene(**{"numerics.courant_factor": 0.5, "events.count": 1}).resolve()
     run_events(scene, tmp_path / "out", pictures=False)
     file = tmp_path / "out" / "scene.json"
@@ -108,7 +108,7 @@ def test_a_folder_of_the_last_version_is_reopened(tmp_path):
         run_events(scene, tmp_path / "out", resume=True)
 
 
-def test_no_results(tmp_path):
+def test_a_folder_without_results_is_refused(tmp_path):
     with pytest.raises(InputError, match="no results"):
         read_events(tmp_path)
 
@@ -123,7 +123,7 @@ DAMAGED = {
     "too high": b"event,height_m\n1,1e999\n",
     "text for a length": b"event,height_m,length_m\n1,0.1,long\n",
     "cut off": b"event,height_m,length_m\n1,0.1,0.2\n2,0.1",
-    "names that are not": b"1," * 900,
+    "numbers for names": b"1," * 900,
     "a line without end": b"1," * 100_000,
 }
 
@@ -182,7 +182,7 @@ FACTS = {"event": 1, "sim_time_s": 1.0, "steps": 9, "wall_s": 1.0, "ended": "res
         ({"wall_s": 1, "finished_events": [{**FACTS, "steps": "many"}]}, '/steps: "many" is not'),
     ],
 )
-def test_a_record_that_cannot_be_gone_on_with(tmp_path, tiny, content, message):
+def test_an_unusable_record_is_refused(tmp_path, tiny, content, message):
     tiny.resolve().save(tmp_path / "scene.json")
     (tmp_path / "run.json").write_text(json.dumps(content))
     with pytest.raises(InputError, match=rf"run\.json: .*{re.escape(message)}"):
@@ -207,28 +207,28 @@ def test_a_damaged_table_of_events_is_not_resumed(finished, tmp_path, capsys, da
     events.write_text(damage(events.read_text()))
     before = sorted(folder.rglob("*"))
     assert main(["run", str(folder / "scene.json"), "-o", str(folder), "--resume", "-q"]) == 2
-    said = capsys.readouterr().err
-    assert said.startswith(f"error: {events}") and said.count("\n") == 1
-    assert re.search(message, said)
+    error = capsys.readouterr().err
+    assert error.startswith(f"error: {events}") and error.count("\n") == 1
+    assert re.search(message, error)
     assert sorted(folder.rglob("*")) == before
 
 
-@pytest.mark.parametrize("kept", [0, 1])
-def test_events_that_the_table_lacks_are_measured_from_their_particles(finished, tmp_path, kept):
+@pytest.mark.parametrize("row_count", [0, 1])
+def test_events_missing_in_the_table_are_measured_from_particles(finished, tmp_path, row_count):
     """Particles are stored in single precision, so only the last digits of measures differ."""
     folder = tmp_path / "results"
     shutil.copytree(finished, folder)
     lines = (folder / "events.csv").read_text().splitlines(keepends=True)
-    (folder / "events.csv").write_text("".join(lines[: 1 + kept]))
+    (folder / "events.csv").write_text("".join(lines[: 1 + row_count]))
     resume(tiny_scene(**{"output.energy": True}), folder)
     for name in ("events.csv", "outline.csv", "energy.csv"):
-        one, other = (pd.read_csv(f / name) for f in (finished, folder))
-        pd.testing.assert_frame_equal(one, other, rtol=1e-4, atol=1e-6)
+        expected, resumed = (pd.read_csv(f / name) for f in (finished, folder))
+        pd.testing.assert_frame_equal(expected, resumed, rtol=1e-4, atol=1e-6)
 
 
 @pytest.mark.parametrize("name", ["outline.csv", "energy.csv", "events.csv"])
 @pytest.mark.parametrize("damage", ["empty", "header", "row", "digit", "column"])
-def test_a_table_that_lacks_rows_or_has_others_is_not_continued(finished, tmp_path, name, damage):
+def test_a_table_with_missing_or_changed_rows_is_not_continued(finished, tmp_path, name, damage):
     folder = tmp_path / "results"
     shutil.copytree(finished, folder)
     lines = (folder / name).read_text().splitlines(keepends=True)

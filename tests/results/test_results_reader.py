@@ -16,7 +16,7 @@ def damaged(finished, tmp_path):
     return Results(shutil.copytree(finished, tmp_path / "results"))
 
 
-def test_tables_are_those_of_the_files_with_units(finished):
+def test_tables_are_read_from_files_with_units(finished):
     results = Results(finished)
     pd.testing.assert_frame_equal(results.events, read_events(finished))
     units = results.events.attrs["units"]
@@ -27,8 +27,8 @@ def test_tables_are_those_of_the_files_with_units(finished):
     assert results.scene.data["events"]["count"] == 2
 
 
-def test_particles_are_those_of_the_end_of_an_event(finished):
-    """The last particles are those of the checkpoint, in single precision."""
+def test_particles_are_from_the_end_of_an_event(finished):
+    """The particles of the last event agree with the checkpoint, in single precision."""
     results, last = Results(finished), Simulation.load(finished / "checkpoint.bin")
     particles = results.particles()
     assert particles["position"].dims == ("particle", "component")
@@ -45,14 +45,14 @@ def test_particles_are_those_of_the_end_of_an_event(finished):
         results.particles(3)
 
 
-def test_energy_is_a_history_along_the_events(finished):
+def test_energy_has_values_for_each_event(finished):
     energy = Results(finished).energy
     assert energy["kinetic_j"].dims == ("event",)
     assert energy["kinetic_j"].attrs["units"] == "J"
     assert energy["event"].values.tolist() == [1, 2]
 
 
-def test_snapshots_in_the_order_of_time(tmp_path, tiny: Scene):
+def test_snapshots_are_sorted_by_time(tmp_path, tiny: Scene):
     tiny.update({"events.count": 1, "output.snapshot_interval": 0.1})
     run_events(tiny, tmp_path / "results", pictures=False)
     snapshots = list(Results(tmp_path / "results").snapshots())
@@ -79,7 +79,7 @@ def test_a_folder_without_results_is_refused(tmp_path):
         ("particles/event_002.vtp", lambda r: r.particles(2)),
     ],
 )
-def test_damage_names_the_file(damaged, name, read):
+def test_damage_is_reported_with_the_file(damaged, name, read):
     path = damaged.folder / name
     path.write_bytes(path.read_bytes()[:-20].replace(b"1", b"x"))
     with pytest.raises(InputError, match=name):
@@ -87,18 +87,18 @@ def test_damage_names_the_file(damaged, name, read):
 
 
 @pytest.mark.parametrize("name", ["outline.csv", "energy.csv", "run.json"])
-def test_a_missing_file_says_what_writes_it(damaged, name):
+def test_the_error_of_a_missing_file_names_its_source(damaged, name):
     (damaged.folder / name).unlink()
     with pytest.raises(InputError, match=rf"{name}: missing; a run "):
         getattr(damaged, name.partition(".")[0])
 
 
-def test_without_snapshots_the_error_says_how_to_have_them(finished):
+def test_without_snapshots_the_error_names_the_setting(finished):
     with pytest.raises(InputError, match=r"output\.snapshot_interval"):
         next(Results(finished).snapshots())
 
 
-def test_a_series_may_not_lead_elsewhere(damaged):
+def test_a_series_must_not_refer_to_other_folders(damaged):
     folder = damaged.folder / "snapshots"
     folder.mkdir()
     (folder / "snapshots.pvd").write_text(

@@ -1,4 +1,4 @@
-"""Files of a run that have been changed are neither shown nor continued."""
+"""Changed files of a run are neither shown nor resumed."""
 
 import json
 import re
@@ -28,7 +28,7 @@ from snowshed.scene import example_slide
 from snowshed.scene.builders.grains import grains_scene
 from snowshed.scene.loading import LoadingStage
 
-FILMS, CURVES = 33, 25  # changed ones
+CHANGES_PER_FILE, CHANGED_CURVES = 33, 25
 
 
 @pytest.fixture
@@ -38,7 +38,7 @@ def folder(finished, tmp_path) -> Path:
 
 @pytest.fixture(scope="module")
 def loaded(tmp_path_factory) -> Path:
-    """A loading test that has come to its end."""
+    """A finished loading test."""
     folder = tmp_path_factory.mktemp("loaded")
     loading = [LoadingStage(kind="compress", speed=0.1, strain=0.002)]
     scene = grains_scene(write_labels(folder), 1e-4, loading).set("numerics.threads", 1)
@@ -51,7 +51,7 @@ READ = {
     "outline.csv": lambda folder: Results(folder).outline.to_csv(),
     "energy.csv": lambda folder: Results(folder).energy.to_dataframe().to_csv(),
     "energy_history.csv": lambda folder: Results(folder).energy_history.to_csv(),
-    "film.bin": lambda folder: [one.positions.tolist() for one in Results(folder).film],
+    "film.bin": lambda folder: [frame.positions.tolist() for frame in Results(folder).film],
     "scene.json": lambda folder: re.sub(r'"threads": \d+', "", Results(folder).scene.json),
     "run.json": lambda folder: Results(folder).run,
     "particles/event_001.vtp": lambda folder: read_particles(
@@ -61,24 +61,24 @@ READ = {
 
 
 @pytest.mark.parametrize("name", READ)
-def test_a_changed_file_is_refused_by_name_or_says_the_same(folder, name):
-    wanted = READ[name](folder)
+def test_a_changed_file_is_refused_by_name_or_read_the_same(folder, name):
+    expected = READ[name](folder)
     sound = (folder / name).read_bytes()
     refused = 0
-    for seed in range(FILMS):
+    for seed in range(CHANGES_PER_FILE):
         (folder / name).write_bytes(mutated(sound, seed))
         try:
-            found = READ[name](folder)
+            content = READ[name](folder)
         except InputError as error:
             assert Path(name).name in str(error)
             refused += 1
         else:
-            assert found == wanted, seed
-    assert refused > 0.8 * FILMS
+            assert content == expected, seed
+    assert refused > 0.8 * CHANGES_PER_FILE
 
 
 @pytest.mark.parametrize("show", [write_view, lambda folder: write_video(folder, folder / "a.gif")])
-def test_pages_and_videos_show_nothing_that_was_changed(folder, show):
+def test_pages_and_videos_refuse_changed_files(folder, show):
     for name in ("events.csv", "film.bin", "scene.json", "run.json"):
         sound = (folder / name).read_bytes()
         at = sound.index(b"0.", len(sound) // 3) + 2 if name != "film.bin" else len(sound) // 2
@@ -90,27 +90,27 @@ def test_pages_and_videos_show_nothing_that_was_changed(folder, show):
 
 
 def test_the_film_of_another_run_is_not_shown(folder, tmp_path):
-    other = tmp_path / "other"
-    run_events(tiny_scene(**{"panel.friction": 0.3}), other, pictures=False)
-    shutil.copy(other / "film.bin", folder / "film.bin")
+    other_run = tmp_path / "other"
+    run_events(tiny_scene(**{"panel.friction": 0.3}), other_run, pictures=False)
+    shutil.copy(other_run / "film.bin", folder / "film.bin")
     with pytest.raises(InputError, match="not the film that the run recorded"):
         write_view(folder)
 
 
-def test_the_film_of_a_finished_run_is_complete(folder):
+def test_a_truncated_film_of_a_finished_run_is_refused(folder):
     sound = (folder / "film.bin").read_bytes()
-    for left in (len(sound) - 40, len(sound) - 45, len(sound) // 2):
-        (folder / "film.bin").write_bytes(sound[:left])
+    for length in (len(sound) - 40, len(sound) - 45, len(sound) // 2):
+        (folder / "film.bin").write_bytes(sound[:length])
         with pytest.raises(InputError, match="damaged"):
             _ = Results(folder).film
 
 
-def test_a_film_of_version_1_is_checked_by_what_there_is(folder):
-    """Its run.json records nothing of the film, only the ends of the events."""
+def test_a_film_of_version_1_is_checked_by_the_ends_of_events(folder):
+    """Its run.json does not record the film, only the ends of events."""
     sound = film_files.as_version_1((folder / "film.bin").read_bytes())
     record = json.loads((folder / "run.json").read_text())
-    for new in ("film", "files", "scene_checksum", "checksum"):
-        del record[new]
+    for key in ("film", "files", "scene_checksum", "checksum"):
+        del record[key]
     (folder / "run.json").write_text(json.dumps(record, indent=2))
     (folder / "film.bin").write_bytes(sound)
     film = Results(folder).film
@@ -127,29 +127,29 @@ def test_a_film_of_version_1_is_checked_by_what_there_is(folder):
             _ = Results(folder).film
 
 
-def test_what_a_running_run_has_is_shown_as_such(tmp_path):
+def test_results_of_a_running_run_are_marked_as_unfinished(tmp_path):
     """The film of a running run may be longer than run.json records."""
-    seen = []
+    observations = []
 
-    def look(progress):
-        if progress.event == 2 and not seen:
+    def observe(progress):
+        if progress.event == 2 and not observations:
             film = Results(tmp_path).film
-            seen.append((len(film.frames), film.notes))
+            observations.append((len(film.frames), film.notes))
             write_view(tmp_path, tmp_path / "page.html")
 
-    run_events(tiny_scene(), tmp_path, progress=look, pictures=False)
-    ((frames, notes),) = seen
+    run_events(tiny_scene(), tmp_path, progress=observe, pictures=False)
+    ((frames, notes),) = observations
     assert frames > 5 and "has not come to its end" in notes[0]
     assert "not finished (running)" in (tmp_path / "page.html").read_text()
     assert Film(tmp_path / "film.bin").notes == []
 
 
-def test_a_changed_curve_is_neither_read_nor_gone_on_with(loaded, tmp_path):
+def test_a_changed_curve_is_neither_read_nor_resumed(loaded, tmp_path):
     folder = Path(shutil.copytree(loaded, tmp_path / "out"))
     curve = folder / "curve.csv"
     sound = curve.read_bytes()
     refused = 0
-    for seed in range(CURVES):
+    for seed in range(CHANGED_CURVES):
         changed = mutated(sound, seed)
         if changed == sound:
             continue
@@ -165,7 +165,7 @@ def test_a_changed_curve_is_neither_read_nor_gone_on_with(loaded, tmp_path):
     assert snowshed_run(folder / "scene.json", "-o", folder, "--resume", "-q").returncode == 0
 
 
-def test_python_writes_a_changed_curve_anew(loaded, tmp_path):
+def test_python_rewrites_a_changed_curve(loaded, tmp_path):
     folder = Path(shutil.copytree(loaded, tmp_path / "out"))
     (folder / "curve.csv").write_text("time_s,stage\n1,1\n")
     run(ResolvedScene.load(folder / "scene.json"), folder, resume=True, pictures=False)
@@ -173,7 +173,7 @@ def test_python_writes_a_changed_curve_anew(loaded, tmp_path):
     LoadingCurve.read(folder / "curve.csv")
 
 
-def test_figures_of_runs_are_checked(loaded, tmp_path):
+def test_a_changed_summary_is_refused(loaded, tmp_path):
     folder = Path(shutil.copytree(loaded, tmp_path / "out"))
     assert GrainsRun.rows(folder)
     text = (folder / "grains.json").read_text()
@@ -182,7 +182,7 @@ def test_figures_of_runs_are_checked(loaded, tmp_path):
         GrainsRun.rows(folder)
 
 
-def test_run_json_says_its_own_checksum(folder):
+def test_run_json_contains_its_own_checksum(folder):
     text = (folder / "run.json").read_bytes()
     at = text.rindex(b',\n  "checksum": "')
     assert json.loads(text)["checksum"] == f"{zlib.crc32(text[:at]):08x}"
@@ -225,22 +225,25 @@ def scenes(folder: Path) -> dict[str, object]:
 
 @pytest.mark.parametrize("python", [True, False])
 @pytest.mark.parametrize("method", ["mpm", "mps", "grains", "slide"])
-def test_another_number_of_threads_goes_on_to_the_same_bits(method, python, tmp_path, monkeypatch):
+def test_a_run_resumes_with_other_threads_to_the_same_bits(method, python, tmp_path, monkeypatch):
     scene = scenes(tmp_path)[method]
-    one, two = tmp_path / "one", tmp_path / "two"
+    uninterrupted, resumed = tmp_path / "one", tmp_path / "two"
     scene.set("numerics.threads", 1)
-    run(scene, one, pictures=False)
-    interrupted_run(run, scene, two, monkeypatch)
+    run(scene, uninterrupted, pictures=False)
+    interrupted_run(run, scene, resumed, monkeypatch)
     scene.set("numerics.threads", 2).resolve().save(tmp_path / "threads.json")
     if python:
-        run(tmp_path / "threads.json", two, resume=True, pictures=False)
+        run(tmp_path / "threads.json", resumed, resume=True, pictures=False)
     else:
-        done = snowshed_run(tmp_path / "threads.json", "-o", two, "--resume", "-q")
+        done = snowshed_run(tmp_path / "threads.json", "-o", resumed, "--resume", "-q")
         assert (done.returncode, done.stderr) == (0, "")
-    assert json.loads((two / "run.json").read_text())["threads"] == 2
-    names = ["film.bin", *(f"particles/{file.name}" for file in (one / "particles").iterdir())]
+    assert json.loads((resumed / "run.json").read_text())["threads"] == 2
+    names = [
+        "film.bin",
+        *(f"particles/{file.name}" for file in (uninterrupted / "particles").iterdir()),
+    ]
     for name in names:
-        assert (one / name).read_bytes() == (two / name).read_bytes(), name
+        assert (uninterrupted / name).read_bytes() == (resumed / name).read_bytes(), name
 
 
 def test_the_number_of_threads_may_be_changed_in_the_folder_itself(folder):
@@ -255,8 +258,8 @@ def test_the_number_of_threads_may_be_changed_in_the_folder_itself(folder):
         _ = Results(folder).scene
 
 
-def test_a_table_without_rows_is_sound(tmp_path):
-    """Nothing has slid off yet, and there is no stack."""
+def test_a_table_without_rows_is_valid(tmp_path):
+    """No snow has slid off yet, so the stack is empty."""
     scene = tiny_scene(**{"events.count": 1, "events.max_time": 0.1})
     run_events(scene, tmp_path, pictures=False)
     assert (tmp_path / "outline.csv").read_text() == "event,x,z\n"
@@ -267,11 +270,11 @@ def test_a_table_without_rows_is_sound(tmp_path):
         _ = Results(tmp_path).outline
 
 
-def test_a_finished_run_of_the_version_before_can_be_resumed_and_read(folder):
+def test_a_finished_run_of_an_earlier_version_can_be_resumed_and_read(folder):
     """Its table has fewer columns, and its run.json no checksums."""
     record = json.loads((folder / "run.json").read_text())
-    for new in ("film", "files", "tables", "scene_checksum", "checksum"):
-        del record[new]
+    for key in ("film", "files", "tables", "scene_checksum", "checksum"):
+        del record[key]
     (folder / "run.json").write_text(json.dumps(record, indent=2))
     lines = (folder / "events.csv").read_text().splitlines()
     rows = [line.rsplit(",", 3)[0] for line in lines]

@@ -27,26 +27,31 @@ def read(file):
     return values("position", "<f4", 3 * points).reshape(-1, 3), corners, numbers
 
 
-def test_panel_ground_and_obstacles_are_where_they_are(tmp_path):
+def test_solids_are_written_at_their_positions(tmp_path):
     fence = Obstacle(name="fence", shape=Shape.box((0.6, 0.0, 0.1), (0.04, 0.3, 0.2)))
     scene = Scene.preset("lab-50").append("obstacles", fence).resolve()
     snow = np.array([[0.0, -0.1, 0.0], [0.5, 0.1, 0.4]])
     points, corners, numbers = read(write_solids(scene, snow, tmp_path))
     assert dict(zip(*np.unique(numbers["kind"], return_counts=True))) == {0: 2, 1: 12, 2: 12}
     assert corners.min() == 0 and corners.max() == len(points) - 1
-    of = {kind: points[np.unique(corners[numbers["kind"] == kind])] for kind in (0, 1, 2)}
-    assert np.ptp(of[0][:, 2]) == 0 and of[0][:, 0].min() < -0.1 < 0.6 < of[0][:, 0].max()
-    assert of[2].min(axis=0) == pytest.approx([0.58, -0.15, 0.0], abs=1e-6)
-    assert of[2].max(axis=0) == pytest.approx([0.62, 0.15, 0.2], abs=1e-6)
+    corners_by_kind = {
+        kind: points[np.unique(corners[numbers["kind"] == kind])] for kind in (0, 1, 2)
+    }
+    assert (
+        np.ptp(corners_by_kind[0][:, 2]) == 0
+        and corners_by_kind[0][:, 0].min() < -0.1 < 0.6 < corners_by_kind[0][:, 0].max()
+    )
+    assert corners_by_kind[2].min(axis=0) == pytest.approx([0.58, -0.15, 0.0], abs=1e-6)
+    assert corners_by_kind[2].max(axis=0) == pytest.approx([0.62, 0.15, 0.2], abs=1e-6)
     down = 0.5 * 0.245 * np.cos(np.radians(50))  # the lower edge of the sliding face
-    edge = of[1][np.argmax(of[1][:, 0] + 1e-3 * of[1][:, 2])]
+    edge = corners_by_kind[1][np.argmax(corners_by_kind[1][:, 0] + 1e-3 * corners_by_kind[1][:, 2])]
     assert (edge[0], edge[2]) == pytest.approx((down, 0.33), abs=1e-4)
-    for number in (0, 1, 2):  # each solid uses its own corners alone
+    for number in (0, 1, 2):  # no two solids share corners
         others = np.unique(corners[numbers["solid"] != number])
         assert not set(np.unique(corners[numbers["solid"] == number])) & set(others)
 
 
-def test_a_run_writes_it_and_a_scene_without_solids_does_not(finished, tmp_path):
+def test_a_run_writes_solids_only_if_its_scene_has_some(finished, tmp_path):
     points, _, numbers = read(finished / "solids.vtp")
     assert set(numbers["kind"]) == {0, 1} and not points[:, 1].any()
     ball = Scene(dimension=2, bodies=[Body(shape=Shape.sphere((0, 1), 0.1))]).resolve()

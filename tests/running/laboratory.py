@@ -12,7 +12,7 @@ from snowshed import _core
 
 FILE = Path(__file__).with_name("laboratory_stacks.json")
 SETTINGS = {"dimension": 2, "dx": 0.01, "events": 4}
-COMPARED = ("height", "length")
+MEASURES = ("height", "length")
 #: Seeds of the recorded means; the tests use others.
 SEEDS = range(101, 125)
 ABOUT = (
@@ -26,20 +26,20 @@ ABOUT = (
 def stacks(seeds):
     """Height and length after each event, m, for each seed: shape (seeds, events) each."""
     runs = [run_lab({**SETTINGS, "seed": seed}) for seed in seeds]
-    return {name: np.array([run.series(name) for run in runs]) for name in COMPARED}
+    return {name: np.array([run.series(name) for run in runs]) for name in MEASURES}
 
 
 def record():
-    found = stacks(SEEDS)
+    results = stacks(SEEDS)
     data = {
         "about": ABOUT,
         "version": _core.version,
         "date": datetime.date.today().isoformat(),
         "settings": SETTINGS,
         "seeds": [SEEDS.start, SEEDS.stop - 1],
-        "mean": {name: values.mean(axis=0).round(5).tolist() for name, values in found.items()},
+        "mean": {name: values.mean(axis=0).round(5).tolist() for name, values in results.items()},
         "deviation": {
-            name: values.std(axis=0, ddof=1).round(5).tolist() for name, values in found.items()
+            name: values.std(axis=0, ddof=1).round(5).tolist() for name, values in results.items()
         },
     }
     FILE.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")

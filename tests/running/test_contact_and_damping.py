@@ -27,9 +27,9 @@ def run(scene: Scene, until: float) -> Simulation:
 
 
 @pytest.mark.filterwarnings("ignore:condition:FutureWarning")
-def test_only_separate_lets_go_of_snow_that_is_pulled_off():
-    def moved(condition: str) -> tuple[float, float]:
-        """Return how far the lowest layer has come along the ground and up."""
+def test_only_separate_releases_snow_that_is_pulled_off():
+    def displacement(condition: str) -> tuple[float, float]:
+        """Return the lowest layer's motion along the ground and up, relative to free flight."""
         block = Body(Shape.box((0, 0.02), (0.08, 0.04)), velocity=(0.3, 0.3))
         ground = Ground(condition=condition, friction=0.0)
         sim = Simulation(elastic(ground=ground, bodies=[block], gravity=0.0))
@@ -41,16 +41,16 @@ def test_only_separate_lets_go_of_snow_that_is_pulled_off():
         x, *_, z = (sim.positions() - start)[lowest].mean(axis=0)
         return x / (0.3 * sim.time), z / (0.3 * sim.time)
 
-    found = {condition: moved(condition) for condition in CONDITIONS}
-    assert found["sticky"] == pytest.approx((0, 0), abs=0.03)
-    assert found["slip"] == pytest.approx((1, 0), abs=0.03)
-    assert found["separate"] == pytest.approx((1, 1), abs=0.03)
+    displacements = {condition: displacement(condition) for condition in CONDITIONS}
+    assert displacements["sticky"] == pytest.approx((0, 0), abs=0.03)
+    assert displacements["slip"] == pytest.approx((1, 0), abs=0.03)
+    assert displacements["separate"] == pytest.approx((1, 1), abs=0.03)
 
 
 @pytest.mark.filterwarnings("ignore:condition:FutureWarning")
 def test_only_separate_lets_a_slab_tip_over_an_edge():
-    def sunk(condition: str) -> float:
-        """Return how far a slab has sunk that reaches 12 of its 20 cm beyond a shelf, m."""
+    def drop(condition: str) -> float:
+        """Return the drop of a slab that reaches 12 of its 20 cm beyond a shelf, m."""
         shelf = Obstacle(
             shape=Shape.box((-0.5, 0.95), (1.0, 0.1)), condition=condition, friction=0.8
         )
@@ -58,15 +58,15 @@ def test_only_separate_lets_a_slab_tip_over_an_edge():
         sim = run(elastic(obstacles=[shelf], bodies=[slab]), 0.45)
         return float(1.02 - sim.positions()[:, -1].mean())
 
-    found = {condition: sunk(condition) for condition in CONDITIONS}
-    assert found["separate"] > 0.1
-    assert abs(found["slip"]) < 0.01 and abs(found["sticky"]) < 0.01
+    drops = {condition: drop(condition) for condition in CONDITIONS}
+    assert drops["separate"] > 0.1
+    assert abs(drops["slip"]) < 0.01 and abs(drops["sticky"]) < 0.01
 
 
 @pytest.mark.filterwarnings("ignore:condition:FutureWarning")
 @pytest.mark.parametrize("condition", ["slip", "separate"])
-def test_a_slab_slides_as_coulomb_says_near_the_limit(condition):
-    """Pull that slip holds at some nodes must not add to the friction at others."""
+def test_a_slab_follows_coulombs_law_near_the_limit(condition):
+    """With slip, tension at some nodes must not add to the friction at others."""
     incline = Incline(40.0, dimension=2)
     scene = incline.scene((2.0, 0.05), 0.8, condition=condition)
     scene.update({"numerics": {"dx": 0.01, "threads": 1, "sleep_speed": 0.0}})
@@ -75,8 +75,8 @@ def test_a_slab_slides_as_coulomb_says_near_the_limit(condition):
     while sim.time < 0.3:
         sim.step(20)
     gained = sim.velocities()[:, [0, -1]].mean(axis=0) @ incline.slope - begin
-    felt = incline.coulomb(0.0) - gained / (sim.time - time)  # tan 40 is 0.84
-    assert felt == pytest.approx(incline.coulomb(0.0) - incline.coulomb(0.8), rel=0.005)
+    friction = incline.coulomb(0.0) - gained / (sim.time - time)  # tan 40 is 0.84
+    assert friction == pytest.approx(incline.coulomb(0.0) - incline.coulomb(0.8), rel=0.005)
 
 
 def collapsed(**numerics: float) -> float:
@@ -89,12 +89,12 @@ def collapsed(**numerics: float) -> float:
 
 
 @pytest.mark.parametrize(
-    ("damping", "agree"), [({"damping_rate": 95.0}, True), ({"flip_ratio": 0.99}, False)]
+    ("damping", "independent"), [({"damping_rate": 95.0}, True), ({"flip_ratio": 0.99}, False)]
 )
-def test_damping_does_not_depend_on_the_step_where_it_is_given_as_a_rate(damping, agree):
+def test_damping_by_a_rate_does_not_depend_on_the_step(damping, independent):
     widths = [collapsed(courant_factor=factor, **damping) for factor in (0.9, 0.6, 0.3)]
     spread = np.ptp(widths) / widths[0]
-    assert spread < 0.02 if agree else spread > 0.08, widths
+    assert spread < 0.02 if independent else spread > 0.08, widths
 
 
 @pytest.mark.parametrize(
@@ -118,11 +118,11 @@ def test_a_share_in_each_step_is_a_mean_rate_over_all_steps(tmp_path):
     expected = -math.log(0.99) * table.steps / table.sim_time_s
     np.testing.assert_allclose(table.damping_rate_per_s, expected, rtol=1e-6)
     facts = json.loads((tmp_path / "run" / "run.json").read_text())
-    whole = -math.log(0.99) * table.steps.sum() / table.sim_time_s.sum()
-    assert facts["damping_rate_per_s"] == pytest.approx(whole, rel=1e-6)
+    mean_rate = -math.log(0.99) * table.steps.sum() / table.sim_time_s.sum()
+    assert facts["damping_rate_per_s"] == pytest.approx(mean_rate, rel=1e-6)
 
 
-def test_a_scheme_stands_for_its_mechanisms() -> None:
+def test_a_scheme_sets_its_mechanisms() -> None:
     scene = Scene.preset("lab-50").set("numerics.scheme", "objective")
     numerics = scene.resolve().data["numerics"]
     assert numerics["transfer"] == "affine_flip"

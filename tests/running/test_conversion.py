@@ -18,18 +18,18 @@ def ridge(shift=0.0, rise=0.0):
     return np.column_stack([x + shift, 0.2 - 0.4 * np.abs(x - 0.5) + rise])
 
 
-def test_outline_difference():
+def test_the_difference_of_outlines():
     assert outline_difference(ridge(), ridge()) == 0
     assert outline_difference(ridge(), ridge(rise=-0.03)) == pytest.approx(0.03)
     assert 0 < outline_difference(ridge(), ridge(shift=0.05)) <= 0.4 * 0.05 + 1e-12
 
 
-def test_outlines_that_do_not_meet():
+def test_outlines_without_overlap_have_no_difference():
     assert np.isnan(outline_difference(ridge(), ridge(shift=2)))
     assert np.isnan(outline_difference(ridge(), np.zeros((0, 2))))
 
 
-def test_a_row_has_all_columns_and_leaves_out_the_panel():
+def test_a_row_has_all_columns_and_excludes_snow_on_the_panel():
     def measure(positions, masses, densities, on_panel):
         return StackMeasure(height=float(positions[~on_panel, 2].max()), length=len(masses))
 
@@ -63,7 +63,7 @@ def test_reseeding_hardly_moves_the_stack(reseeded):
 
 
 def test_reseeded_snow_lies_at_rest_and_keeps_its_event():
-    """Its event is that of the nearest old particle."""
+    """Reseeded snow takes the event of the nearest old particle."""
     scene = tiny_scene(**{"events": {"between": "reseed", "count": 3}})
     simulation = _core.Simulation(scene.resolve().json)
     for event in (1, 2, 3):
@@ -94,7 +94,7 @@ def test_a_reseeded_run_resumes(reseeded, tmp_path, monkeypatch):
     assert first == second
 
 
-def test_snow_that_cannot_be_laid_leaves_the_checkpoint_of_the_event_before(tmp_path, tiny):
+def test_failed_seeding_leaves_the_checkpoint_of_the_previous_event(tmp_path, tiny):
     body = tmp_path / "body.npy"
     np.save(body, np.hypot(*np.mgrid[-2:3, -2:3]) * 0.05 - 0.08)
     shape = Shape.grid(str(body), origin=(1, 0), spacing=0.05)

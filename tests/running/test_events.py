@@ -6,7 +6,7 @@ import pytest
 from helpers.interrupted_runs import compare_tables, interrupt_at
 
 from snowshed import InputError, Interrupted, SimulationError, _core, run_events
-from snowshed.cli import run_output
+from snowshed.cli.output.results import energy_residual
 from snowshed.results.folder import read_events
 from snowshed.running import sequence, stack_run
 
@@ -31,7 +31,7 @@ def test_mass_is_conserved(finished):
     assert list(table.mass_kg + table.on_panel_kg) == pytest.approx([slab, 2 * slab], rel=1e-6)
 
 
-def test_measures_belong_together(finished):
+def test_measures_are_consistent(finished):
     table = read_events(finished)
     assert (table.tail_m - table.head_m).to_numpy() == pytest.approx(table.length_m.to_numpy())
     assert (table.density_kg_m3 * table.volume_m3).to_numpy() == pytest.approx(
@@ -45,20 +45,20 @@ def test_measures_belong_together(finished):
     assert tops == pytest.approx(table.height_m.to_numpy())
 
 
-def test_the_residual_of_the_energy_balance_is_told_and_warned_of(
+def test_the_residual_of_the_energy_balance_is_recorded_and_warned_of(
     finished, tiny, tmp_path, monkeypatch
 ):
     last = json.loads((finished / "run.json").read_text())["finished_events"][-1]
     energy = pd.read_csv(finished / "energy.csv").iloc[-1].drop("event")
     largest = energy.drop("residual_j").abs().max()
     assert last["energy_residual"] == pytest.approx(abs(energy["residual_j"]) / largest)
-    assert last["energy_residual"] == run_output.energy_residual(finished) < 0.01
+    assert last["energy_residual"] == energy_residual(finished) < 0.01
     monkeypatch.setattr(stack_run, "MAX_RESIDUAL", 0.0)
     with pytest.warns(FutureWarning, match=r"event 1: the energy balance has a residual of"):
         run_events(tiny.set("output.energy", True), tmp_path / "out", pictures=False)
 
 
-def test_run_json(finished):
+def test_run_json_records_the_run(finished):
     facts = json.loads((finished / "run.json").read_text())
     table = read_events(finished)
     assert facts["status"] == "finished"
@@ -73,7 +73,7 @@ def test_energy_is_written_on_request(finished):
     assert list(pd.read_csv(finished / "energy.csv").event) == [1, 2]
 
 
-def test_the_run_repeats_from_its_own_scene(finished, tmp_path):
+def test_a_run_is_repeated_from_its_stored_scene(finished, tmp_path):
     from snowshed import ResolvedScene
 
     run_events(ResolvedScene.load(finished / "scene.json"), tmp_path / "again", pictures=False)
@@ -96,22 +96,22 @@ def test_interrupted_and_resumed_equals_uninterrupted(
     compare_tables(finished, tmp_path)
 
 
-def test_the_handler_of_interrupts_is_put_back(tmp_path, tiny):
+def test_the_signal_handler_is_restored(tmp_path, tiny):
     before = signal.getsignal(signal.SIGINT)
     run_events(tiny.set("events.count", 1), tmp_path, pictures=False)
     assert signal.getsignal(signal.SIGINT) is before
 
 
-def test_checkpoints_on_the_way_change_nothing(finished, tmp_path, tiny, monkeypatch):
+def test_intermediate_checkpoints_change_nothing(finished, tmp_path, tiny, monkeypatch):
     monkeypatch.setattr(sequence, "REPORT_INTERVAL", 0.0)
     saved = set()
 
-    def look(progress):
+    def read_checkpoint(progress):
         if (tmp_path / "checkpoint.bin").exists():
             saved.add((tmp_path / "checkpoint.bin").read_bytes())
 
     tiny.update({"output": {"energy": True, "checkpoint_interval": 1e-6}})
-    run_events(tiny, tmp_path, progress=look, pictures=False)
+    run_events(tiny, tmp_path, progress=read_checkpoint, pictures=False)
     assert len(saved) > 3
     compare_tables(finished, tmp_path)
 
@@ -119,14 +119,14 @@ def test_checkpoints_on_the_way_change_nothing(finished, tmp_path, tiny, monkeyp
 def test_a_killed_run_resumes_from_its_last_checkpoint(finished, tmp_path, tiny):
     """Rows that are newer than the checkpoint are written again."""
     tiny.set("output.energy", True)
-    halted = []
+    checkpoints = []
 
     def halt(progress):
-        if progress.event == 2 and not halted:
-            halted.append((tmp_path / "checkpoint.bin").read_bytes())
+        if progress.event == 2 and not checkpoints:
+            checkpoints.append((tmp_path / "checkpoint.bin").read_bytes())
 
     run_events(tiny, tmp_path, progress=halt, pictures=False)
-    (tmp_path / "checkpoint.bin").write_bytes(halted[0])
+    (tmp_path / "checkpoint.bin").write_bytes(checkpoints[0])
     table = run_events(tiny, tmp_path, resume=True, pictures=False)
     assert list(table.event) == [1, 2]
     compare_tables(finished, tmp_path)
@@ -153,7 +153,7 @@ def test_a_truncated_checkpoint_is_refused(tmp_path, tiny):
 
 
 def fail_at(event, error):
-    """A progress reporter that raises an error once snow slides in an event."""
+    """Return a progress reporter that raises an error once snow slides in an event."""
 
     def report(progress):
         if progress.event == event and progress.time > 0:
@@ -163,7 +163,7 @@ def fail_at(event, error):
 
 
 @pytest.mark.parametrize("kind", [SimulationError, InputError])
-def test_a_run_that_cannot_go_on_leaves_a_checkpoint(finished, tmp_path, tiny, monkeypatch, kind):
+def test_a_failed_run_leaves_a_checkpoint(finished, tmp_path, tiny, monkeypatch, kind):
     monkeypatch.setattr(sequence, "REPORT_INTERVAL", 0.0)
     tiny.set("output.energy", True)
     with pytest.raises(kind, match="particle 7"):
@@ -176,28 +176,28 @@ def test_a_run_that_cannot_go_on_leaves_a_checkpoint(finished, tmp_path, tiny, m
     assert list(run_events(tiny, tmp_path, resume=True, pictures=False).event) == [1, 2]
 
 
-def test_what_is_no_failure_of_the_run_is_not_recorded(tmp_path, tiny):
+def test_errors_outside_the_simulation_are_not_recorded_as_failures(tmp_path, tiny):
     with pytest.raises(MemoryError):
         run_events(tiny, tmp_path, progress=fail_at(2, MemoryError()), pictures=False)
     assert json.loads((tmp_path / "run.json").read_text())["status"] == "running"
 
 
-def test_nothing_is_left_when_seeding_fails(tmp_path, tiny):
+def test_failed_seeding_leaves_no_folder(tmp_path, tiny):
     tiny.update({"bodies": [{"shape": {"type": "sphere", "radius": 1e-4, "center": [0, 1]}}]})
     with pytest.raises(InputError, match="/bodies/0"):
         run_events(tiny, tmp_path / "new")
     assert not (tmp_path / "new").exists()
 
 
-def test_snapshots_on_request(tmp_path, tiny):
+def test_snapshots_are_written_on_request(tmp_path, tiny):
     tiny.update({"events.count": 1, "output.snapshot_interval": 0.1})
     run_events(tiny, tmp_path, pictures=False)
     assert len(list((tmp_path / "snapshots").glob("*.vtp"))) > 1
 
 
-def test_progress_goes_from_nothing_to_done(tmp_path, tiny):
-    seen = []
-    run_events(tiny, tmp_path, progress=seen.append, pictures=False)
-    assert [p.event for p in seen] == sorted(p.event for p in seen)
-    assert seen[0].fraction == 0 and seen[-1].fraction == 1
-    assert all(0 <= p.fraction <= 1 for p in seen)
+def test_progress_rises_from_zero_to_one(tmp_path, tiny):
+    reports = []
+    run_events(tiny, tmp_path, progress=reports.append, pictures=False)
+    assert [p.event for p in reports] == sorted(p.event for p in reports)
+    assert reports[0].fraction == 0 and reports[-1].fraction == 1
+    assert all(0 <= p.fraction <= 1 for p in reports)

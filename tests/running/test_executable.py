@@ -62,13 +62,13 @@ def particle_files(folder):
     return {path.name: path.read_bytes() for path in (folder / "particles").iterdir()}
 
 
-def test_gives_the_same_particles_as_python(results, scene, tmp_path):
+def test_the_executable_gives_the_same_particles_as_python(results, scene, tmp_path):
     run_events(ResolvedScene.load(scene), tmp_path, pictures=False)
     assert particle_files(tmp_path) == particle_files(results)
     snapshots = sorted(path.name for path in (results / "snapshots").glob("*.vtp"))
     for name in snapshots:
-        one, other = (folder / "snapshots" / name for folder in (tmp_path, results))
-        assert one.read_bytes() == other.read_bytes()
+        by_python, by_executable = (folder / "snapshots" / name for folder in (tmp_path, results))
+        assert by_python.read_bytes() == by_executable.read_bytes()
     assert [path.name for path in sorted((tmp_path / "snapshots").glob("*.vtp"))] == snapshots
 
 
@@ -80,14 +80,14 @@ def test_threads_change_nothing(results, tmp_path, threads):
     assert particle_files(tmp_path / "out") == particle_files(results)
 
 
-def interrupt(scene, folder, ready):
-    """Start a run and press Ctrl-C as soon as `ready` says so."""
+def interrupt(scene, folder, condition):
+    """Start a run and send Ctrl-C as soon as `condition(folder)` is true."""
     run = subprocess.Popen([EXECUTABLE, scene, "-o", folder, "-q"], stderr=subprocess.PIPE)
-    while run.poll() is None and not ready(folder):
+    while run.poll() is None and not condition(folder):
         time.sleep(0.002)
     run.send_signal(signal.SIGINT)
-    _, said = run.communicate(timeout=120)
-    return run.returncode, said.decode()
+    _, message = run.communicate(timeout=120)
+    return run.returncode, message.decode()
 
 
 @pytest.fixture(scope="module")
@@ -104,9 +104,9 @@ def longer(tmp_path_factory) -> tuple[Path, Path]:
 def test_interrupted_and_resumed_equals_uninterrupted(longer, tmp_path, file):
     scene, results = longer
     out = tmp_path / "out"
-    code, said = interrupt(scene, out, lambda folder: (folder / file).exists())
+    code, message = interrupt(scene, out, lambda folder: (folder / file).exists())
     assert code == 130
-    assert said == f"error: interrupted; resume with: snowshed-run {scene} -o {out} --resume\n"
+    assert message == f"error: interrupted; resume with: snowshed-run {scene} -o {out} --resume\n"
     assert json.loads((out / "run.json").read_text())["status"] == "interrupted"
     assert snowshed_run(scene, "-o", out, "--resume", "-q").returncode == 0
     assert particle_files(out) == particle_files(results)
@@ -121,8 +121,8 @@ def test_resuming_a_finished_run_changes_nothing(results, scene):
     assert particle_files(results) == before
 
 
-def test_a_scene_runs_from_the_results_of_another_folder(tmp_path):
-    """Meshes are found beside the scene file, from wherever the results are."""
+def test_the_scene_of_a_results_folder_can_be_run(tmp_path):
+    """Paths of meshes are relative to the scene file, also in a results folder."""
     from helpers.bad_scenes import CLOSED_MESH
 
     (tmp_path / "post.obj").write_text(CLOSED_MESH)
@@ -154,14 +154,14 @@ def test_bad_scenes_are_refused(bad_scene, tmp_path):  # noqa: F811
         (b'{"snowshed": 2}', "there is no snow"),
     ],
 )
-def test_files_that_are_no_scenes_are_refused(tmp_path, capsys, content, message):
+def test_files_without_a_scene_are_refused(tmp_path, capsys, content, message):
     file, out = tmp_path / "s.json", tmp_path / "out"
     file.write_bytes(content)
     assert_refused(snowshed_run(file, "-o", out), message)
     for command in (["run", str(file), "-o", str(out)], ["plan", str(file)]):
         assert main(command) == 2
-        said = capsys.readouterr()
-        assert message in said.err and said.err.count("\n") == 1 and said.out == ""
+        output = capsys.readouterr()
+        assert message in output.err and output.err.count("\n") == 1 and output.out == ""
     assert list(tmp_path.iterdir()) == [file]
 
 
@@ -178,27 +178,27 @@ def test_files_that_are_no_scenes_are_refused(tmp_path, capsys, content, message
         (["scene.json", "-o", os.fsdecode(b"bad\xff")], "bad?: this name is not UTF-8"),
     ],
 )
-def test_bad_arguments(tmp_path, arguments, message):
+def test_bad_arguments_are_refused(tmp_path, arguments, message):
     assert_refused(snowshed_run(*arguments, cwd=tmp_path), message)
     assert list(tmp_path.iterdir()) == []
 
 
-def test_folders_that_do_not_serve(results, scene, tmp_path):
-    other = tmp_path / "other.json"
-    tiny_scene(**{"panel.tilt": 55}).resolve().save(other)
+def test_unsuitable_folders_are_refused(results, scene, tmp_path):
+    other_scene = tmp_path / "other.json"
+    tiny_scene(**{"panel.tilt": 55}).resolve().save(other_scene)
     before = sorted(path.name for path in results.iterdir())
     assert_refused(snowshed_run(scene, "-o", results), "not empty")
     assert_refused(snowshed_run(scene, "-o", scene), "is not a folder")
-    assert_refused(snowshed_run(other, "-o", results, "--resume"), "another scene")
+    assert_refused(snowshed_run(other_scene, "-o", results, "--resume"), "another scene")
     assert_refused(snowshed_run(scene, "-o", tmp_path / "new", "--resume"), "nothing to resume")
     assert_refused(snowshed_run(scene, "-o", tmp_path, "--resume"), "nothing to resume")
     assert sorted(path.name for path in results.iterdir()) == before
-    assert list(tmp_path.iterdir()) == [other]
+    assert list(tmp_path.iterdir()) == [other_scene]
 
 
-def test_a_folder_that_cannot_be_made(scene, tmp_path):
+def test_a_folder_that_cannot_be_made_is_refused(scene, tmp_path):
     (tmp_path / "loop").symlink_to("loop")
-    for folder in ("loop/out", "a" * 300):  # nobody can make these, root included
+    for folder in ("loop/out", "a" * 300):  # impossible even for root
         assert_refused(snowshed_run(scene, "-o", tmp_path / folder), folder)
     assert [path.name for path in tmp_path.iterdir()] == ["loop"]
 
@@ -212,23 +212,25 @@ def test_a_damaged_checkpoint_is_refused(results, scene, tmp_path, capsys, damag
     (tmp_path / "scene.json").write_bytes((results / "scene.json").read_bytes())
     assert_refused(snowshed_run(scene, "-o", tmp_path, "--resume"), "checkpoint.bin")
     assert main(["run", str(scene), "-o", str(tmp_path), "--resume"]) == 2
-    said = [one for one in capsys.readouterr().err.splitlines() if not one.startswith("note: ")]
-    assert len(said) == 1 and "checkpoint.bin" in said[0]
+    errors = [
+        line for line in capsys.readouterr().err.splitlines() if not line.startswith("note: ")
+    ]
+    assert len(errors) == 1 and "checkpoint.bin" in errors[0]
     assert (tmp_path / "checkpoint.bin").read_bytes() == content
     assert len(list(tmp_path.iterdir())) == 2
 
 
 @pytest.fixture(scope="module")
 def measured(longer, tmp_path_factory) -> Path:
-    """The folder of the longer scene, run by Python in one go."""
+    """The folder of the longer scene, run by Python without interruption."""
     folder = tmp_path_factory.mktemp("measured")
     run_events(ResolvedScene.load(longer[0]), folder, pictures=False)
     return folder
 
 
-def begin_with_executable(scene, out, where):
-    """Stop it within the first event, or kill it once the only checkpoint is that of its end."""
-    if where == "within":
+def begin_with_executable(scene, out, moment):
+    """Stop a run within its first event, or kill it after the checkpoint at the event's end."""
+    if moment == "within":
         interrupt(scene, out, lambda folder: (folder / "scene.json").exists())
         return
     run = subprocess.Popen([EXECUTABLE, scene, "-o", out, "-q"])
@@ -238,38 +240,36 @@ def begin_with_executable(scene, out, where):
     run.wait()
 
 
-def begin_with_python(scene, out, where):
-    """Stop it within the second event, or keep the folder as it was when that began."""
-    ready = ResolvedScene.load(scene)
-    if where == "within":
+def begin_with_python(scene, out, moment):
+    """Stop a run within its second event, or copy its folder when that event begins."""
+    resolved = ResolvedScene.load(scene)
+    if moment == "within":
         with pytest.raises(Interrupted):
-            run_events(ready, out, progress=interrupt_at(2, 0.1), pictures=False)
+            run_events(resolved, out, progress=interrupt_at(2, 0.1), pictures=False)
         return
 
-    def keep(progress):
+    def copy_folder(progress):
         if progress.event == 2 and not out.exists():
-            shutil.copytree(beside, out)
+            shutil.copytree(uninterrupted, out)
 
-    beside = out.with_name("beside")
-    run_events(ready, beside, progress=keep, pictures=False)
+    uninterrupted = out.with_name("beside")
+    run_events(resolved, uninterrupted, progress=copy_folder, pictures=False)
 
 
-@pytest.mark.parametrize("where", ["within", "between"])
-def test_python_goes_on_with_what_the_executable_began(longer, measured, tmp_path, where):
+@pytest.mark.parametrize("moment", ["within", "between"])
+def test_python_resumes_a_run_of_the_executable(longer, measured, tmp_path, moment):
     scene, _ = longer
-    begin_with_executable(scene, tmp_path / "out", where)
+    begin_with_executable(scene, tmp_path / "out", moment)
     assert not (tmp_path / "out" / "events.csv").exists()
     run_events(ResolvedScene.load(scene), tmp_path / "out", resume=True, pictures=False)
     assert_same_results(tmp_path / "out", measured)
 
 
-@pytest.mark.parametrize("where", ["within", "between"])
-def test_the_executable_goes_on_with_what_python_began(
-    longer, measured, tmp_path, monkeypatch, where
-):
+@pytest.mark.parametrize("moment", ["within", "between"])
+def test_the_executable_resumes_a_run_of_python(longer, measured, tmp_path, monkeypatch, moment):
     monkeypatch.setattr(sequence, "REPORT_INTERVAL", 0.0)
     scene, results = longer
-    begin_with_python(scene, tmp_path / "out", where)
+    begin_with_python(scene, tmp_path / "out", moment)
     done = snowshed_run(scene, "-o", tmp_path / "out", "--resume")
     assert done.returncode == 0
     assert done.stderr.endswith(
@@ -286,27 +286,27 @@ def assert_same_results(out, measured):
     for name in ("particles.pvd", "snapshots/snapshots.pvd"):
         assert (out / name).read_bytes() == (measured / name).read_bytes()
     for name in ("events.csv", "outline.csv"):
-        one, other = (pd.read_csv(folder / name) for folder in (out, measured))
-        one, other = (table.drop(columns="wall_s", errors="ignore") for table in (one, other))
-        pd.testing.assert_frame_equal(one, other, rtol=1e-4, atol=1e-6)
-    facts, whole = (json.loads((f / "run.json").read_text()) for f in (out, measured))
-    assert facts["status"] == "finished" and facts.keys() == whole.keys()
-    assert facts["steps"] == whole["steps"]
+        tables = (pd.read_csv(folder / name) for folder in (out, measured))
+        table, expected = (table.drop(columns="wall_s", errors="ignore") for table in tables)
+        pd.testing.assert_frame_equal(table, expected, rtol=1e-4, atol=1e-6)
+    facts, expected_facts = (json.loads((f / "run.json").read_text()) for f in (out, measured))
+    assert facts["status"] == "finished" and facts.keys() == expected_facts.keys()
+    assert facts["steps"] == expected_facts["steps"]
 
 
-def test_a_stack_that_ages_is_not_the_executables(results, scene, tmp_path):
+def test_the_executable_refuses_stacks_that_age(results, scene, tmp_path):
     shutil.copytree(results, tmp_path / "out")
     (tmp_path / "out" / "ageing.json").write_text("{}")
     assert_refused(snowshed_run(scene, "-o", tmp_path / "out", "--resume"), "ages between events")
 
 
-def test_help_version_and_schema():
+def test_help_version_and_schema_are_printed():
     assert snowshed_run("--help").stdout.startswith("usage: snowshed-run")
     assert snowshed_run("--version").stdout == f"{_core.version}\n"
     assert json.loads(snowshed_run("--schema").stdout) == json.loads(_core.scene_schema())
 
 
-def test_other_kernels_do_not_go_on(tmp_path):
+def test_other_kernels_do_not_resume_a_run(tmp_path):
     first, scene = tmp_path / "out", tmp_path / "scene.json"
     tiny_scene(**{"events.max_time": 0.05}).resolve().save(scene)
     for kernels, code in (("junk", 2), ("baseline", 0)):
@@ -315,11 +315,11 @@ def test_other_kernels_do_not_go_on(tmp_path):
     assert "note: this processor has no AVX2: runs take two to five times" in done.stderr
     present = {**os.environ, "SNOWSHED_KERNELS": "avx2"}
     done = snowshed_run(scene, "-o", first, "--resume", env=present)
-    if "can run" not in done.stderr:  # a machine that has them
+    if "can run" not in done.stderr:  # a machine with AVX2
         assert done.returncode == 2 and 'made with the kernels "baseline"' in done.stderr
 
 
-def test_a_changed_mesh_does_not_go_on(tmp_path):
+def test_a_run_with_a_changed_mesh_is_not_resumed(tmp_path):
     out, scene, mesh = tmp_path / "out", tmp_path / "scene.json", tmp_path / "a.obj"
     mesh.write_text(CLOSED_MESH)
     shape = {"type": "mesh", "file": "a.obj", "scale": 0.1}

@@ -16,16 +16,16 @@ from snowshed.running.extension import extend_run, extended_scene
 from snowshed.scene.scene import resolve_scene
 
 
-def prints_of(folder):
+def fingerprints(folder):
     files = [path for path in sorted(folder.rglob("*")) if path.is_file()]
     return {str(f.relative_to(folder)): hashlib.sha256(f.read_bytes()).digest() for f in files}
 
 
 @pytest.mark.parametrize("between", ["carry", "reseed"])
-def test_more_events_are_those_of_a_run_that_had_them_from_the_start(tmp_path, between):
+def test_an_extended_run_equals_a_run_with_all_events(tmp_path, between):
     scene = tiny_scene(**{"output.energy": True, "events.between": between})
     run_events(scene.set("events.count", 1), tmp_path / "one", pictures=False)
-    before = prints_of(tmp_path / "one")
+    before = fingerprints(tmp_path / "one")
     extend_run(tmp_path / "one", tmp_path / "more", 2, pictures=False)
     run_events(scene.set("events.count", 3), tmp_path / "three", pictures=False)
     compare_tables(tmp_path / "more", tmp_path / "three")
@@ -34,24 +34,26 @@ def test_more_events_are_those_of_a_run_that_had_them_from_the_start(tmp_path, b
     names += ["conversions.csv"] * (between == "reseed")
     for name in names:
         assert (tmp_path / "more" / name).read_bytes() == (tmp_path / "three" / name).read_bytes()
-    assert prints_of(tmp_path / "one") == before
+    assert fingerprints(tmp_path / "one") == before
 
 
-def test_other_snow_lies_on_the_old(finished, tmp_path):
+def test_new_snow_lies_on_the_old_snow(finished, tmp_path):
     light = Snow(density=120.0, cohesion=0.05)
     table = extend_run(finished, tmp_path / "new", 1, snow=light, thickness=0.04, pictures=False)
     assert table.event.tolist() == [1, 2, 3]
     pd.testing.assert_frame_equal(table[:2], Results(finished).events, check_exact=True)
     particles = Results(tmp_path / "new").particles()
-    of_light = particles["event"].values == 3
-    assert np.array_equal(particles["material_id"].values == 1, of_light)
-    mass = float(particles["mass"].values[of_light].sum())
+    is_light = particles["event"].values == 3
+    assert np.array_equal(particles["material_id"].values == 1, is_light)
+    mass = float(particles["mass"].values[is_light].sum())
     assert mass == pytest.approx(120 * 0.245 * 0.04, rel=1e-5)
     repeated = Simulation.load(tmp_path / "new" / "checkpoint.bin")
     assert [snow.density for snow in repeated.snows] == [210.0, 120.0]
 
 
-@pytest.mark.parametrize("energy", [False, True])  # particles without, and with their snow's number
+@pytest.mark.parametrize(
+    "energy", [False, True]
+)  # without and with the snow's number for each particle
 def test_the_old_snow_keeps_its_state(tmp_path, energy):
     scene = tiny_scene(**{"events.count": 1, "output.energy": energy}).resolve()
     run_events(scene, tmp_path, pictures=False)
@@ -62,10 +64,10 @@ def test_the_old_snow_keeps_its_state(tmp_path, energy):
                  "preconsolidation_pressure", "volumetric_plastic_strain", "event"):  # fmt: skip
         assert np.array_equal(before.field_by_id(name), after.field_by_id(name)), name
     assert len(before.snows) == 1 and len(after.snows) == 2
-    other = scene.copied_data()
-    other["snow"]["density"] = 150.0
+    changed = scene.copied_data()
+    changed["snow"]["density"] = 150.0
     with pytest.raises(InputError, match="does not name its snows first"):
-        _core.Simulation.load_into(json.dumps(other), ".", file)
+        _core.Simulation.load_into(json.dumps(changed), ".", file)
 
 
 def test_an_extended_run_can_be_extended_and_resumed(tmp_path, monkeypatch):
@@ -80,11 +82,13 @@ def test_an_extended_run_can_be_extended_and_resumed(tmp_path, monkeypatch):
     extend_run(tmp_path / "b", tmp_path / "d", 1, pictures=False)
     compare_tables(tmp_path / "c", tmp_path / "d")
     assert resumed.event.tolist() == [1, 2, 3]
-    thicknesses = [one["thickness"] for one in Results(tmp_path / "d").scene.data["slab"]["layers"]]
-    assert thicknesses == [0.02, 0.03, 0.03]  # as before
+    thicknesses = [
+        layer["thickness"] for layer in Results(tmp_path / "d").scene.data["slab"]["layers"]
+    ]
+    assert thicknesses == [0.02, 0.03, 0.03]  # new layers take the last thickness
 
 
-def test_an_aged_stack_goes_on_ageing_as_before(tmp_path):
+def test_an_extended_run_keeps_its_ageing(tmp_path):
     ageing = Ageing({2: [Interval(86400.0, -5.0)]}, settling="vionnet-2012")
     run_events(tiny_scene(), tmp_path / "two", ageing=ageing, pictures=False)
     extend_run(tmp_path / "two", tmp_path / "three", 1, pictures=False)
@@ -92,7 +96,7 @@ def test_an_aged_stack_goes_on_ageing_as_before(tmp_path):
     assert pd.read_csv(tmp_path / "three" / "ageing.csv").event.tolist() == [2]
 
 
-def test_what_cannot_be_extended_is_refused_and_nothing_is_written(finished, tmp_path, monkeypatch):
+def test_impossible_extensions_are_refused_without_files(finished, tmp_path, monkeypatch):
     monkeypatch.setattr(sequence, "REPORT_INTERVAL", 0.0)
     new = tmp_path / "new"
     with pytest.raises(InputError, match="not a run that can be extended"):
@@ -112,7 +116,7 @@ def test_what_cannot_be_extended_is_refused_and_nothing_is_written(finished, tmp
     assert not new.exists() and sorted(tmp_path.iterdir()) == [tmp_path / "a"]
 
 
-def test_a_thickness_is_of_one_layer(finished):
+def test_a_thickness_needs_a_single_layer(finished):
     scene = Results(finished).scene
     layers = [{"thickness": 0.01}, {"thickness": 0.02}, {"thickness": 0.01, "event": 2}]
     data = scene.copied_data()
@@ -120,16 +124,19 @@ def test_a_thickness_is_of_one_layer(finished):
     several = resolve_scene(data)
     with pytest.raises(InputError, match="/slab/layers: several"):
         extended_scene(several, 1, thickness=0.02)
-    found = extended_scene(several, 1, snow=Snow(density=100.0)).data["slab"]["layers"]
-    told = [(one["event"], one["thickness"], one.get("snow", {}).get("density")) for one in found]
-    assert told == [
+    extended_layers = extended_scene(several, 1, snow=Snow(density=100.0)).data["slab"]["layers"]
+    rows = [
+        (layer["event"], layer["thickness"], layer.get("snow", {}).get("density"))
+        for layer in extended_layers
+    ]
+    assert rows == [
         *((1, 0.01, None), (1, 0.02, None)),  # the snow of the scene
         *((2, 0.01, None), (2, 0.02, None), (2, 0.01, None)),
         *((3, 0.01, 100.0), (3, 0.02, 100.0)),
     ]
 
 
-def test_the_command(finished, tmp_path, capsys):
+def test_the_command_extends_a_run(finished, tmp_path, capsys):
     new = str(tmp_path / "new")
     assert main(["extend", str(finished), "--events", "1", "--snow", "reference", "-o", new]) == 0
     out = capsys.readouterr().out

@@ -9,7 +9,7 @@ from helpers.grain_files import VOXEL, column_of_grains, write_labels
 
 from snowshed import GrainsSettings, InputError, LoadingStage
 from snowshed.analysis.tomography.example import example_grains
-from snowshed.analysis.tomography.sphere_snow import sphere_snow
+from snowshed.analysis.tomography.sphere_packing import sphere_snow
 from snowshed.base.interrupt import Interrupted
 from snowshed.base.notes import record_notes
 from snowshed.io.vtk.vtp import read_particles
@@ -21,7 +21,7 @@ from snowshed.scene import grains_scene
 
 @pytest.fixture
 def scene(tmp_path):
-    """Three cubes on each other, pressed by a five-hundredth of their height."""
+    """Three stacked cubes, compressed by a five-hundredth of their height."""
     return grains_scene(
         write_labels(tmp_path),
         VOXEL,
@@ -30,8 +30,8 @@ def scene(tmp_path):
     ).update({"gravity": 0})
 
 
-def test_what_is_synthetic_is_called_so(scene, tmp_path):
-    """The sample's folder or the title says so; a user's own image is not called synthetic."""
+def test_synthetic_samples_are_marked(scene, tmp_path):
+    """The sample's folder or the title marks them; a user's own image is not marked."""
     short = scene.set("loading.0.strain", 1e-5)
     assert run(short, tmp_path / "own", pictures=False).summary.synthetic is None
     facts = {"voxel_size_m": VOXEL, "synthetic": True, "source": "synthetic: by hand"}
@@ -44,7 +44,7 @@ def test_what_is_synthetic_is_called_so(scene, tmp_path):
     assert run(titled, tmp_path / "titled", pictures=False).summary.synthetic is not None
 
 
-def test_figures_and_curve_tell_the_same(scene, tmp_path):
+def test_figures_agree_with_the_curve(scene, tmp_path):
     summary = run(scene, tmp_path / "out", pictures=False).summary
     curve = LoadingCurve.read(tmp_path / "out/curve.csv")
     stored = json.loads((tmp_path / "out/grains.json").read_text())
@@ -58,8 +58,8 @@ def test_figures_and_curve_tell_the_same(scene, tmp_path):
     assert 100 < len(curve) <= 302
 
 
-def test_the_modulus_of_a_column_is_that_of_its_springs(scene, tmp_path):
-    """Between grains and at the plates lie 16 springs of E r each, four such layers in series."""
+def test_the_modulus_of_a_column_follows_from_its_springs(scene, tmp_path):
+    """Four layers in series, between grains and at the plates, of 16 springs with E r each."""
     scene.update({"loading.0.strain": 2e-4, "loading.0.speed": 0.002})
     scene.update({"numerics.density_scaling": 1.0, "numerics.damping": 0.5})
     summary = run(scene, tmp_path / "out", pictures=False).summary
@@ -81,7 +81,7 @@ def test_a_column_is_as_strong_as_its_bonds(scene, tmp_path):
     assert summary.broken_in_tension > 0 and summary.broken_in_tension % 16 == 0
 
 
-def test_an_interrupted_test_goes_on_to_the_same_files(scene, tmp_path):
+def test_an_interrupted_test_resumes_to_the_same_files(scene, tmp_path):
     run(scene, tmp_path / "whole", pictures=False)
 
     def stop(progress):
@@ -92,26 +92,28 @@ def test_an_interrupted_test_goes_on_to_the_same_files(scene, tmp_path):
         run(scene, tmp_path / "two", progress=stop, pictures=False)
     run(scene, tmp_path / "two", resume=True, pictures=False)
     for name in ("curve.csv", "grains.json", "contacts.csv"):
-        whole, two = ((tmp_path / folder / name).read_bytes() for folder in ("whole", "two"))
-        assert whole == two
+        expected, resumed = ((tmp_path / folder / name).read_bytes() for folder in ("whole", "two"))
+        assert expected == resumed
 
 
-def test_a_test_that_was_killed_before_it_began_makes_the_same_film(scene, tmp_path):
-    """The film's resolution is that of the grains, which are not there before the first event."""
+def test_a_test_killed_before_its_first_event_makes_the_same_film(scene, tmp_path):
+    """The film's resolution depends on the grains, which exist only from the first event on."""
     run(scene, tmp_path / "whole", pictures=False)
     with open_sequence(scene.resolve(), tmp_path / "two", resume=False):
         pass
     run(scene, tmp_path / "two", resume=True, pictures=False)
-    whole, two = ((tmp_path / folder / "film.bin").read_bytes() for folder in ("whole", "two"))
-    assert whole == two
+    expected, resumed = (
+        (tmp_path / folder / "film.bin").read_bytes() for folder in ("whole", "two")
+    )
+    assert expected == resumed
 
 
 def test_threads_do_not_change_the_curve(scene, tmp_path):
     for threads in (1, 2):
         scene.set("numerics.threads", threads)
         run(scene, tmp_path / str(threads), pictures=False)
-    one, two = ((tmp_path / f"{n}/curve.csv").read_bytes() for n in (1, 2))
-    assert one == two
+    single, parallel = ((tmp_path / f"{n}/curve.csv").read_bytes() for n in (1, 2))
+    assert single == parallel
 
 
 def test_the_energy_balance_is_written(scene, tmp_path):
@@ -132,15 +134,15 @@ def test_snapshots_hold_the_spheres_of_the_grains(scene, tmp_path):
     summary = run(scene, tmp_path / "out", pictures=False).summary
     files = sorted((tmp_path / "out/snapshots").glob("*.vtp"))
     assert len(files) > 3
-    found = read_particles(files[0])
-    assert len(found["grain"]) == summary.spheres
+    snapshot = read_particles(files[0])
+    assert len(snapshot["grain"]) == summary.spheres
     labels = column_of_grains()
-    assert (np.bincount(found["grain"]) == (labels == 1).sum() - 8).all()
-    assert (found["bonded_grains"][found["grain"] == 1] == 2).all()
+    assert (np.bincount(snapshot["grain"]) == (labels == 1).sum() - 8).all()
+    assert (snapshot["bonded_grains"][snapshot["grain"] == 1] == 2).all()
 
 
-def test_the_strength_is_that_of_a_finely_sampled_run(scene, tmp_path):
-    """Many short stages have a row for nearly each step of a long one; both take the same steps."""
+def test_the_strength_agrees_with_a_finely_sampled_run(scene, tmp_path):
+    """Many short stages have a row for nearly every step; the steps are those of a single stage."""
     snow = sphere_snow((16, 16, 16), VOXEL, diameter=5e-4, density=300, seed=1)
     write_labels(tmp_path, snow.labels)
     scene.set("loading.0.strain", 0.04)
@@ -157,7 +159,7 @@ def test_the_strength_is_that_of_a_finely_sampled_run(scene, tmp_path):
     assert coarse.strength_pa == pytest.approx(finest, rel=2e-3)
 
 
-def test_plates_that_never_touch_the_snow_leave_nulls(scene, tmp_path):
+def test_without_contact_with_the_plates_figures_are_null(scene, tmp_path):
     labels = column_of_grains()
     labels[:2] = labels[-2:] = 0
     write_labels(tmp_path, labels)
@@ -167,16 +169,16 @@ def test_plates_that_never_touch_the_snow_leave_nulls(scene, tmp_path):
     assert "the plates never touched the snow" in " ".join(stored["notes"])
 
 
-def test_labels_in_several_places_are_told_and_stored(scene, tmp_path):
+def test_labels_with_several_pieces_are_noted_and_recorded(scene, tmp_path):
     labels = column_of_grains()
     labels[labels == 3] = 1
     write_labels(tmp_path, labels)
     short = scene.set("loading.0.strain", 1e-5)
-    with record_notes() as told:
+    with record_notes() as notes:
         summary = run(short, tmp_path / "out", pictures=False).summary
-    assert told == list(summary.sample_notes)
-    assert "1 of 2 labels lie in several places, 3 pieces in all" in told[0]
-    assert json.loads((tmp_path / "out/grains.json").read_text())["sample_notes"] == told
+    assert notes == list(summary.sample_notes)
+    assert "1 of 2 labels lie in several places, 3 pieces in all" in notes[0]
+    assert json.loads((tmp_path / "out/grains.json").read_text())["sample_notes"] == notes
     split = run(short.set("sample.split_labels", True), tmp_path / "split", pictures=False).summary
     assert (summary.final_particles, split.final_particles) == (2, 3)
 
@@ -199,15 +201,15 @@ def test_the_example_draws_its_pictures(tmp_path):
 
 
 def test_progress_begins_at_once_and_names_the_stage(scene, tmp_path):
-    told = []
-    run(scene, tmp_path / "out", progress=told.append, pictures=False)
-    assert told[0].fraction == 0.0 and told[-1].fraction == 1.0
-    assert told[0].doing.startswith("stage 1 of 1, compress: 0.0%")
+    reports = []
+    run(scene, tmp_path / "out", progress=reports.append, pictures=False)
+    assert reports[0].fraction == 0.0 and reports[-1].fraction == 1.0
+    assert reports[0].doing.startswith("stage 1 of 1, compress: 0.0%")
 
 
 def test_other_methods_have_no_curve(tmp_path):
     from snowshed import Scene, _core
 
-    ready = Scene.preset("lab-50").resolve()
+    resolved = Scene.preset("lab-50").resolve()
     with pytest.raises(InputError, match='/method: is not "grains"'):
-        _core.Simulation(ready.json).grains_curve()
+        _core.Simulation(resolved.json).grains_curve()

@@ -31,17 +31,17 @@ def test_five_events_come_to_rest_off_the_panel(table):
     assert table.sim_time_s.between(0.4, 3).all()
 
 
-#: What an independent program gives for this scene, m; a stack's noise is 2 to 6 %, after the
-#: fifth event up to 16 %.
+#: Results of an independent program for this scene, m. A stack's noise is 2 to 6 %, after the fifth
+#: event up to 16 %.
 HEIGHTS = [0.045, 0.072, 0.097, 0.122, 0.147]
 LENGTHS = [0.22, 0.31, 0.33, 0.38, 0.41]
 
 
-def test_stack_has_the_size_it_should(table):
-    """Within a fifth of the independent program's; see also test_laboratory_stacks.py."""
-    for values, other in ((table.height_m, HEIGHTS), (table.length_m, LENGTHS)):
-        assert values[:4].to_numpy() == pytest.approx(other[:4], rel=0.2)
-        assert values[4] == pytest.approx(other[4], rel=0.3)
+def test_the_stack_has_the_size_of_an_independent_program(table):
+    """The tolerance is a fifth; see also test_laboratory_stacks.py."""
+    for values, expected in ((table.height_m, HEIGHTS), (table.length_m, LENGTHS)):
+        assert values[:4].to_numpy() == pytest.approx(expected[:4], rel=0.2)
+        assert values[4] == pytest.approx(expected[4], rel=0.3)
     assert (table.detached_kg < 0.05 * table.mass_kg).all()
     assert (table.body_length_m <= table.length_m * 1.05).all()
 
@@ -60,7 +60,7 @@ def test_the_head_walks_toward_the_panel(table):
     assert np.polyfit(table.event, table.head_m, 1)[0] < 0
 
 
-def test_outlines_are_those_of_the_stacks(lab, table):
+def test_outlines_agree_with_the_measures(lab, table):
     outlines = pd.read_csv(lab / "outline.csv").groupby("event")
     assert outlines.z.max().to_numpy() == pytest.approx(table.height_m.to_numpy())
     assert outlines.x.min().to_numpy() == pytest.approx(table.head_m.to_numpy())

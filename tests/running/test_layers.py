@@ -23,7 +23,7 @@ def layered_scene(**values: object) -> Scene:
     return scene.update({"slab.thickness": None, "slab.layers": layers})
 
 
-def test_a_layer_takes_what_it_leaves_out_from_the_scenes_snow():
+def test_a_layer_takes_missing_properties_from_the_scenes_snow():
     scene = layered_scene(**{"snow.cohesion": 0.15})
     layers = scene.resolve().data["slab"]["layers"]
     assert layers[0]["snow"]["density"] == 100
@@ -42,12 +42,12 @@ def test_layers_bring_their_own_snow_in_their_events(tmp_path):
     simulation = _core.Simulation.load(str(folder / "checkpoint.bin"))
     kinds, masses = simulation.material_ids(), simulation.masses()
     assert [json.loads(snow)["density"] for snow in simulation.snows] == [100, 210, 150]
-    of_each = [masses[kinds == kind].sum() for kind in range(3)]
-    assert of_each == pytest.approx([2 * area * 2, 2 * area * 4.2, area * 3], rel=1e-5)
+    mass_by_snow = [masses[kinds == kind].sum() for kind in range(3)]
+    assert mass_by_snow == pytest.approx([2 * area * 2, 2 * area * 4.2, area * 3], rel=1e-5)
     assert b'Name="material_id"' in (folder / "particles" / "event_002.vtp").read_bytes()[:4000]
 
 
-def test_reseeding_converts_each_snow_by_itself(tmp_path):
+def test_reseeding_converts_each_snow_separately(tmp_path):
     scene = layered_scene(**{"events.between": "reseed"})
     simulation = _core.Simulation(scene.resolve().json)
     simulation.begin_event()
@@ -62,7 +62,7 @@ def test_reseeding_converts_each_snow_by_itself(tmp_path):
         assert masses[1] == pytest.approx(masses[0], rel=1e-6)
 
 
-def test_one_snow_needs_no_kinds(finished):
+def test_a_single_snow_needs_no_material_ids(finished):
     simulation = _core.Simulation.load(str(finished / "checkpoint.bin"))
     assert len(simulation.snows) == 1
     assert (
@@ -73,7 +73,7 @@ def test_one_snow_needs_no_kinds(finished):
     assert b'Name="material_id"' not in first.read_bytes()
 
 
-def test_bodies_may_have_snow_of_their_own():
+def test_bodies_may_have_their_own_snow():
     scene = Scene(dimension=2)
     for x in (0.0, 1.0):
         scene.append("bodies", Body(shape=Shape.sphere((x, 1.0), 0.1)))
@@ -100,7 +100,7 @@ def test_bad_layers_are_refused(changes, message):
         layered_scene().update(changes).resolve()
 
 
-def test_layers_on_the_command_line(tmp_path):
+def test_the_command_line_takes_layers(tmp_path):
     layers = ['{"thickness": 0.02, "snow": {"density": 100}}', '{"thickness": 0.03}']
     options = [word for layer in layers for word in ("--layer", layer)]
     file = tmp_path / "scene.json"

@@ -1,4 +1,4 @@
-"""Notes of runs: as warnings, on the command line and in run.json, in every way of running."""
+"""Notes of runs: as warnings, on the command line and in run.json, from every interface."""
 
 import json
 import warnings
@@ -29,24 +29,24 @@ def notes_of(folder):
     return json.loads((folder / "run.json").read_text())["notes"]
 
 
-def test_run_events_says_and_keeps_what_is_odd_before_and_after(tmp_path):
-    with pytest.warns(SnowshedNote), record_notes() as said:
+def test_run_events_warns_and_records_notes(tmp_path):
+    with pytest.warns(SnowshedNote), record_notes() as notes:
         run_events(tiny_scene(**{"panel.friction": 3.0}), tmp_path / "run", pictures=False)
-    assert said == notes_of(tmp_path / "run")
-    assert [note.split(":")[0] for note in said] == [
+    assert notes == notes_of(tmp_path / "run")
+    assert [note.split(":")[0] for note in notes] == [
         "the slab is 20 mm thick, less than two cells of 20 mm",
         "nothing slid",
     ]
 
 
-def test_misplaced_snow_is_refused_or_told_alike_everywhere(tmp_path, capsys):
+def test_every_interface_notes_or_refuses_misplaced_snow(tmp_path, capsys):
     scene = ball_in_ground()
     with pytest.warns(SnowshedNote), record_notes() as in_memory:
         Simulation(scene).begin_event()
     assert len(in_memory) == 1 and "of its particles lie below the ground" in in_memory[0]
-    with pytest.warns(SnowshedNote), record_notes() as said:
+    with pytest.warns(SnowshedNote), record_notes() as notes:
         run_events(scene, tmp_path / "run", pictures=False)
-    assert said == in_memory == notes_of(tmp_path / "run")
+    assert notes == in_memory == notes_of(tmp_path / "run")
     file = tmp_path / "scene.json"
     scene.resolve().save(file)
     assert main(["run", str(file), "-o", str(tmp_path / "other")]) == 0
@@ -63,7 +63,7 @@ def test_misplaced_snow_is_refused_or_told_alike_everywhere(tmp_path, capsys):
     assert not (tmp_path / "refused").exists()
 
 
-def test_quiet_runs_say_nothing_and_keep_their_notes(tmp_path, capsys):
+def test_quiet_runs_print_nothing_and_record_their_notes(tmp_path, capsys):
     file = tmp_path / "scene.json"
     ball_in_ground().resolve().save(file)
     assert main(["run", str(file), "-o", str(tmp_path / "run"), "-q"]) == 0
@@ -71,7 +71,7 @@ def test_quiet_runs_say_nothing_and_keep_their_notes(tmp_path, capsys):
     assert len(notes_of(tmp_path / "run")) == 1
 
 
-def test_a_resumed_run_keeps_each_note_once(tmp_path):
+def test_a_resumed_run_records_each_note_once(tmp_path):
     scene, folder = ball_in_ground(), tmp_path / "run"
     with pytest.warns(SnowshedNote):
         run_events(scene, folder, pictures=False)
@@ -80,16 +80,16 @@ def test_a_resumed_run_keeps_each_note_once(tmp_path):
     assert notes_of(folder) == before
 
 
-def test_the_command_scene_says_what_panel_would(tmp_path, capsys):
+def test_the_command_scene_prints_the_notes_of_panel(tmp_path, capsys):
     options = ["--preset", "lab-50", "--dim", "2", "--dx", "0.02"]
     assert main(["scene", *options, "-o", str(tmp_path / "scene.json")]) == 0
-    said = capsys.readouterr().err
-    assert said.startswith("note: the slab is 20 mm thick, less than two cells of 20 mm")
-    assert notes_of_beginning(tiny_scene().resolve())[0] in said
+    output = capsys.readouterr().err
+    assert output.startswith("note: the slab is 20 mm thick, less than two cells of 20 mm")
+    assert notes_of_beginning(tiny_scene().resolve())[0] in output
 
 
 @pytest.mark.parametrize("kind", ["column", "mps slab"])
-def test_notes_speak_of_what_the_scene_has(kind):
+def test_notes_refer_to_parts_of_the_scene(kind):
     if kind == "column":
         assert notes_before(tiny_mps().resolve().data) == []
         return
@@ -98,21 +98,21 @@ def test_notes_speak_of_what_the_scene_has(kind):
     assert note.endswith("two spacings of 50 mm: its stack is coarse; try spacing = 0.025 m")
 
 
-def test_nothing_is_said_of_a_panel_or_of_structures_that_a_scene_has_not():
+def test_no_notes_on_parts_that_the_scene_lacks():
     import pandas as pd
 
-    held = pd.DataFrame({"mass_kg": [1.0], "on_panel_kg": [0.0], "on_structures_kg": [1.0]})
+    table = pd.DataFrame({"mass_kg": [1.0], "on_panel_kg": [0.0], "on_structures_kg": [1.0]})
     shelf = {"obstacles": [{"name": "shelf"}]}
-    assert notes_after(held, shelf) == ["50 % of the snow stays on structures"]
-    held = pd.DataFrame({"mass_kg": [1.0], "on_panel_kg": [0.9], "on_structures_kg": [0.1]})
+    assert notes_after(table, shelf) == ["50 % of the snow stays on structures"]
+    table = pd.DataFrame({"mass_kg": [1.0], "on_panel_kg": [0.9], "on_structures_kg": [0.1]})
     bare = {"panel": {}, "obstacles": []}
-    assert notes_after(held, bare) == ["50 % of the snow stays on the panel"]
-    assert notes_after(held, {**bare, **shelf}) == [
+    assert notes_after(table, bare) == ["50 % of the snow stays on the panel"]
+    assert notes_after(table, {**bare, **shelf}) == [
         "50 % of the snow stays on the panel or on structures"
     ]
 
 
-def test_snow_added_by_hand_keeps_out_of_the_ground_and_of_other_snow():
+def test_added_snow_must_not_overlap_ground_or_snow():
     simulation = Simulation(ball_in_ground(misplaced_snow="refuse", bodies=[
         {"shape": {"type": "sphere", "center": [0, 0.1], "radius": 0.1}}
     ]))  # fmt: skip
@@ -121,19 +121,19 @@ def test_snow_added_by_hand_keeps_out_of_the_ground_and_of_other_snow():
     with warnings.catch_warnings():
         warnings.simplefilter("error", SnowshedNote)
         simulation.add_snow([[0.3, 0.1], [0.3, 0.11]])
-    for place in ([0.3, -0.1], [0.0, 0.1]):
+    for position in ([0.3, -0.1], [0.0, 0.1]):
         with pytest.raises(InputError, match=r"^positions: 100 % of its particles lie"):
-            simulation.add_snow([place])
+            simulation.add_snow([position])
     assert simulation.particle_count == before + 2
 
 
-@pytest.mark.parametrize("place", ["beside", "hole"])
-def test_a_release_beside_the_terrain_or_over_a_hole_is_refused(tmp_path, place):
+@pytest.mark.parametrize("position", ["beside", "hole"])
+def test_a_release_beside_the_terrain_or_over_a_hole_is_refused(tmp_path, position):
     raster = plane()
-    if place == "hole":
+    if position == "hole":
         raster.heights[10, 10] = np.nan
     write_ascii_grid(tmp_path / "dem.asc", raster)
-    west = -10 if place == "beside" else 10
+    west = -10 if position == "beside" else 10
     outline = [[west, 10], [west + 20, 10], [west + 20, 30], [west, 30]]
     release = [{"outline": outline, "thickness": 0.5}]
     data = {"snowshed": 2, "method": "slide", "misplaced_snow": "allow"}
@@ -163,6 +163,6 @@ def test_grains_begin_between_their_plates_and_below_the_cone(tmp_path):
     assert spheres[:, 2].max() <= (height - radius) * (1 + 1e-9)
     row = {name: values[0] for name, values in simulation._core.grains_curve().items()}
     assert row["cone_force_n"] == pytest.approx(0.0, abs=1e-9)
-    with record_notes() as said:
+    with record_notes() as notes:
         run(scene, tmp_path / "run", pictures=False)
-    assert said == notes_of(tmp_path / "run") == []
+    assert notes == notes_of(tmp_path / "run") == []

@@ -1,4 +1,4 @@
-"""A simulation in memory: its fields, what changes it, and misuse."""
+"""A simulation in memory: its fields, changes and misuse."""
 
 import gc
 import json
@@ -41,7 +41,7 @@ def random_scene(dimension, precision, model="cam_clay"):
 # --- fields --------------------------------------------------------------------------------
 
 
-def test_views_show_what_a_step_changed(falling):
+def test_views_show_the_changes_of_a_step(falling):
     view = falling.fields["velocity_z"].values
     before = view.copy()
     at_start = falling._core.sorts
@@ -51,23 +51,23 @@ def test_views_show_what_a_step_changed(falling):
     assert not np.array_equal(falling.fields["velocity_z"].values, before)
 
 
-def test_a_stored_field_is_no_copy(falling):
-    one, other = (falling.fields["mass"].values for _ in range(2))
-    assert np.shares_memory(one, other)
+def test_stored_fields_are_views(falling):
+    first, second = (falling.fields["mass"].values for _ in range(2))
+    assert np.shares_memory(first, second)
     assert falling.fields["mass"].stored and not falling.fields["density"].stored
 
 
-def test_views_outlive_what_they_show(falling):
-    """A view keeps its memory when particles are sorted or added and the simulation is gone."""
+def test_views_outlive_their_simulation(falling):
+    """A view keeps its memory when particles are sorted or added, or the simulation is deleted."""
     views = {name: field.values for name, field in falling.fields.items()}
     falling.run(until=falling.time + 0.1)
     falling.add_snow(np.random.default_rng(1).uniform(0, 0.3, (5000, 2)) + [0, 0.5])
-    kept = {name: view.copy() for name, view in views.items()}
+    copies = {name: view.copy() for name, view in views.items()}
     del falling
     gc.collect()
     clutter = [np.full(len(views["mass"]), 7.0, dtype=np.float32) for _ in range(200)]
     for name, view in views.items():
-        assert np.array_equal(view, kept[name]), name
+        assert np.array_equal(view, copies[name]), name
     del clutter
 
 
@@ -81,7 +81,7 @@ def test_views_cannot_be_written_to(falling):
 
 @pytest.mark.parametrize("precision", ["float", "double"])
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_fields_say_their_type_and_shape(dimension, precision):
+def test_fields_have_type_shape_and_unit(dimension, precision):
     simulation = Simulation(random_scene(dimension, precision))
     simulation.begin_event()
     n = simulation.particle_count
@@ -90,8 +90,8 @@ def test_fields_say_their_type_and_shape(dimension, precision):
         size = {"position": (3,), "velocity": (3,), "affine": (3, 3)}.get(name, ())
         assert field.values.shape == (n, *size), name
         assert field.values.dtype == field.dtype, name
-        whole = {"id": np.uint32, "event": np.uint16, "material_id": np.uint8}
-        assert field.dtype == whole.get(name, own if field.stored else np.float64), name
+        integers = {"id": np.uint32, "event": np.uint16, "material_id": np.uint8}
+        assert field.dtype == integers.get(name, own if field.stored else np.float64), name
         assert field.unit and field.description
     assert ("velocity_y" in simulation.fields) == (dimension == 3)
     with pytest.raises(KeyError, match="no field 'masss'; allowed: position, "):
@@ -101,7 +101,7 @@ def test_fields_say_their_type_and_shape(dimension, precision):
 @pytest.mark.parametrize("model", ["cam_clay", "elastic"])
 @pytest.mark.parametrize("precision", ["float", "double"])
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_order_by_id_has_the_bits_of_what_is_stored(dimension, precision, model):
+def test_order_by_id_has_the_stored_bits(dimension, precision, model):
     simulation = Simulation(random_scene(dimension, precision, model))
     simulation.begin_event()
     simulation.step(150)
@@ -114,14 +114,14 @@ def test_order_by_id_has_the_bits_of_what_is_stored(dimension, precision, model)
         assert np.array_equal(by_id, field.values[order]), name
 
 
-def test_components_are_columns_of_the_whole(falling):
+def test_components_are_columns_of_the_vector(falling):
     fields = falling.fields
     assert np.array_equal(fields["velocity"].values[:, 0], fields["velocity_x"].values)
     assert np.array_equal(fields["velocity"].values[:, 2], fields["velocity_z"].values)
     assert not fields["velocity"].values[:, 1].any()
 
 
-def test_density_and_pressure_follow_from_what_is_stored(falling):
+def test_density_and_pressure_follow_from_stored_fields(falling):
     """p = -K ln J_e and rho = rho_0 / (J_e J_p) relative to the initial plastic strain."""
     fields, snow = falling.fields, falling.snows[0]
     b = {axes: fields[f"be_minus_identity_{axes}"].by_id() for axes in ("xx", "zz", "xz")}
@@ -140,7 +140,7 @@ def test_density_and_pressure_follow_from_what_is_stored(falling):
 
 
 @pytest.mark.parametrize("name", ARRAYS)
-def test_methods_read_in_either_order(falling, name):
+def test_methods_return_either_order(falling, name):
     assert 0 < falling.on_panel().mean() < 1
     by_id, stored = getattr(falling, name)(), getattr(falling, name)(order="storage")
     assert np.array_equal(by_id[falling.ids("storage")], stored)
@@ -169,41 +169,41 @@ def test_run_until_a_time_stops_at_the_step_that_reaches_it(falling):
 
 
 def test_run_until_a_condition_holds(falling):
-    seen = []
+    steps = []
 
     def sinks(simulation):
-        seen.append(simulation.steps)
-        return len(seen) == 4
+        steps.append(simulation.steps)
+        return len(steps) == 4
 
     assert falling.run(until=sinks, every=5) == "reached"
-    assert np.diff(seen).tolist() == [5, 5, 5]
+    assert np.diff(steps).tolist() == [5, 5, 5]
     assert falling.run(until=lambda simulation: False) == "time_limit"
     assert falling.time == pytest.approx(1.0, abs=0.01)
 
 
 def test_the_core_and_the_class_step_to_the_same_bits(tiny):
-    ready = tiny.resolve()
-    core = _core.Simulation(ready.json, ready.base_dir)
+    resolved = tiny.resolve()
+    core = _core.Simulation(resolved.json, resolved.base_dir)
     core.begin_event()
     core.step(200)
-    for scene in (tiny, ready, json.loads(ready.json)):
+    for scene in (tiny, resolved, json.loads(resolved.json)):
         simulation = Simulation(scene)
         simulation.begin_event()
         simulation.step(200)
         assert np.array_equal(simulation.positions(), core.positions())
 
 
-def test_saved_between_events_it_goes_on_to_the_same_bits(tiny, tmp_path):
+def test_a_saved_simulation_continues_to_the_same_bits(tiny, tmp_path):
     simulation = Simulation(tiny)
     simulation.begin_event()
     simulation.run()
     simulation.save(tmp_path / "checkpoint.bin")
-    again = Simulation.load(tmp_path / "checkpoint.bin")
-    for one in (simulation, again):
-        one.begin_event()
-        one.run(until=0.2)
-    assert np.array_equal(simulation.positions(), again.positions())
-    assert again.event == 2
+    loaded = Simulation.load(tmp_path / "checkpoint.bin")
+    for each in (simulation, loaded):
+        each.begin_event()
+        each.run(until=0.2)
+    assert np.array_equal(simulation.positions(), loaded.positions())
+    assert loaded.event == 2
 
 
 # --- changing ------------------------------------------------------------------------------
@@ -219,7 +219,7 @@ def test_added_snow_has_the_mass_and_velocity_given(falling):
     assert falling.densities()[n:] == pytest.approx(falling.snows[0].density)
 
 
-def test_added_snow_weighs_what_seeded_snow_does(tiny):
+def test_added_snow_has_the_mass_of_seeded_snow(tiny):
     simulation = Simulation(tiny)
     simulation.begin_event()
     seeded = simulation.masses().mean()
@@ -270,10 +270,10 @@ def test_velocities_are_added_to_each_or_to_all(falling):
         falling.add_velocity(changes[:-1])
 
 
-# --- what it tells -------------------------------------------------------------------------
+# --- results -------------------------------------------------------------------------------
 
 
-def test_dataset_has_units_and_ids(falling):
+def test_the_dataset_has_units_and_ids(falling):
     xarray = pytest.importorskip("xarray")
     dataset = falling.to_xarray()
     assert isinstance(dataset, xarray.Dataset)
@@ -284,7 +284,7 @@ def test_dataset_has_units_and_ids(falling):
     assert float(dataset["time"]) == falling.time
 
 
-def test_measure_is_that_of_its_particles(falling):
+def test_the_measure_uses_the_particles(falling):
     falling.run()
     expected = measure_stack(
         falling.positions(),
@@ -298,7 +298,7 @@ def test_measure_is_that_of_its_particles(falling):
     assert falling.measure().on_panel_mass == expected.on_panel_mass
 
 
-def test_energy_is_an_error_where_none_is_kept(tiny, falling):
+def test_energy_without_a_balance_is_refused(tiny, falling):
     with pytest.raises(InputError, match="/output/energy: false"):
         falling.energy()
     simulation = Simulation(tiny.set("output.energy", True))
@@ -308,7 +308,7 @@ def test_energy_is_an_error_where_none_is_kept(tiny, falling):
     assert simulation.energy()["gravitational"] == pytest.approx(9.81 * (mass * z).sum())
 
 
-def test_snows_are_those_of_the_scene(falling):
+def test_snows_come_from_the_scene(falling):
     assert isinstance(falling.snows[0], Snow)
     assert falling.snows[0].density == falling.scene.data["snow"]["density"]
 
@@ -364,10 +364,10 @@ def test_a_second_thread_is_refused_while_the_first_computes(tiny):
 
 
 def test_threads_that_race_for_a_simulation_all_end(tiny):
-    """Many calls at once: each is answered or refused, and the snow stays whole."""
+    """Each of many simultaneous calls succeeds or is refused, and positions stay finite."""
     simulation = Simulation(tiny)
     simulation.begin_event()
-    refused, wrong = [], []
+    refused, errors = [], []
 
     def use(call):
         for _ in range(100):
@@ -376,7 +376,7 @@ def test_threads_that_race_for_a_simulation_all_end(tiny):
             except RuntimeError as error:
                 refused.append(str(error))
             except Exception as error:
-                wrong.append(error)
+                errors.append(error)
 
     calls = (lambda: simulation.step(20), simulation.positions, lambda: simulation.step(7))
     threads = [threading.Thread(target=use, args=[call]) for call in calls]
@@ -384,13 +384,13 @@ def test_threads_that_race_for_a_simulation_all_end(tiny):
         thread.start()
     for thread in threads:
         thread.join()
-    assert not wrong
+    assert not errors
     assert np.isfinite(simulation.positions()).all()
 
 
 def test_within_run_the_simulation_can_be_read_but_not_changed(tiny):
-    ready = tiny.resolve()
-    core = _core.Simulation(ready.json, ready.base_dir)
+    resolved = tiny.resolve()
+    core = _core.Simulation(resolved.json, resolved.base_dir)
     core.begin_event()
 
     def observe(report):
@@ -399,4 +399,4 @@ def test_within_run_the_simulation_can_be_read_but_not_changed(tiny):
 
     with pytest.raises(RuntimeError, match="step: called from within run, whose callback may read"):
         core.run(observe, 0.0)
-    core.step()  # what was refused has left nothing locked
+    core.step()  # the refused call left no lock

@@ -13,9 +13,9 @@ import pytest
 from snowshed import InputError
 from snowshed.base.interrupt import Interrupted
 from snowshed.io.raster.raster import Raster, read_raster, write_ascii_grid
+from snowshed.methods import slide_states
 from snowshed.plot import slide_page
 from snowshed.running.run import run
-from snowshed.running.slide_history import particles_at
 from snowshed.scene import Area, Events, Scene, Terrain, example_slide
 
 pytestmark = pytest.mark.usefixtures("undrawn")
@@ -36,7 +36,7 @@ def slope(tmp_path) -> Scene:
     )
 
 
-def test_figures_and_maps_tell_the_same(slope, tmp_path):
+def test_figures_agree_with_maps(slope, tmp_path):
     summary = run(slope, tmp_path / "out", pictures=False).summary
     sloping = 24.0 * 24.0 / math.cos(math.radians(38.0))
     assert summary.released_kg == pytest.approx(sloping * 0.5 * 300.0, rel=1e-9)
@@ -53,7 +53,7 @@ def test_figures_and_maps_tell_the_same(slope, tmp_path):
     assert summary.peak_speed_m_s == pytest.approx(block, rel=0.06)
 
 
-def test_an_interrupted_slide_goes_on_to_the_same_maps(slope, tmp_path):
+def test_an_interrupted_slide_resumes_to_the_same_maps(slope, tmp_path):
     run(slope, tmp_path / "whole", pictures=False)
 
     def stop(progress):
@@ -64,17 +64,16 @@ def test_an_interrupted_slide_goes_on_to_the_same_maps(slope, tmp_path):
         run(slope, tmp_path / "two", progress=stop, pictures=False)
     run(slope, tmp_path / "two", resume=True, pictures=False)
     for name in ("peaks/pfv.asc", "peaks/pft.asc", "flow/FT.asc"):
-        whole, two = ((tmp_path / folder / name).read_bytes() for folder in ("whole", "two"))
-        assert whole == two
+        expected, resumed = ((tmp_path / folder / name).read_bytes() for folder in ("whole", "two"))
+        assert expected == resumed
 
 
-def test_particles_after_some_steps(slope):
-    found = particles_at(slope, [0, 3])
-    assert list(found[0].columns) == ["ID", "x", "y", "z", "ux", "uy", "uz", "m", "h"]
-    assert (found[0][["ux", "uy", "uz"]] == 0).all(axis=None)
+def test_particles_accelerate_by_gravity_less_friction(slope):
+    start, later = slide_states(slope, steps=[0, 3])
+    assert (start.particles["velocity"] == 0).all()
     # From rest under gravity less friction, in three steps of a hundredth of a second.
     a = 9.81 * (math.sin(math.radians(38)) - 0.325 * math.cos(math.radians(38)))
-    speed = np.linalg.norm(found[3][["ux", "uy", "uz"]], axis=1)
+    speed = np.linalg.norm(later.particles["velocity"], axis=1)
     assert np.median(speed) == pytest.approx(a * 0.03, rel=0.05)
 
 
@@ -100,7 +99,7 @@ def test_the_example_draws_its_map(tmp_path, drawn):
     ("path", "value", "message"),
     [
         ("events.count", 2, "/events/count: 2 events; a slide has 1"),
-        ("dimension", 2, "/dimension: a slide moves over ground in space"),
+        ("dimension", 2, "/dimension: a slide needs three dimensions"),
         ("terrain.release.0.thickness", 0, "/terrain/release/0/thickness: 0 is outside"),
         (
             "terrain.release.0.outline",
@@ -115,35 +114,55 @@ def test_the_example_draws_its_map(tmp_path, drawn):
         ),
     ],
 )
-def test_bad_slides_are_named(slope, path, value, message):
+def test_bad_slides_are_refused(slope, path, value, message):
     with pytest.raises(InputError, match=message):
         slope.set(path, value).resolve()
 
 
-def test_a_release_beyond_the_terrain_leaves_nothing_behind(slope, tmp_path):
+def test_a_release_beyond_the_terrain_is_refused_without_files(slope, tmp_path):
     slope.terrain.release[0].outline = [(0, 0), (9, 0), (9, 9)]
     with pytest.raises(InputError, match="/terrain/release/0: reaches beyond the terrain"):
         run(slope, tmp_path / "out")
     assert not (tmp_path / "out").exists()
 
 
+def test_states_are_those_of_times_or_steps_in_the_given_order(slope):
+    by_steps = slide_states(slope, steps=[3, 0, 3])
+    assert [(state.steps, state.time) for state in by_steps] == [(3, 0.03), (0, 0.0), (3, 0.03)]
+    (by_time,) = slide_states(slope, [0.03])
+    assert by_time.particles.identical(by_steps[0].particles)
+    assert by_time.particles["thickness"].attrs["units"] == "m"
+    wrong = [
+        ({}, "either times or steps"),
+        ({"times": [1.0], "steps": [1]}, "either times or steps"),
+        ({"times": [-1.0]}, "times: -1.0; a time from 0 s"),
+        ({"steps": [-1]}, "steps: -1; an integer from 0"),
+    ]
+    for arguments, message in wrong:
+        with pytest.raises(InputError, match=message):
+            slide_states(slope, **arguments)
+    with pytest.raises(InputError, match='/method: is not "slide"'):
+        slide_states(Scene.preset("lab-50").update({"dimension": 2}), [0.0])
+
+
 def test_snapshots_hold_thickness_speed_and_bonds_as_lines(slope, tmp_path):
     from xml.etree import ElementTree
 
     from snowshed.io.vtk.vtp import APPENDED_HEAD, read_particles
-    from snowshed.running.slide_history import slide_states
 
     slope.update({"numerics.max_strain": 0.02, "output.snapshot_interval": 0.5})
     run(slope, tmp_path / "out", pictures=False)
     files = sorted((tmp_path / "out/snapshots").glob("*.vtp"))
     assert len(files) == 5  # at 0, 0.5, ..., 2 s
     (state,) = slide_states(slope, [1.0])
-    found = read_particles(files[2])
-    places, count = np.unique(state.bonds, return_counts=True)
-    assert len(state.bonds) > 0 and (found["bonds"][places] == count).all()
-    assert found["bonds"].sum() == 2 * len(state.bonds)
-    assert found["thickness"] == pytest.approx(state.thickness, rel=1e-6)
-    assert found["speed"] == pytest.approx(np.linalg.norm(found["velocity"], axis=1), rel=1e-5)
+    snapshot = read_particles(files[2])
+    particles, count = np.unique(state.bonds, return_counts=True)
+    assert len(state.bonds) > 0 and (snapshot["bonds"][particles] == count).all()
+    assert snapshot["bonds"].sum() == 2 * len(state.bonds)
+    assert snapshot["thickness"] == pytest.approx(state.quantities["thickness"], rel=1e-6)
+    assert snapshot["speed"] == pytest.approx(
+        np.linalg.norm(snapshot["velocity"], axis=1), rel=1e-5
+    )
     head, _, data = files[2].read_bytes().partition(APPENDED_HEAD)
     lines = ElementTree.fromstring(head + b"</VTKFile>").find("PolyData/Piece/Lines")
     offset = int(lines[0].attrib["offset"]) + 8
@@ -158,7 +177,7 @@ run(sys.argv[1], sys.argv[2])
 """
 
 
-def test_the_page_of_a_killed_slide_is_whole_when_it_is_resumed(tmp_path, monkeypatch, drawn):
+def test_the_page_of_a_killed_slide_is_complete_after_resuming(tmp_path, monkeypatch, drawn):
     scene = example_slide(tmp_path).set("output.checkpoint_interval", 0.05)
     (tmp_path / "scene.json").write_text(scene.resolve().json)
     drawn = []
@@ -177,8 +196,8 @@ def test_the_page_of_a_killed_slide_is_whole_when_it_is_resumed(tmp_path, monkey
     straight, resumed = drawn
     assert [frame.time for frame in resumed] == [frame.time for frame in straight]
     assert len(straight) > 20 and straight[0].time == 0.0
-    for one, other in zip(resumed, straight):
-        np.testing.assert_array_equal(one.thickness, other.thickness)
+    for frame, expected in zip(resumed, straight):
+        np.testing.assert_array_equal(frame.thickness, expected.thickness)
 
 
 def test_a_slide_without_film_has_a_page_without_it(slope, tmp_path, drawn):

@@ -36,7 +36,7 @@ STEPS = {
 
 
 @pytest.mark.parametrize(("method", "name"), [(m, n) for m, names in STEPS.items() for n in names])
-def test_a_step_that_gets_nowhere_is_refused_before_the_run(method, name, tmp_path):
+def test_a_tiny_step_is_refused_before_the_run(method, name, tmp_path):
     scene = scene_of(method, tmp_path)
     for value in TINY:
         scene.set(f"numerics.{name}", value)
@@ -50,14 +50,14 @@ def test_a_step_that_gets_nowhere_is_refused_before_the_run(method, name, tmp_pa
 
 @pytest.mark.parametrize("method", STEPS)
 @pytest.mark.parametrize("interval", ["snapshot_interval", "film_interval"])
-def test_records_without_end_are_refused(method, interval, tmp_path):
+def test_tiny_output_intervals_are_refused(method, interval, tmp_path):
     scene = scene_of(method, tmp_path).set(f"output.{interval}", 1e-300)
     with pytest.raises(InputError, match=rf"^/output/{interval}: .*at most 1e6 are allowed"):
         run(scene, tmp_path / "out", pictures=False)
 
 
 @pytest.mark.parametrize("method", ["mpm", "mps", "slide"])
-def test_an_event_ends_at_its_time_limit_to_a_step(method, tmp_path):
+def test_an_event_ends_within_a_step_of_its_time_limit(method, tmp_path):
     limit = {"mpm": 0.0501, "mps": 0.1234, "slide": 0.9}[method]
     scene = scene_of(method, tmp_path).update({"events.max_time": limit, "events.rest_time": limit})
     run(scene, tmp_path / "out", pictures=False)
@@ -82,7 +82,7 @@ def test_steps_that_divide_the_time_limit_reach_it_exactly(tmp_path):
     assert event["steps"] == 10
 
 
-def test_snow_does_not_rest_by_not_moving_for_no_time(tmp_path):
+def test_a_rest_time_of_zero_does_not_end_an_event_at_once(tmp_path):
     scene = tiny_scene(**{"events.count": 1, "events.rest_time": 0.0})
     table = run_events(scene, tmp_path / "out", pictures=False)
     assert table["steps"].iloc[0] > 0 and table["sim_time_s"].iloc[0] > 0

@@ -15,7 +15,7 @@ from snowshed.scene.schema import properties, resolve, scene_schema
 NODES = components()
 
 
-def test_the_sources_are_those_that_are_written():
+def test_the_sources_are_up_to_date():
     command = [sys.executable, "-m", "tools.components", "--check"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -45,18 +45,18 @@ class Panel(Record):
 """
 
 
-def test_fields_are_added_removed_and_explained_and_all_else_stays():
+def test_fields_are_updated_and_other_code_stays():
     panel = next(record for record in NODES if record.__name__ == "Panel")
     new = with_described_fields(SOURCE, {"Panel": (panel, NODES[panel])})
     assert "removed" not in new
-    assert "    tilt: Optional[float] = None\n" in new
+    assert "    tilt: Optional[float] = default(40.0)\n" in new
     assert "        Tilt from the horizontal [degrees]. 0 <= value < 90; default 40" in new
     assert "    By hand.\n" in new
     assert new.endswith(SOURCE[SOURCE.index("    lower_edge_height") :])
     assert with_described_fields(new, {"Panel": (panel, NODES[panel])}) == new
 
 
-def test_the_package_exports_the_settings_of_the_methods_in_the_registry_alone():
+def test_the_package_exports_the_settings_of_registered_methods_only():
     stub = "from ._core import X as X\nfrom .methods.old.settings import O as O\nfrom .pv import P"
     first, *settings, last = with_settings_exports(stub).split("\n")
     assert [line.rpartition(" ")[2] for line in settings] == sorted(
@@ -66,7 +66,7 @@ def test_the_package_exports_the_settings_of_the_methods_in_the_registry_alone()
 
 
 @pytest.mark.parametrize("record", NODES, ids=lambda record: record.__name__)
-def test_enumerations_and_other_names_are_those_of_the_schema(record):
+def test_enumerations_and_aliases_agree_with_the_schema(record):
     hints = typing.get_type_hints(record)
     aliases = {}
     for key, child in properties(scene_schema(), NODES[record]).items():

@@ -1,4 +1,4 @@
-"""Scenes of version 1, whose "slip" is "separate" now."""
+"""Scenes of version 1, whose "slip" is now "separate"."""
 
 import json
 
@@ -34,43 +34,43 @@ def test_slip_of_version_1_is_read_as_separate_with_a_note(old_file):
         assert Scene.load(old_file).resolve().data == data
 
 
-def test_the_command_line_says_so_in_a_line(old_file, capsys):
+def test_the_command_line_prints_this_note(old_file, capsys):
     assert main(["plan", str(old_file)]) == 0
-    said = capsys.readouterr().err.splitlines()
-    (note,) = [line for line in said if "/panel/condition" in line]
+    lines = capsys.readouterr().err.splitlines()
+    (note,) = [line for line in lines if "/panel/condition" in line]
     assert note.startswith(f"note: {old_file}: /panel/condition: ")
 
 
 @pytest.mark.filterwarnings("error")
-def test_slip_of_version_2_is_slip_and_its_new_meaning_is_said(tmp_path):
+def test_slip_of_version_2_stays_slip_with_a_note(tmp_path):
     scene = tiny_scene().set("panel.condition", "slip")
     with pytest.warns(FutureWarning, match='use "separate" for the behaviour of version 1'):
-        ready = scene.resolve()
-    assert ready.data["panel"]["condition"] == "slip"
-    ready.save(tmp_path / "new.json")
-    assert ResolvedScene.load(tmp_path / "new.json") == ResolvedScene(ready.json, str(tmp_path))
+        resolved = scene.resolve()
+    assert resolved.data["panel"]["condition"] == "slip"
+    resolved.save(tmp_path / "new.json")
+    assert ResolvedScene.load(tmp_path / "new.json") == ResolvedScene(resolved.json, str(tmp_path))
     with pytest.warns(FutureWarning, match='use "separate" for the behaviour of version 1'):
         tiny_scene().append(
             "obstacles", Obstacle(shape=Shape.sphere((9, 0), 1), condition="slip")
         ).resolve()
 
 
-def test_runs_stored_with_version_1_are_found():
-    now = RunKey.of(tiny_scene().resolve())
-    data = json.loads(now.scene)
+def test_runs_stored_with_version_1_have_the_same_hash():
+    present = RunKey.of(tiny_scene().resolve())
+    data = json.loads(present.scene)
     assert data["panel"]["condition"] == "separate"
     old = {**data, "snowshed": 1, "panel": {**data["panel"], "condition": "slip"}}
-    assert content_hash(old) == now.hash
-    # "separate" of version 1 and "slip" of today give other runs.
-    hashes = {now.hash}
+    assert content_hash(old) == present.hash
+    # "separate" of version 1 and the present "slip" give other runs.
+    hashes = {present.hash}
     for version, condition in ((1, "separate"), (2, "slip"), (2, "sticky")):
-        other = {**data, "snowshed": version}
-        hashes.add(content_hash({**other, "panel": {**data["panel"], "condition": condition}}))
+        changed = {**data, "snowshed": version}
+        hashes.add(content_hash({**changed, "panel": {**data["panel"], "condition": condition}}))
     assert len(hashes) == 4
     assert with_current_names(old) == data
 
 
-def test_a_damping_rate_and_a_flip_ratio_are_not_given_together():
+def test_damping_rate_and_flip_ratio_exclude_each_other():
     with pytest.raises(_core.InputError, match="takes the place of flip_ratio; give one"):
         MpmSettings(flip_ratio=0.9, damping_rate=50.0)
     both = {"flip_ratio": 0.9, "damping_rate": 50.0}
@@ -80,7 +80,7 @@ def test_a_damping_rate_and_a_flip_ratio_are_not_given_together():
         Scene.from_data({"numerics": both})
 
 
-def test_of_flip_ratio_and_damping_rate_the_last_one_wins():
+def test_the_last_of_flip_ratio_and_damping_rate_applies():
     scene = Scene.preset("lab-50").set("numerics.damping_rate", 50.0)
     numerics = scene.resolve().data["numerics"]
     assert numerics["damping_rate"] == 50.0 and "flip_ratio" not in numerics

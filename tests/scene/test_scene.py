@@ -28,41 +28,41 @@ from snowshed.scene.schema import (
 SCHEMA = scene_schema()
 
 
-def check_mirror(record: type[Record], node: dict, seen: set) -> None:
-    """Compare a record's fields with the core's properties, and so on inward."""
+def check_mirror(record: type[Record], node: dict, checked: set) -> None:
+    """Compare a record's fields with the core's properties, recursively."""
     inner = properties(SCHEMA, node)
-    if record is not MpmSettings:  # the schema has the settings of all methods there
+    if record is not MpmSettings:  # this node of the schema has the settings of all methods
         assert set(record.keys()) == set(inner), record
-    seen.add(record)
+    checked.add(record)
     for key in record.keys():  # noqa: SIM118 (a class method, not a mapping's)
         kind = record().record_type(key)
         full = resolve(SCHEMA, inner[key])
         child = full.get("items", inner[key])
         assert (kind is not None) == bool(properties(SCHEMA, child)), key
-        if kind is not None and kind not in seen:
-            check_mirror(kind, child, seen)
+        if kind is not None and kind not in checked:
+            check_mirror(kind, child, checked)
 
 
-def test_fields_are_the_properties_of_the_cores_schema():
-    seen: set = set()
-    check_mirror(Scene, SCHEMA, seen)
-    assert len(seen) == 22  # every record except the settings of other methods
+def test_fields_agree_with_the_cores_schema():
+    checked: set = set()
+    check_mirror(Scene, SCHEMA, checked)
+    assert len(checked) == 22  # every record except the settings of other methods
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_settings_are_those_of_the_cores_schema(method):
+def test_settings_agree_with_the_cores_schema(method):
     inner = properties(SCHEMA, schema_of_method(method)["properties"]["numerics"])
     assert set(METHODS[method].settings.keys()) == set(inner)
 
 
-def test_the_last_value_wins(tiny):
+def test_the_last_value_applies(tiny):
     tiny.set("snow.density", 300).update({"snow": {"density": 250, "cohesion": 0.3}})
     assert tiny.resolve().data["snow"]["density"] == 250
     assert tiny.resolve().data["snow"]["cohesion"] == 0.3
-    assert tiny.resolve().data["snow"]["youngs_modulus"] == 1e6  # kept by the update
+    assert tiny.resolve().data["snow"]["youngs_modulus"] == 1e6  # unchanged by the update
 
 
-def test_append_and_override_items(tiny):
+def test_items_are_appended_and_changed(tiny):
     tiny.append("obstacles", Obstacle("post", Shape.sphere((0.5, 0.1), 0.05)))
     tiny.append("obstacles", {"shape": {"type": "box", "center": [1, 0], "size": [0.1, 0.1]}})
     tiny.set("obstacles.1.friction", 0.7)
@@ -72,7 +72,7 @@ def test_append_and_override_items(tiny):
     assert isinstance(tiny.obstacles[1], Obstacle)
 
 
-def test_objects_on_the_way_are_created():
+def test_missing_parts_of_a_path_are_created():
     assert Scene().set("panel.tilt", 30).to_data()["panel"] == {"tilt": 30}
 
 
@@ -85,17 +85,17 @@ def test_objects_on_the_way_are_created():
         ("obstacles.0", "/obstacles/0: set a key"),
     ],
 )
-def test_wrong_paths_are_named(tiny, path, message):
+def test_wrong_paths_are_refused(tiny, path, message):
     with pytest.raises(InputError, match=message):
         tiny.set(path, 1)
 
 
-def test_values_that_are_not_finite(tiny):
+def test_values_that_are_not_finite_are_refused(tiny):
     with pytest.raises(InputError, match="/panel/tilt: nan is not a finite number"):
         tiny.set("panel.tilt", float("nan")).resolve()
 
 
-def test_a_failed_call_leaves_the_scene_as_it_was(tiny):
+def test_a_failed_call_does_not_change_the_scene(tiny):
     before = tiny.to_data()
     for change in (
         lambda: tiny.set("domain.mn", 1),
@@ -108,7 +108,7 @@ def test_a_failed_call_leaves_the_scene_as_it_was(tiny):
     assert tiny.to_data() == before and tiny.domain is None
 
 
-def test_the_method_decides_what_the_settings_are(tiny):
+def test_the_method_determines_the_settings(tiny):
     assert tiny.set("method", "mpm").resolve() == Scene.from_data(tiny.to_data()).resolve()
     assert "method" not in tiny.resolve().data
     with pytest.raises(
@@ -126,9 +126,9 @@ def test_the_former_name_of_the_courant_factor_is_read(tmp_path, tiny):
     data = {**tiny.to_data(), "numerics": {"dx": 0.02, "step_factor": 0.5}}
     (tmp_path / "scene.json").write_text(json.dumps(data))
     for load in (Scene.load, ResolvedScene.load):
-        ready = load(tmp_path / "scene.json")
-        ready = ready.resolve() if isinstance(ready, Scene) else ready
-        assert ready.data["numerics"]["courant_factor"] == 0.5
+        scene = load(tmp_path / "scene.json")
+        scene = scene.resolve() if isinstance(scene, Scene) else scene
+        assert scene.data["numerics"]["courant_factor"] == 0.5
     assert tiny.set("numerics.step_factor", 0.4).numerics.courant_factor == 0.4
 
 
@@ -137,20 +137,20 @@ def test_errors_of_the_core_name_the_path(tiny):
         tiny.set("snow.poissons_ratio", 0.5).resolve()
 
 
-def test_numpy_values_are_welcome(tiny):
+def test_numpy_values_are_accepted(tiny):
     tiny.set("domain", {"min": np.array([-2, -1]), "max": np.array([2.0, 2.0])})
     tiny.set("panel.tilt", np.float32(45))
     assert tiny.resolve().data["domain"]["min"] == [-2, -1]
 
 
-def test_save_and_load(tmp_path, tiny):
-    ready = tiny.resolve()
-    ready.save(tmp_path / "scene.json")
-    assert ResolvedScene.load(tmp_path / "scene.json").data == ready.data
-    assert Scene.load(tmp_path / "scene.json").resolve().data == ready.data
+def test_a_saved_scene_is_read_back(tmp_path, tiny):
+    resolved = tiny.resolve()
+    resolved.save(tmp_path / "scene.json")
+    assert ResolvedScene.load(tmp_path / "scene.json").data == resolved.data
+    assert Scene.load(tmp_path / "scene.json").resolve().data == resolved.data
 
 
-def test_load_says_what_is_no_scene(tmp_path):
+def test_files_without_a_scene_are_refused_with_the_reason(tmp_path):
     path = tmp_path / "scene.json"
     path.write_text("{")
     with pytest.raises(InputError, match="not JSON"):
@@ -185,26 +185,26 @@ def test_load_says_what_is_no_scene(tmp_path):
     ],
     ids=lambda shape: shape.type,
 )
-def test_the_core_takes_every_shape(shape):
+def test_the_core_accepts_every_shape(shape):
     scene = Scene.preset("lab-50").append("obstacles", Obstacle(shape=shape))
     assert scene.resolve().data["obstacles"][0]["shape"]["type"] == shape.type
 
 
 def test_parameters_have_kinds_and_defaults():
-    found = {parameter.path: parameter for parameter in scene_parameters()}
-    assert found["snow.density"].unit == "kg/m3"
-    assert found["events.between"].choices == ("carry", "reseed")
-    assert found["obstacles"].kind == "list"
-    assert found["domain.min"].kind == "vector"
-    assert found["output.energy"].kind == "boolean"
+    parameters = {parameter.path: parameter for parameter in scene_parameters()}
+    assert parameters["snow.density"].unit == "kg/m3"
+    assert parameters["events.between"].choices == ("carry", "reseed")
+    assert parameters["obstacles"].kind == "list"
+    assert parameters["domain.min"].kind == "vector"
+    assert parameters["output.energy"].kind == "boolean"
 
 
-def test_defaults_live_in_the_core():
+def test_defaults_are_not_stored_in_scenes():
     assert Panel() == Panel(None, None, None)
     assert Scene().to_data() == {"snowshed": 2}
 
 
-def test_lab_presets_are_table_2_3_1():
+def test_lab_presets_agree_with_table_2_3_1():
     for tilt in (40, 50):
         data = Scene.preset(f"lab-{tilt}").resolve().data
         panel, slab = data["panel"], data["slab"]
@@ -215,13 +215,13 @@ def test_lab_presets_are_table_2_3_1():
         assert (data["dimension"], data["events"]["count"]) == (3, 5)
 
 
-def test_sensitivity_preset_is_table_3_2_1():
+def test_the_sensitivity_preset_agrees_with_table_3_2_1():
     data = Scene.preset("sensitivity").to_data()
     assert (data["panel"]["height"], data["panel"]["tilt"]) == (0.5, 40)
     assert (data["dimension"], data["events"]["count"]) == (3, 3)
 
 
-def test_geometry_preset_is_table_5_1_1():
+def test_the_geometry_preset_agrees_with_table_5_1_1():
     data = Scene.preset("geometry").to_data()
     panel = data["panel"]
     assert (panel["height"], panel["length"], panel["tilt"]) == (2, 2, 40)
@@ -229,26 +229,26 @@ def test_geometry_preset_is_table_5_1_1():
     assert (data["dimension"], data["events"]["count"]) == (2, 5)
 
 
-def test_the_slab_of_a_preset_is_as_long_as_another_panel():
+def test_the_slab_of_a_preset_takes_the_length_of_its_panel():
     for name in ("lab-40", "lab-50", "sensitivity", "geometry"):
         data = Scene.preset(name).set("panel.length", 4.0).resolve().data
         assert data["slab"]["length"] == 4.0
 
 
-def test_calibrated_snow_is_table_4_3_1():
+def test_calibrated_snow_agrees_with_table_4_3_1():
     snow = Snow.preset("calibrated")
     assert (snow.critical_state_slope, snow.preconsolidation_pressure) == (0.5, 7e3)
     assert (snow.cohesion, snow.hardening_factor, snow.youngs_modulus) == (0.2, 0.1, 1e6)
 
 
-def test_unknown_presets():
+def test_unknown_presets_are_refused():
     with pytest.raises(InputError, match="lab-40"):
         Scene.preset("lab")
     with pytest.raises(InputError, match="calibrated"):
         Snow.preset("wet")
 
 
-def test_distance_to_obstacles_where_they_are(tiny):
+def test_distances_follow_moving_obstacles(tiny):
     tiny.append("obstacles", Obstacle("post", Shape.sphere((3.0, 1.0), 0.5)))
     tiny.append("obstacles", Obstacle("cart", Shape.box((9.0, 0.5), (1.0, 1.0))))
     tiny.set("obstacles.1.motion.velocity", [10.0, 0.0])

@@ -13,11 +13,12 @@ from snowshed import (
     SimulationError,
     Slab,
     SlideSettings,
+    Snow,
 )
 from snowshed.study import Study
 
 
-def test_a_copy_with_other_values_leaves_the_scene_as_it_is():
+def test_a_copy_with_other_values_does_not_change_the_scene():
     base = Scene.preset("lab-50")
     before = base.copy()
     runs = [base.with_({"panel.tilt": tilt}, snow={"density": 250}) for tilt in (30, 40)]
@@ -28,12 +29,12 @@ def test_a_copy_with_other_values_leaves_the_scene_as_it_is():
         base.with_({"panel.tlit": 1})
 
 
-def test_a_copy_finds_the_files_that_the_scene_names(tmp_path):
+def test_a_copy_has_the_same_base_folder_for_paths(tmp_path):
     (tmp_path / "scene.json").write_text('{"dimension": 2}')
     assert Scene.load(tmp_path / "scene.json").with_(dimension=3)._base_dir == str(tmp_path)
 
 
-def test_two_studies_of_a_scene_that_is_changed_between_them_keep_their_own():
+def test_studies_keep_copies_of_their_scene():
     base = Scene.preset("lab-50").update({"dimension": 2})
     weak = Study.product(base.set("snow.cohesion", 0.05), {"panel.tilt": [40]})
     strong = Study.product(base.set("snow.cohesion", 0.3), {"panel.tilt": [40]})
@@ -47,9 +48,8 @@ def test_scenes_share_no_parts():
     second.append("obstacles", shelf)
     panel.tilt = first.panel.tilt = 60
     first.obstacles[0].friction = 0.9
-    assert second.panel.tilt is None
-    assert shelf.friction is None
-    assert second.obstacles[0].friction is None
+    assert second.panel == Panel(height=1.0, length=1.0)
+    assert shelf == second.obstacles[0] == Obstacle(shape=Shape.box((0, 0), (1, 1)))
 
 
 def test_every_scene_has_snow_seeding_settings_events_and_output():
@@ -61,11 +61,11 @@ def test_every_scene_has_snow_seeding_settings_events_and_output():
     assert Scene().to_data() == {"snowshed": 2}
     assert Scene.from_data({"snow": {}}) == Scene()
     scene.snow = None
-    assert scene.snow.density is None
+    assert scene.snow == Snow()
     assert isinstance(Scene(method="slide").numerics, SlideSettings)
 
 
-def test_settings_are_those_of_the_method():
+def test_settings_must_suit_the_method():
     with pytest.raises(InputError, match="'mpm' takes MpmSettings, not SlideSettings"):
         Scene.preset("lab-50").set("numerics", SlideSettings(friction=0.2))
     with pytest.raises(InputError, match="'mpm' takes MpmSettings, not SlideSettings"):
@@ -78,7 +78,7 @@ def test_settings_are_those_of_the_method():
     assert isinstance(scene.numerics, SlideSettings)
 
 
-def test_a_scene_is_shown_by_what_differs_from_the_defaults():
+def test_the_repr_shows_differences_from_the_defaults():
     scene = Scene(
         dimension=2, panel=Panel(height=1.5, length=4.0), slab=Slab(thickness=0.2, layers=[])
     )
@@ -91,13 +91,13 @@ def test_a_scene_is_shown_by_what_differs_from_the_defaults():
     assert repr(Panel(tilt=40)) == "Panel(tilt=40)"
 
 
-def test_a_shown_scene_makes_the_same_scene_again():
+def test_evaluating_the_repr_gives_the_same_scene():
     import snowshed
 
     scene = Scene.preset("lab-50").with_(dimension=2)
     scene.append("obstacles", Obstacle(name="post", shape=Shape.box((0.5, 0.1), (0.1, 0.2))))
-    again = eval(repr(scene), {name: getattr(snowshed, name) for name in snowshed.__all__})
-    assert again.resolve() == scene.resolve()
+    evaluated = eval(repr(scene), {name: getattr(snowshed, name) for name in snowshed.__all__})
+    assert evaluated.resolve() == scene.resolve()
 
 
 def test_run_begins_the_next_event():

@@ -18,7 +18,7 @@ from snowshed.scene.scene import resolve_scene
 OF_SCENES = {"scene", "json", "snow", "snows", "scene_json", "ready", "resolved", "run", "task"}
 
 
-def test_only_the_room_of_scenes_parses_them():
+def test_only_the_package_of_scenes_parses_them():
     """Elsewhere, `json.loads` reads texts with other names."""
     package = ROOT / "python" / "snowshed"
     wrong = []
@@ -27,9 +27,9 @@ def test_only_the_room_of_scenes_parses_them():
             continue
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Call) and ast.unparse(node.func) in ("json.loads", "loads"):
-                inside = [one for argument in node.args for one in ast.walk(argument)]
-                names = {one.attr for one in inside if isinstance(one, ast.Attribute)}
-                names |= {one.id for one in inside if isinstance(one, ast.Name)} - {"json"}
+                inside = [child for argument in node.args for child in ast.walk(argument)]
+                names = {child.attr for child in inside if isinstance(child, ast.Attribute)}
+                names |= {child.id for child in inside if isinstance(child, ast.Name)} - {"json"}
                 if names & OF_SCENES:
                     wrong.append(f"{path.relative_to(package)}, line {node.lineno}")
     assert wrong == []
@@ -45,15 +45,15 @@ def handled(monkeypatch):
         keys = value if isinstance(value, dict) else ()
         return ('"snowshed"' in text and '"numerics"' in text) or "numerics" in keys
 
-    def counted(place, name, wanted):
-        real = getattr(place, name)
+    def counted(owner, name, is_counted):
+        original = getattr(owner, name)
 
         def call(*arguments, **options):
-            if wanted(arguments[0]):
+            if is_counted(arguments[0]):
                 calls.append(name)
-            return real(*arguments, **options)
+            return original(*arguments, **options)
 
-        monkeypatch.setattr(place, name, staticmethod(call) if isinstance(place, type) else call)
+        monkeypatch.setattr(owner, name, staticmethod(call) if isinstance(owner, type) else call)
 
     for name in ("loads", "dumps"):
         counted(json, name, is_scene)
@@ -76,7 +76,7 @@ def test_a_run_parses_its_scene_twice(tmp_path, handled, energy):
     assert handled == ["load", "loads"]
 
 
-def test_data_of_a_scene_is_made_once_and_stays_as_it_is():
+def test_data_of_a_scene_is_created_once_and_read_only():
     scene = tiny_scene().resolve()
     assert scene.data is scene.data
     for change in (
@@ -87,8 +87,8 @@ def test_data_of_a_scene_is_made_once_and_stays_as_it_is():
     ):
         with pytest.raises(TypeError, match="read-only"):
             change(scene.data)
-    mine = scene.copied_data()
-    mine["panel"]["tilt"] = 10.0
+    copied = scene.copied_data()
+    copied["panel"]["tilt"] = 10.0
     assert scene.data["panel"]["tilt"] == 50.0
     assert json.loads(json.dumps(scene.data)) == json.loads(scene.json) == scene.data
 
@@ -96,13 +96,13 @@ def test_data_of_a_scene_is_made_once_and_stays_as_it_is():
 def test_a_scene_is_pickled_and_copied_as_its_text():
     scene = tiny_scene().resolve()
     assert scene.data and scene.core
-    for other in (pickle.loads(pickle.dumps(scene)), copy.deepcopy(scene)):
-        assert other == scene and set(vars(other)) == {"json", "base_dir"}
-    assert core.Simulation(other.core).event_count == 2
+    for copied in (pickle.loads(pickle.dumps(scene)), copy.deepcopy(scene)):
+        assert copied == scene and set(vars(copied)) == {"json", "base_dir"}
+    assert core.Simulation(copied.core).event_count == 2
     assert pickle.loads(pickle.dumps(scene.data)) == copy.deepcopy(scene.data) == scene.data
 
 
-def test_the_core_takes_a_scene_as_text_too():
+def test_the_core_accepts_a_scene_as_text_too():
     scene = tiny_scene().resolve()
     assert core.Simulation(scene.json).scene == core.Simulation(scene.core).scene == scene.json
     with pytest.raises(core.InputError):

@@ -1,4 +1,4 @@
-"""Properties of scenes that must hold whatever is set, read or typed (with hypothesis).
+"""Properties of scenes that hold for any values, files and options (with hypothesis).
 
 Every scene here starts from a valid one, so that every error comes from the test.
 """
@@ -28,7 +28,7 @@ from snowshed import (
     Snow,
 )
 from snowshed.cli.main import main
-from snowshed.cli.scene_options import option_name
+from snowshed.cli.options.scene import option_name
 from snowshed.scene.schema import Parameter, scene_parameters
 
 # The same examples in every run, so that failures can be repeated.
@@ -100,10 +100,10 @@ def plausible(parameter: Parameter) -> st.SearchStrategy:
     return values
 
 
-def assignments(*others: st.SearchStrategy) -> st.SearchStrategy:
+def assignments(*strategies: st.SearchStrategy) -> st.SearchStrategy:
     """Pairs of a parameter's path and a value for it."""
     return st.sampled_from(list(PARAMETERS.values())).flatmap(
-        lambda p: st.tuples(st.just(p.path), st.one_of(plausible(p), *others))
+        lambda p: st.tuples(st.just(p.path), st.one_of(plausible(p), *strategies))
     )
 
 
@@ -117,7 +117,7 @@ def value_at(data: Any, path: str) -> Any:
     return data
 
 
-def keeps(data: Any, path: str, value: Any) -> bool:
+def has_value(data: Any, path: str, value: Any) -> bool:
     """Return whether the scene has the value that was set; None and these zeros mean a default."""
     if value is None or (path in FOLLOWERS and value == 0):
         return True
@@ -144,7 +144,7 @@ def test_appending_gives_a_scene_or_an_error_that_names_the_list(change, assignm
     [b"[" * 100000, b'{"snow": {"density": 1, "density": 2}}', b'{"gravity": 1' + b"0" * 5000],
     ids=["nested", "twice", "long"],
 )
-def test_files_that_json_readers_differ_about_are_refused(tmp_path, content):
+def test_files_on_which_json_readers_disagree_are_refused(tmp_path, content):
     (tmp_path / "scene.json").write_bytes(content)
     for load in (Scene.load, ResolvedScene.load):
         with pytest.raises(InputError):
@@ -172,20 +172,20 @@ def test_values_beyond_all_bounds_are_refused():
 
 @same_every_time
 @given(st.lists(assignments(), max_size=6) | st.lists(assignments(ANYTHING), max_size=3))
-def test_sets_give_a_scene_that_stays_itself_or_an_error_that_names_one(sets):
+def test_sets_give_a_stable_scene_or_an_error_that_names_a_path(sets):
     scene = Scene.preset("lab-50")
     try:
         for path, value in sets:
             scene.set(path, value)
-        ready = scene.resolve()
+        resolved = scene.resolve()
     except InputError as error:
         assert str(error).startswith("/")
         assert any(path.partition(".")[0] in str(error) for path, _ in sets), (error, sets)
         return
-    assert ResolvedScene.parse(ready.json) == ready
-    assert Scene.from_data(ready.data).resolve() == ready
+    assert ResolvedScene.parse(resolved.json) == resolved
+    assert Scene.from_data(resolved.data).resolve() == resolved
     for path, value in dict(sets).items():
-        assert path in ITEMS or keeps(ready.data, path, value), path
+        assert path in ITEMS or has_value(resolved.data, path, value), path
 
 
 def wrong_values(parameter: Parameter) -> st.SearchStrategy:
@@ -240,30 +240,30 @@ def damaged_texts(draw: Callable) -> str:
 
 @same_every_time
 @given(st.one_of(st.text(), JSON_VALUES.map(json.dumps), damaged_scenes(), damaged_texts()))
-def test_any_text_is_a_scene_that_stays_itself_or_an_input_error(text):
+def test_any_text_gives_a_stable_scene_or_an_input_error(text):
     try:
-        ready = ResolvedScene.parse(text)
+        resolved = ResolvedScene.parse(text)
     except InputError as error:
         assert str(error).startswith(("/", "scene:")), error
     else:
-        assert ResolvedScene.parse(ready.json) == ready
-        assert Scene.from_data(ready.data).resolve() == ready
+        assert ResolvedScene.parse(resolved.json) == resolved
+        assert Scene.from_data(resolved.data).resolve() == resolved
 
 
 @same_every_time
 @given(st.binary() | damaged_scenes().map(str.encode) | damaged_texts().map(str.encode))
-def test_any_file_is_a_scene_or_an_input_error(tmp_path_factory, content):
+def test_any_file_gives_a_scene_or_an_input_error(tmp_path_factory, content):
     file = tmp_path_factory.getbasetemp() / "any.json"
     file.write_bytes(content)
     try:
         scene = Scene.load(file)
-        ready = scene.resolve()
+        resolved = scene.resolve()
     except InputError:
         with pytest.raises(InputError):
             ResolvedScene.load(file)
         return
     if "snowshed" in json.loads(content):  # only a part of a scene may lack this key
-        assert ready == ResolvedScene.load(file)
+        assert resolved == ResolvedScene.load(file)
 
 
 def as_options(path: str, value: Any) -> list[str]:
@@ -283,7 +283,7 @@ def as_options(path: str, value: Any) -> list[str]:
 def test_options_make_the_same_scene_as_sets_or_the_same_error(sets):
     assume(
         not {"numerics.flip_ratio", "numerics.damping_rate"} <= set(dict(sets))
-    )  # only one of the two may be given
+    )  # these exclude each other
     scene = Scene.preset("lab-50")
     words = ["scene", "--preset=lab-50"]
     for path, value in dict(sets).items():
@@ -291,7 +291,7 @@ def test_options_make_the_same_scene_as_sets_or_the_same_error(sets):
     output, errors = StringIO(), StringIO()
     with redirect_stdout(output), redirect_stderr(errors):
         code = main(words)
-    assume("GB of memory" not in errors.getvalue())  # the free memory changes all the time
+    assume("GB of memory" not in errors.getvalue())  # the free memory changes between runs
     try:
         scene.update(dict(sets))
         expected = scene.resolve().json

@@ -8,11 +8,11 @@ import pytest
 
 from snowshed import InputError, Scene
 from snowshed.season import SeasonSettings, accumulate
-from snowshed.season.clearance import first_contact
 from snowshed.season.cover import natural_cover
+from snowshed.season.panel_contact import first_contact
 from snowshed.season.settling_column import SnowColumn
 from snowshed.season.slabs import season_scene
-from snowshed.season.weather_row import Weather
+from snowshed.season.weather.row import Weather
 
 
 def days(*falls, warm=-4.0, depth=None, density=100.0):
@@ -23,7 +23,7 @@ def days(*falls, warm=-4.0, depth=None, density=100.0):
     ]
 
 
-def test_the_cover_is_that_of_the_snowfalls_settled():
+def test_the_cover_is_the_settled_snowfall():
     depths = natural_cover(days(0.3, 0.0, 0.2), SeasonSettings())
     assert depths[0] == pytest.approx(0.3)
     assert 0.2 < depths[1] < 0.3
@@ -33,13 +33,15 @@ def test_the_cover_is_that_of_the_snowfalls_settled():
     )
 
 
-def test_the_cover_melts_by_its_degrees():
+def test_positive_temperatures_melt_the_cover():
     """5 degrees melt 20 mm of water a day; 0.3 m of 100 kg/m3 melt in a day and a half."""
-    still = SeasonSettings(settling=None)
-    assert natural_cover(days(0.3, 0.0, 0.0, warm=5.0), still) == pytest.approx([0.3, 0.1, 0.0])
+    without_settling = SeasonSettings(settling=None)
+    assert natural_cover(days(0.3, 0.0, 0.0, warm=5.0), without_settling) == pytest.approx(
+        [0.3, 0.1, 0.0]
+    )
 
 
-def test_a_measured_or_a_given_depth_goes_before():
+def test_measured_and_given_depths_take_precedence():
     assert natural_cover(days(0.3, 0.0, depth=0.8), SeasonSettings()) == [0.8, 0.8]
     assert natural_cover(days(0.3, 0.0), SeasonSettings(cover=0.5)) == [0.5, 0.5]
     assert natural_cover(days(0.3, 0.0), SeasonSettings(cover="none")) == [0.0, 0.0]
@@ -47,7 +49,7 @@ def test_a_measured_or_a_given_depth_goes_before():
         SeasonSettings(cover="deep")
 
 
-def test_the_cover_does_not_outlast_its_readings():
+def test_the_cover_melts_after_its_last_reading():
     """Readings end at 0.6 m; at 10 degrees the cover is gone after some days, not in autumn."""
     read = days(0.0, 0.0, depth=0.6)
     later = [
@@ -63,13 +65,13 @@ def test_the_cover_does_not_outlast_its_readings():
     assert grown[2] == pytest.approx(depths[2] + 0.1)
 
 
-def test_between_two_readings_the_cover_follows_a_line():
+def test_between_readings_the_cover_is_interpolated():
     rows = days(*[0.0] * 5)
     ends = [replace(rows[0], snow_depth=0.8), *rows[1:4], replace(rows[4], snow_depth=0.4)]
     assert natural_cover(ends, SeasonSettings()) == pytest.approx([0.8, 0.7, 0.6, 0.5, 0.4])
 
 
-def test_years_of_snow_that_stays_cost_no_more_than_some():
+def test_a_column_merges_its_layers_beyond_a_thousand():
     column = SnowColumn(load_factor=9.81)
     for _ in range(5000):
         column.add(2.0, 100.0)
@@ -96,7 +98,7 @@ def test_light_snow_is_weak_and_soft():
     assert rigid["preconsolidation_pressure"] == own["preconsolidation_pressure"]
 
 
-def test_thin_releases_slide_together_and_none_is_lost():
+def test_thin_releases_slide_together_and_keep_their_mass():
     settings = SeasonSettings(friction=0.3, settling=None, pool_below=0.1)
     gathered = accumulate(days(*[0.05] * 7), settings, 60.0)
     slides = [day for day in gathered if day.event]
@@ -119,7 +121,7 @@ def contact_table(**columns):
     return pd.DataFrame({**rows, **columns})
 
 
-def test_the_first_contact_of_any_kind_is_the_verdict():
+def test_the_first_contact_of_any_kind_is_reported():
     assert first_contact(contact_table(), 0.03) is None
     crest = first_contact(contact_table(crest_clearance_m=[0.5, 0.02, 0.3]), 0.03)
     assert (crest.cause, crest.event, crest.date) == ("crest", 2, "2024-12-02")

@@ -27,14 +27,14 @@ def season(*snowfalls, density=100.0, temperature=-5.0, days=1):
 
 
 @pytest.mark.parametrize("tilt", [10.0, 30.0, 40.0, 50.0])
-def test_without_adhesion_the_tangent_of_the_tilt_decides(tilt):
+def test_without_adhesion_the_friction_limit_is_the_tangent_of_the_tilt(tilt):
     limit = math.tan(math.radians(tilt))
     for load in (0.1, 100.0):
         assert snow_balance(load, tilt, limit * 0.999, 0.0).releases
         assert not snow_balance(load, tilt, limit * 1.001, 0.0).releases
 
 
-def test_the_lab_panel_at_30_degrees_stops_over_the_measured_friction_and_goes_below():
+def test_snow_at_30_degrees_stays_at_measured_frictions_and_slides_below_them():
     load = 210.0 * 0.02
     assert not any(snow_balance(load, 30.0, friction, 0.0).releases for friction in (0.6, 0.7, 0.8))
     assert snow_balance(load, 30.0, 0.57, 0.0).releases
@@ -45,7 +45,7 @@ def test_with_adhesion_snow_gathers_up_to_the_closed_form():
     tilt, friction, adhesion, gravity = 40.0, 0.6, 40.0, 9.81
     slope = math.radians(tilt)
     limit = adhesion / (gravity * (math.sin(slope) - friction * math.cos(slope)))
-    each = 100.0 * 0.05 * math.cos(slope)  # kg per m2 of the panel
+    load_per_day = 100.0 * 0.05 * math.cos(slope)  # kg per m2 of the panel
     events = [
         day.event
         for day in accumulate(
@@ -55,19 +55,19 @@ def test_with_adhesion_snow_gathers_up_to_the_closed_form():
             gravity,
         )
     ]
-    needed = math.floor(limit / each) + 1
+    needed = math.floor(limit / load_per_day) + 1
     assert [i + 1 for i, event in enumerate(events) if event] == list(range(needed, 21, needed))
     assert [event for event in events if event] == list(range(1, 20 // needed + 1))
 
 
-def test_mass_per_area_of_ground_is_that_of_the_snowfall():
+def test_mass_per_area_of_ground_agrees_with_the_snowfall():
     tilt = 60.0
     (day,) = accumulate(season(0.4, density=80.0), SeasonSettings(friction=5.0), tilt)
     assert day.load / math.cos(math.radians(tilt)) == pytest.approx(0.4 * 80.0)
     assert day.thickness == pytest.approx(0.4 * math.cos(math.radians(tilt)))
 
 
-def test_the_wind_takes_its_part_and_a_day_its_own_friction():
+def test_wind_removes_its_share_and_days_have_their_own_friction():
     rows = season(0.4)
     (day,) = accumulate(rows, SeasonSettings(catch=0.25), 0.0)
     assert day.load == pytest.approx(10.0)
@@ -111,14 +111,14 @@ def test_lower_layers_settle_more_and_warm_ones_faster():
 
 def test_settling_never_changes_the_mass():
     rows = season(0.3, 0.0, 0.0, days=10)
-    still = accumulate(rows, SeasonSettings(friction=2.0, settling=None), 30.0)
+    unsettled = accumulate(rows, SeasonSettings(friction=2.0, settling=None), 30.0)
     settled = accumulate(rows, SeasonSettings(friction=2.0, settling="essery-2013"), 30.0)
-    assert still[0].thickness == still[2].thickness
+    assert unsettled[0].thickness == unsettled[2].thickness
     assert settled[2].thickness < settled[1].thickness < settled[0].thickness
-    assert settled[2].load == still[2].load
+    assert settled[2].load == unsettled[2].load
 
 
-def test_a_stack_settles_between_events_and_starts_anew_with_each():
+def test_a_stack_settles_between_events_and_restarts_at_each():
     stack = SettlingStack(SETTLING_LAWS["vionnet-2012"], 9.81)
     stack.set_stack(0.5, 150.0)
     stack.settle(20 * DAY, -5.0)
@@ -148,6 +148,6 @@ def test_pauses_lie_between_events_at_the_temperature_of_the_earlier_row():
         ({"settling": "guess"}, "settling: 'guess' is unknown; allowed: vionnet-2012"),
     ],
 )
-def test_settings_that_are_refused(values, message):
+def test_bad_settings_are_refused(values, message):
     with pytest.raises(InputError, match=message):
         SeasonSettings(**values)

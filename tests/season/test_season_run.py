@@ -1,4 +1,4 @@
-"""A whole season through the interface and the command line, on the coarsest possible grid."""
+"""A season through Python and the command line, on the coarsest possible grid."""
 
 import dataclasses
 import json
@@ -14,13 +14,13 @@ from snowshed.cli.commands.season import print_season
 from snowshed.cli.main import main
 from snowshed.scene.panel_edge import panel_edge
 from snowshed.season import SeasonSettings, accumulate, read_season, run_season
-from snowshed.season.clearance import (
+from snowshed.season.driver import season_result_figure, verdict
+from snowshed.season.panel_contact import (
     PanelContact,
     below_panel,
     clearance,
     first_reached,
 )
-from snowshed.season.driver import drawn, verdict
 from snowshed.season.slabs import season_scene
 
 SEASON = """date,snowfall_m,density_kg_m3,temperature_c
@@ -54,7 +54,7 @@ def finished(season_file, tmp_path_factory):
     return run_season(season_file, panel_scene(), folder, settings=settings), folder
 
 
-def test_a_season_ends_in_a_table_and_a_figure(finished):
+def test_a_season_writes_a_table_and_a_figure(finished):
     result, folder = finished
     table = pd.read_csv(folder / "season.csv")
     assert table["released"].tolist() == ["no", "yes", "no", "yes"]
@@ -68,7 +68,7 @@ def test_a_season_ends_in_a_table_and_a_figure(finished):
     assert not any("before the snow rested" in note for note in summary["notes"])
 
 
-def test_the_stack_stands_still_between_events_but_for_its_settling(finished):
+def test_between_events_the_stack_only_settles(finished):
     table = pd.read_csv(finished[1] / "season.csv")
     height, settled = table["stack_height_m"], table["settled_height_m"]
     assert height[0] == 0.0
@@ -84,14 +84,14 @@ def test_the_figure_names_the_event_that_buries_the_panel(finished):
     scene = json.loads((folder / "run" / "scene.json").read_text())
     outlines = pd.read_csv(folder / "run" / "outline.csv")
     buried = dataclasses.replace(result, contact=PanelContact("2024-12-24", 2, "crest"))
-    figure = drawn(buried, outlines, scene)
+    figure = season_result_figure(buried, outlines, scene)
     texts = [text.get_text() for text in figure.axes[1].texts]
     assert "first contact: crest, event 2" in texts
     assert verdict(buried) in figure.get_suptitle()
     assert verdict(buried).endswith("the lower edge, 2024-12-24 (event 2)")
 
 
-def test_all_released_mass_slides_and_the_table_repeats_the_slide_offs(finished):
+def test_all_released_mass_slides_and_the_table_agrees_with_events(finished):
     result, folder = finished
     table = result.table[result.table["released"] == "yes"]
     events = pd.read_csv(folder / "run" / "events.csv")
@@ -101,7 +101,7 @@ def test_all_released_mass_slides_and_the_table_repeats_the_slide_offs(finished)
     np.testing.assert_allclose(table["stack_height_m"], events["height_m"], rtol=1e-5)
 
 
-def test_the_clearance_is_that_of_the_outline(finished):
+def test_the_clearance_follows_from_the_outline(finished):
     result, folder = finished
     scene = json.loads((folder / "run" / "scene.json").read_text())
     outline = pd.read_csv(folder / "run" / "outline.csv")
@@ -110,19 +110,19 @@ def test_the_clearance_is_that_of_the_outline(finished):
     surface = np.interp(edge, last["x"], last["z"], left=0.0, right=0.0)
     cover = result.table["cover_m"].iloc[-1]
     assert result.table["clearance_m"].iloc[-1] == pytest.approx(max(0.33 - cover - surface, 0.0))
-    left = clearance(scene, last[["x", "z"]].to_numpy(), 0.2)
-    assert left.crest == pytest.approx(0.13)
+    remaining = clearance(scene, last[["x", "z"]].to_numpy(), 0.2)
+    assert remaining.crest == pytest.approx(0.13)
 
 
 def test_resuming_a_finished_season_changes_nothing(finished, season_file):
     result, folder = finished
     before = (folder / "season.csv").read_bytes()
     settings = SeasonSettings(friction=0.6, adhesion=20.0, settling="vionnet-2012")
-    again = run_season(
+    resumed = run_season(
         season_file, panel_scene(), folder, settings=settings, resume=True, pictures=False
     )
     assert (folder / "season.csv").read_bytes() == before
-    assert again.table.equals(result.table)
+    assert resumed.table.equals(result.table)
     with pytest.raises(InputError, match="not empty"):
         run_season(season_file, panel_scene(), folder)
 
@@ -139,7 +139,7 @@ def test_a_scene_may_be_a_file_or_its_data(season_file, tmp_path):
     assert tables[0].equals(tables[1]) and tables[0].equals(tables[2])
 
 
-def test_slabs_lie_where_the_core_would_lay_them(season_file):
+def test_slabs_lie_on_the_panel_of_the_core(season_file):
     days = accumulate(read_season(season_file), SeasonSettings(friction=0.1), 50.0)
     for dimension in (2, 3):
         values = {"ground.tilt": 10.0, "seeding.particles_per_voxel": 6}
@@ -151,20 +151,20 @@ def test_slabs_lie_where_the_core_would_lay_them(season_file):
             panel_edge(scene.data).center, np.asarray(frame["center"])[[0, 2]], atol=1e-9
         )
         simulation.begin_event()
-        away = simulation.positions() - frame["center"]
+        offsets = simulation.positions() - frame["center"]
         thickness = days[0].thickness
         for axis, low, high in (
             (frame["normal"], 0.0, thickness),
             (frame["slope"], -0.1225, 0.1225),
         ):
-            along = away @ axis
-            assert low <= along.min() and along.max() <= high
+            distances = offsets @ axis
+            assert low <= distances.min() and distances.max() <= high
         assert simulation.masses().sum() == pytest.approx(
             days[0].load * 0.245 * (1.0 if dimension == 2 else 2 / 3 * base.data["panel"]["width"])
         )
 
 
-def test_snow_over_the_panel_is_no_part_of_the_stack_below():
+def test_snow_above_the_panel_is_excluded_from_the_stack_below():
     scene = Scene.preset("lab-50").resolve().data
     outline = np.array([[0.0, 0.6], [0.05, 0.1], [0.07, 0.45], [0.3, 0.2]])
     np.testing.assert_array_equal(below_panel(scene, outline), outline[[1, 3]])
@@ -176,8 +176,8 @@ def test_burial_is_the_first_event_that_closes_the_clearance():
     assert first_reached([0.5, 0.2], 0.03) is None
 
 
-def test_what_stays_on_the_panel_bears_the_next_slabs(season_file, tmp_path):
-    """Snow that static friction releases is held at once by a panel with more sliding friction."""
+def test_snow_on_the_panel_supports_the_next_slabs(season_file, tmp_path):
+    """The release criterion lets snow slide, but a panel with more sliding friction holds it."""
     result = run_season(
         season_file,
         panel_scene(**{"panel.friction": 3.0, "events.max_time": 0.2}),
@@ -186,12 +186,12 @@ def test_what_stays_on_the_panel_bears_the_next_slabs(season_file, tmp_path):
         pictures=False,
     )
     assert (result.staying_event, result.simulated, result.releases) == (1, 3, 3)
-    left = result.table["left_on_panel_kg"][result.table["released"] == "yes"].tolist()
-    assert left[0] < left[1] < left[2]
+    masses = result.table["left_on_panel_kg"][result.table["released"] == "yes"].tolist()
+    assert masses[0] < masses[1] < masses[2]
     assert any("from event 1 on, snow" in note for note in result.notes)
 
 
-def test_scenes_without_a_panel_or_with_snow_of_their_own(season_file, tmp_path):
+def test_scenes_without_a_panel_or_with_their_own_snow_are_refused(season_file, tmp_path):
     body = {"shape": {"type": "sphere", "center": [0, 1], "radius": 0.1}}
     bare = Scene(dimension=2).append("bodies", body)
     with pytest.raises(InputError, match="a season needs a panel"):
@@ -206,11 +206,11 @@ def command(season_file, folder, *options):
     return main(["season", str(season_file), *panel, *options])
 
 
-def test_the_command_says_what_came_of_it(season_file, tmp_path, capsys):
+def test_the_command_reports_the_result(season_file, tmp_path, capsys):
     assert command(season_file, tmp_path / "held", "--release-friction", "0.8") == 0
-    shown = capsys.readouterr().out
-    assert "no snow slid: friction and adhesion held it" in shown
-    assert "2024-12-24" in shown
+    output = capsys.readouterr().out
+    assert "no snow slid: friction and adhesion held it" in output
+    assert "2024-12-24" in output
     assert (tmp_path / "held" / "season.png").is_file()
     assert not (tmp_path / "held" / "run").exists()
 
@@ -229,11 +229,11 @@ def test_the_command_says_what_came_of_it(season_file, tmp_path, capsys):
         ),
     ],
 )
-def test_the_error_of_the_grid_is_that_of_the_scheme(finished, capsys, values, text):
+def test_the_error_of_the_grid_follows_from_the_scheme(finished, capsys, values, text):
     result, folder = finished
     print_season(result, folder, panel_scene(**values).resolve())
-    shown = " ".join(capsys.readouterr().out.split())
-    assert f"error of the grid: {text}" in shown
+    output = " ".join(capsys.readouterr().out.split())
+    assert f"error of the grid: {text}" in output
 
 
 def test_the_command_names_bad_files_and_options(season_file, tmp_path, capsys):
@@ -249,7 +249,7 @@ def test_the_command_names_bad_files_and_options(season_file, tmp_path, capsys):
     assert not (tmp_path / "a").exists()
 
 
-def test_wrong_values_of_a_scene_file_are_named_with_it(season_file, tmp_path, capsys):
+def test_errors_in_a_scene_file_name_the_file(season_file, tmp_path, capsys):
     scene = panel_scene().resolve().data
     layered = {**scene, "slab": {"layers": [{"thickness": 0.1}]}}
     for data, message in [

@@ -23,19 +23,19 @@ def test_at_the_density_of_ice_the_power_laws_give_their_factors():
 
 
 @pytest.mark.parametrize("relation", RELATIONS, ids=lambda relation: relation.name)
-def test_every_relation_says_where_it_comes_from_and_rises(relation):
+def test_every_relation_has_a_source_and_rises(relation):
     assert relation.source and relation.scatter and relation.formula
-    first, *others = relation.ranges.items()
+    first, *other_ranges = relation.ranges.items()
     name, (low, high) = first
-    rest = [inner[0] for _, inner in others]
-    values = [relation(low + part * (high - low), *rest) for part in (0.0, 0.5, 1.0)]
+    other_inputs = [inner[0] for _, inner in other_ranges]
+    values = [relation(low + share * (high - low), *other_inputs) for share in (0.0, 0.5, 1.0)]
     assert values[0] <= values[1] <= values[2]
     assert values[0] < values[2] and min(values) > 0
-    assert not relation.outside(low, *rest)
-    assert relation.outside(high + 1.0, *rest)[0].startswith(name)
+    assert not relation.outside(low, *other_inputs)
+    assert relation.outside(high + 1.0, *other_inputs)[0].startswith(name)
 
 
-def test_what_no_snow_can_have_is_refused():
+def test_impossible_densities_and_unknown_relations_are_refused():
     with pytest.raises(InputError, match="bergfeld-2023: density 2000 is outside the allowed"):
         YOUNGS_MODULUS["bergfeld-2023"](2000.0)
     with pytest.raises(InputError, match="Young's modulus: 'guess' is unknown; allowed: scapozza"):

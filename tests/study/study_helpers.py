@@ -1,4 +1,4 @@
-"""Studies small enough to be computed in a moment, and workers that only pretend."""
+"""Studies that take a moment, and workers that return scripted outcomes."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from snowshed.study import Study, session
 from snowshed.study.database import FILE, MEASURED_TYPES
 from snowshed.study.outcome import RunOutcome
 
-ALONE = {"jobs": 1, "threads": 1}
+SEQUENTIAL = {"jobs": 1, "threads": 1}
 
 
 def tiny_scene(max_time: float = 0.05, events: int = 2) -> Scene:
-    """The lab's 50 degree scene in 2D on a coarse grid; by default it stops in the air."""
+    """The lab's 50 degree scene in 2D on a coarse grid; by default events end in free fall."""
     scene = Scene.preset("lab-50").update({"dimension": 2, "numerics.dx": 0.02})
     return scene.update({"events": {"count": events, "max_time": max_time}})
 
@@ -29,14 +29,14 @@ def tiny_study(name: str = "tiny", frictions: tuple[float, ...] = (0.1, 0.2, 0.3
 def outcome(
     hash_: str, status: str = "done", events: int = 2, error: str | None = None
 ) -> RunOutcome:
-    """A possible outcome of a run; every measure is a small number of its own."""
+    """A possible outcome of a run; each measure is a different small number."""
     rows = [
         {
             "event": event,
             "wall_s": 0.5,
             **{
-                name: "rest" if name in WORDS else event * 10 + place
-                for place, name in enumerate(MEASURED_TYPES)
+                name: "rest" if name in WORDS else event * 10 + index
+                for index, name in enumerate(MEASURED_TYPES)
             },
         }
         for event in range(1, events + 1)
@@ -45,7 +45,7 @@ def outcome(
 
 
 class ScriptedWorkers:
-    """Workers that answer at once, with what `answer` makes of a task."""
+    """Workers that return `answer(task)` at once."""
 
     capacity = 2
 
@@ -95,13 +95,13 @@ def computed_folder(tmp_path_factory):
     """The folder of the tiny study, computed without interruption, once for all test files."""
     folder = tmp_path_factory.getbasetemp() / "computed-tiny-study"
     if not folder.exists():
-        tiny_study().run(folder, **ALONE)
+        tiny_study().run(folder, **SEQUENTIAL)
     return folder
 
 
 @pytest.fixture
 def scripted_workers(monkeypatch):
-    """Workers that pretend, in place of the processes."""
+    """Scripted workers instead of processes."""
     workers = ScriptedWorkers()
     monkeypatch.setattr(session.Resources, "workers", lambda resources, runs: (workers, 2))
     monkeypatch.setattr(session, "POLL_S", 0.01)

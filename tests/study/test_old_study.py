@@ -1,4 +1,4 @@
-"""A study file and a store of the version before are still read, and its runs are found."""
+"""A study file and a store of an earlier version are still read, and its runs are reused."""
 
 import os
 import sqlite3
@@ -28,7 +28,7 @@ def store(tmp_path, monkeypatch):
     return folder
 
 
-def test_its_runs_are_found_and_nothing_is_computed_again(store, scripted_workers):
+def test_an_old_study_is_not_computed_again(store, scripted_workers):
     study = Study.load(OLD / "study.toml")
     assert study.scene.numerics.courant_factor == 0.9
     table = study.run(store)
@@ -37,7 +37,7 @@ def test_its_runs_are_found_and_nothing_is_computed_again(store, scripted_worker
 
 
 @pytest.mark.parametrize("writable", [True, False])
-def test_its_table_is_read(store, monkeypatch, writable):
+def test_the_table_of_an_old_store_is_read(store, monkeypatch, writable):
     monkeypatch.setattr(os, "access", lambda path, mode: writable)
     (row,) = read_table(store).to_dict("records")
     assert (row["panel.friction"], row["length_m"], row["ended"]) == (

@@ -1,4 +1,4 @@
-"""Scenes that are the same run, and scenes that are not."""
+"""Hashes of runs: equal for scenes with equal results, otherwise different."""
 
 import json
 import os
@@ -19,7 +19,7 @@ def run_of(scene: Scene) -> RunKey:
     return RunKey.of(scene.resolve())
 
 
-def test_what_does_not_change_a_result_does_not_change_the_hash():
+def test_settings_without_effect_do_not_change_the_hash():
     same = tiny_scene().update(
         {
             "title": "another",
@@ -30,7 +30,7 @@ def test_what_does_not_change_a_result_does_not_change_the_hash():
     assert run_of(same).hash == run_of(tiny_scene()).hash
 
 
-def test_given_defaults_whole_numbers_and_order_do_not_matter():
+def test_explicit_defaults_integers_and_order_do_not_change_the_hash():
     scene = tiny_scene().set("panel.tilt", 50).set("gravity", 9.81)
     assert run_of(scene).hash == run_of(tiny_scene()).hash
     data = json.loads(run_of(scene).scene)
@@ -50,7 +50,7 @@ def test_given_defaults_whole_numbers_and_order_do_not_matter():
         ("events.max_time", 0.06),
     ],
 )
-def test_what_changes_a_result_changes_the_hash(path, value):
+def test_settings_with_an_effect_change_the_hash(path, value):
     assert run_of(tiny_scene().set(path, value)).hash != run_of(tiny_scene()).hash
 
 
@@ -71,19 +71,19 @@ def test_every_other_parameter_is_in_the_hash():
     assert varied > 30 and len(hashes) == varied + 1
 
 
-def test_a_scheme_counts_by_the_settings_that_it_stands_for():
+def test_a_scheme_and_its_settings_have_the_same_hash():
     named = tiny_scene().set("numerics.scheme", "objective")
     settings = json.loads(run_of(named).scene)["numerics"]
     listed = tiny_scene().update({f"numerics.{k}": v for k, v in settings.items() if k != "scheme"})
     assert run_of(named).hash == run_of(listed).hash != run_of(tiny_scene()).hash
 
 
-def test_runs_are_found_that_were_stored_when_settings_had_other_names():
+def test_former_names_of_settings_give_the_same_hash():
     data = json.loads(run_of(tiny_scene().set("numerics.courant_factor", 0.5)).scene)
     assert "method" not in data
-    now = content_hash(data)
+    present = content_hash(data)
     data["numerics"]["step_factor"] = data["numerics"].pop("courant_factor")
-    assert content_hash(data) == now
+    assert content_hash(data) == present
 
 
 def test_the_hash_is_the_same_in_every_process():
@@ -104,25 +104,25 @@ def test_the_hash_is_the_same_in_every_process():
         assert done.stdout.strip() == run.hash
 
 
-def test_another_version_is_another_run(monkeypatch):
+def test_another_version_has_another_hash(monkeypatch):
     before = run_of(tiny_scene()).hash
     monkeypatch.setattr(_core, "version", "99.0")
     assert run_of(tiny_scene()).hash != before
 
 
-def test_files_count_by_their_content_not_by_their_path(tmp_path):
+def test_the_hash_depends_on_the_content_of_files_not_on_their_path(tmp_path):
     def hash_with(file):
         scene = tiny_scene()
         shape = Shape.grid(str(file), origin=(2, 0), spacing=0.1)
         return run_of(scene.append("obstacles", Obstacle(shape=shape))).hash
 
-    one, copy = tmp_path / "one.npy", tmp_path / "copy.npy"
-    np.save(one, np.ones((3, 3)))
-    copy.write_bytes(one.read_bytes())
-    before = hash_with(one)
+    original, copy = tmp_path / "one.npy", tmp_path / "copy.npy"
+    np.save(original, np.ones((3, 3)))
+    copy.write_bytes(original.read_bytes())
+    before = hash_with(original)
     assert hash_with(copy) == before
-    np.save(one, np.full((3, 3), 2.0))
-    assert hash_with(one) != before
+    np.save(original, np.full((3, 3), 2.0))
+    assert hash_with(original) != before
     with pytest.raises(InputError, match="/dev/zero: not a regular file"):
         hash_with("/dev/zero")
 

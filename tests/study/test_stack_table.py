@@ -1,4 +1,4 @@
-"""The one table of stacks: the same stacks from a store, its exports and results folders."""
+"""The table of stacks is the same from a store, its exports and results folders."""
 
 import copy
 import shutil
@@ -26,41 +26,49 @@ def store(tmp_path_factory):
 
 
 @pytest.mark.parametrize("ending", ["csv", "parquet"])
-def test_a_file_holds_the_stacks_of_its_store(store, tmp_path, ending):
+def test_an_exported_file_has_the_stacks_of_its_store(store, tmp_path, ending):
     export(store, tmp_path / f"table.{ending}")
-    ours = StackTable.read(store)
-    theirs = StackTable.read(tmp_path / f"table.{ending}")
+    from_store = StackTable.read(store)
+    from_file = StackTable.read(tmp_path / f"table.{ending}")
     for measure in ("stack", "body"):
-        one, other = (table.measured(measure, ["height", "length"]) for table in (ours, theirs))
+        stored_stacks, exported_stacks = (
+            table.measured(measure, ["height", "length"]) for table in (from_store, from_file)
+        )
         for name in ("panel.tilt", "seed", "event", "height", "length"):
-            np.testing.assert_array_equal(one[name].to_numpy(float), other[name].to_numpy(float))
-    assert ours.varying(ours.axes, "this") == theirs.varying(theirs.axes, "this") == ["panel.tilt"]
+            np.testing.assert_array_equal(
+                stored_stacks[name].to_numpy(float), exported_stacks[name].to_numpy(float)
+            )
+    assert (
+        from_store.varying(from_store.axes, "this")
+        == from_file.varying(from_file.axes, "this")
+        == ["panel.tilt"]
+    )
     stored, exported = read_study_runs(store), read_study_runs(tmp_path / f"table.{ending}")
     assert stored.parameters == exported.parameters == ["panel.tilt"]
     assert stored.rows["height"].tolist() == exported.rows["height"].tolist()
 
 
-def test_a_results_folder_is_the_run_of_the_study(store, tmp_path):
+def test_a_results_folder_has_the_stacks_of_its_run(store, tmp_path):
     run_events(copy.deepcopy(SCENE).set("panel.tilt", 40.0), tmp_path / "out", pictures=False)
-    alone = StackTable.read(tmp_path / "out")
+    single = StackTable.read(tmp_path / "out")
     frame = StackTable.read(store).frame
-    same = frame[frame["hash"] == alone.frame["hash"].iloc[0]]
+    same = frame[frame["hash"] == single.frame["hash"].iloc[0]]
     assert len(same) == 2 and set(same["panel.tilt"]) == {40.0} and set(same["seed"]) == {1}
-    heights = alone.measured("stack", ["height"])["height"]
+    heights = single.measured("stack", ["height"])["height"]
     assert heights.tolist() == pytest.approx(same["height_m"].tolist(), rel=1e-8)
-    assert alone.numbers("panel.tilt").tolist() == [40.0, 40.0]
+    assert single.numbers("panel.tilt").tolist() == [40.0, 40.0]
 
 
-def test_a_folder_that_keeps_its_store_as_runs_is_read_there(store, tmp_path):
-    """What ``sensitivity -o results`` writes may be given as ``--stored results``."""
+def test_a_store_in_the_subfolder_runs_is_read(store, tmp_path):
+    """The folder of ``sensitivity -o results`` may be given as ``--stored results``."""
     shutil.copytree(store, tmp_path / "results" / "runs")
-    found = StackTable.read(tmp_path / "results")
-    pd.testing.assert_frame_equal(found.frame, StackTable.read(store).frame)
+    table = StackTable.read(tmp_path / "results")
+    pd.testing.assert_frame_equal(table.frame, StackTable.read(store).frame)
     with pytest.raises(InputError, match="holds no study"):
         StackTable.read(tmp_path)
 
 
-def test_what_is_no_table_of_stacks_is_named(store, tmp_path):
+def test_other_tables_are_refused(store, tmp_path):
     (tmp_path / "a.csv").write_text("event,height_m\n1,much\n2,0.1\n")
     table = StackTable.read(tmp_path / "a.csv")
     with pytest.raises(InputError, match="line 2, height_m: 'much' is not a positive number"):
@@ -75,8 +83,8 @@ def test_what_is_no_table_of_stacks_is_named(store, tmp_path):
         StackTable.read(tmp_path / "none.csv")
 
 
-def test_a_table_of_before_is_of_the_reading_that_there_was(store, tmp_path):
-    """Its measures are found by the name of that reading; the other one it does not have."""
+def test_a_table_of_an_early_version_has_the_trimming_rule_of_its_time(store, tmp_path):
+    """Its measures have the name of that rule; those of the other rule are missing."""
     export(store, tmp_path / "new.csv")
     new = pd.read_csv(tmp_path / "new.csv")
     former = [name for name in new if "trimm" in name or "_pace_" in name or "most_first" in name]
@@ -85,8 +93,12 @@ def test_a_table_of_before_is_of_the_reading_that_there_was(store, tmp_path):
     old = StackTable.read(tmp_path / "old.csv")
     assert set(old.frame["trimming"]) == {"equal_pace"}
     for name in ("height", "length", "head", "tail"):
-        plain, named = (old.measured(one, [name])[name].tolist() for one in ("stack", "equal_pace"))
-        assert plain == named == new[f"{name}_m"].dropna().tolist()  # all in the air: no stack
+        plain, named = (
+            old.measured(measure, [name])[name].tolist() for measure in ("stack", "equal_pace")
+        )
+        assert (
+            plain == named == new[f"{name}_m"].dropna().tolist()
+        )  # NaN while all snow is in the air
     with pytest.raises(
         InputError, match=r"no column outermost_first_height_m.*without that trimming rule"
     ):
@@ -95,9 +107,9 @@ def test_a_table_of_before_is_of_the_reading_that_there_was(store, tmp_path):
 
 def test_every_stack_has_both_readings(store):
     table = StackTable.read(store)
-    of_each = {
+    lengths = {
         name: table.measured(name, ["length"])["length"].to_numpy()
         for name in ("stack", "outermost_first", "equal_pace")
     }
-    assert (of_each["stack"] == of_each["outermost_first"]).all()
-    assert (of_each["equal_pace"] != of_each["outermost_first"]).any()
+    assert (lengths["stack"] == lengths["outermost_first"]).all()
+    assert (lengths["equal_pace"] != lengths["outermost_first"]).any()

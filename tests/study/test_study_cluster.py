@@ -32,7 +32,7 @@ def test_a_cluster_gives_the_same_table(cluster, computed_folder, tmp_path):
     assert contents(tmp_path / "store") == contents(computed_folder)
 
 
-def test_a_worker_killed_in_the_middle_costs_only_time(cluster, tmp_path):
+def test_a_killed_worker_only_delays_the_study(cluster, tmp_path):
     study = Study.product(tiny_scene(max_time=1.0), {"panel.friction": FRICTIONS})
     killed = []
 
@@ -71,7 +71,7 @@ def _allow_no_failure(dask_scheduler):
     dask_scheduler.allowed_failures = 0
 
 
-def test_no_scheduler_is_bad_input(monkeypatch):
+def test_a_missing_scheduler_is_bad_input(monkeypatch):
     monkeypatch.setattr("snowshed.study.cluster.CONNECT_S", 0.5)
     with pytest.raises(InputError, match=r"no Dask scheduler at tcp://127\.0\.0\.1:9"):
         DaskWorkers("tcp://127.0.0.1:9")

@@ -42,12 +42,12 @@ def run(*arguments):
     return main(["study", *map(str, arguments)])
 
 
-def test_from_template_to_table(tmp_path, file, capsys):
+def test_a_study_runs_from_its_file_to_a_table(tmp_path, file, capsys):
     folder = tmp_path / "store"
     assert run("run", file, "-o", folder, "--jobs", 1, "--threads", 1) == 0
-    shown = capsys.readouterr()
-    assert "3 runs to compute, 1 at once; expected time: " in shown.err
-    assert "3 of 3 runs done" in shown.out
+    output = capsys.readouterr()
+    assert "3 runs to compute, 1 at once; expected time: " in output.err
+    assert "3 of 3 runs done" in output.out
     assert run("status", folder) == 0
     assert capsys.readouterr().out.split() == ["tiny:", "3", "runs", "3", "done"]
     assert run("export", folder, "-o", tmp_path / "table.csv") == 0
@@ -65,24 +65,24 @@ def test_the_template_is_a_study(tmp_path, capsys):
     assert run("template", "-o", tmp_path / "study.toml") == 0
     assert (tmp_path / "study.toml").read_text() == text
     assert run("plan", tmp_path / "study.toml", "--jobs", 1) == 0
-    shown = capsys.readouterr().out
-    assert "cohesion-and-slope: 18 runs, 1 at once, about" in shown
-    assert "snow.cohesion, snow.critical_state_slope" in shown
+    output = capsys.readouterr().out
+    assert "cohesion-and-slope: 18 runs, 1 at once, about" in output
+    assert "snow.cohesion, snow.critical_state_slope" in output
 
 
-def test_status_of_a_store_that_lost_everything(tmp_path, capsys):
+def test_the_status_of_an_empty_store_is_an_error(tmp_path, capsys):
     (tmp_path / "store.sqlite").touch()
     assert run("status", tmp_path) == 2
     assert capsys.readouterr().err.startswith(f"error: {tmp_path}: holds no study")
 
 
-def test_status_of_an_unfinished_study(tmp_path, capsys):
+def test_the_status_lists_the_runs_of_an_unfinished_study(tmp_path, capsys):
     with Store.create(tmp_path / "store") as store:
         store.register("tiny", [], tiny_study().runs())
         store.record(outcome(HASHES[1], "failed", 1, "broken [/]"))
     assert run("status", tmp_path / "store") == 0
-    shown = capsys.readouterr().out
-    assert shown.splitlines() == [
+    output = capsys.readouterr().out
+    assert output.splitlines() == [
         "tiny: 3 runs",
         "       0 done",
         "       1 failed",
@@ -93,14 +93,14 @@ def test_status_of_an_unfinished_study(tmp_path, capsys):
     assert "2 of 3 runs are not computed yet" in capsys.readouterr().err
 
 
-def test_failed_runs_are_listed_and_code_3(tmp_path, scripted_workers, file, capsys):
+def test_failed_runs_are_listed_with_exit_code_3(tmp_path, scripted_workers, file, capsys):
     scripted_workers.answer = lambda task: (
         outcome(task.hash, "failed", 1, "broken") if task.hash == HASHES[1] else outcome(task.hash)
     )
     assert run("run", file, "-o", tmp_path / "store") == 3
-    shown = capsys.readouterr()
-    assert f"{HASHES[1][:12]} failed: broken" in shown.out
-    assert shown.err.endswith(f"error: 1 of 3 runs failed: {HASHES[1][:12]}\n")
+    output = capsys.readouterr()
+    assert f"{HASHES[1][:12]} failed: broken" in output.out
+    assert output.err.endswith(f"error: 1 of 3 runs failed: {HASHES[1][:12]}\n")
     assert run("resume", tmp_path / "store", "-q") == 3
     assert len(scripted_workers.tasks) == 3
     scripted_workers.answer = lambda task: outcome(task.hash)
@@ -108,7 +108,7 @@ def test_failed_runs_are_listed_and_code_3(tmp_path, scripted_workers, file, cap
     assert len(scripted_workers.tasks) == 4
 
 
-def test_the_scene_of_a_run_can_be_had(tmp_path, capsys):
+def test_the_scene_of_a_run_is_printed_and_saved(tmp_path, capsys):
     with Store.create(tmp_path / "store") as store:
         store.register("tiny", [], tiny_study().runs())
     assert run("scene", tmp_path / "store", HASHES[2][:10]) == 0
@@ -135,7 +135,7 @@ def test_the_scene_of_a_run_can_be_had(tmp_path, capsys):
         (["fly"], "fly"),
     ],
 )
-def test_bad_input_is_one_line_code_2_and_nothing_behind(
+def test_bad_input_gives_one_line_code_2_and_no_files(
     tmp_path, monkeypatch, capsys, file, arguments, message
 ):
     monkeypatch.chdir(tmp_path)
@@ -144,10 +144,10 @@ def test_bad_input_is_one_line_code_2_and_nothing_behind(
     (tmp_path / "full" / "thesis.txt").touch()
     before = sorted(tmp_path.rglob("*"))
     assert run(*arguments) == 2
-    shown = capsys.readouterr()
-    assert shown.out == ""
-    assert shown.err.startswith("error: ") and shown.err.count("\n") == 1
-    assert message in shown.err
+    output = capsys.readouterr()
+    assert output.out == ""
+    assert output.err.startswith("error: ") and output.err.count("\n") == 1
+    assert message in output.err
     assert sorted(tmp_path.rglob("*")) == before
 
 
@@ -162,16 +162,16 @@ def test_help_of_other_commands_does_not_load_the_studies():
 
 
 def progress(**values):
-    whole = {"fraction": 0.0, "done": 0, "count": 12, "unit": "runs", "at_once": 2}
-    return Progress(**{**whole, "expected_s": 95.0, **values})
+    defaults = {"fraction": 0.0, "done": 0, "count": 12, "unit": "runs", "at_once": 2}
+    return Progress(**{**defaults, "expected_s": 95.0, **values})
 
 
-def test_what_is_said_while_a_study_runs():
-    def said(facts):  # a second line may tell of slow kernels
+def test_announcements_and_progress_of_a_study():
+    def first_line(facts):  # a second line may warn of slow kernels
         return announcement(facts).partition("\nnote: ")[0]
 
-    assert said(progress()) == "12 runs to compute, 2 at once; expected time: about 95 s"
-    assert said(progress(done=10, failed=1)) == (
+    assert first_line(progress()) == "12 runs to compute, 2 at once; expected time: about 95 s"
+    assert first_line(progress(done=10, failed=1)) == (
         "1 run to compute (11 of 12 are done already), 2 at once; expected time: about 95 s"
     )
     assert progress(done=3, running=2).description == "3/12 runs, 2 running"

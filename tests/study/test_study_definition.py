@@ -1,4 +1,4 @@
-"""Which runs a study stands for."""
+"""The runs of a study."""
 
 import json
 
@@ -32,9 +32,9 @@ def test_the_last_axis_varies_fastest_and_seeds_faster_still():
     assert study.axes == ["panel.tilt", "snow.cohesion"]
 
 
-def test_factors_in_step_are_crossed_with_axes():
-    in_step = Factor({"panel.height": [1, 2], "panel.length": [3, 4]})
-    study = Study(tiny_scene(), [[in_step, axis("panel.tilt", [40, 50])]])
+def test_factors_of_several_parameters_are_crossed_with_axes():
+    dimensions = Factor({"panel.height": [1, 2], "panel.length": [3, 4]})
+    study = Study(tiny_scene(), [[dimensions, axis("panel.tilt", [40, 50])]])
     assert values(study, "panel.height", "panel.length", "panel.tilt") == [
         (1, 3, 40),
         (1, 3, 50),
@@ -60,7 +60,7 @@ def test_the_union_of_parts_has_every_run_once():
     assert values(twice, "panel.tilt") == [(40,), (50,), (60,)]
 
 
-def test_the_thesis_geometry_set():
+def test_the_geometry_study_of_the_thesis_has_610_rows():
     """Section 5.1: 385 rows at 40 degrees and 225 steeper ones, of five events each."""
     flat = [
         axis("panel.tilt", [40]),
@@ -77,18 +77,18 @@ def test_the_thesis_geometry_set():
     assert sum(json.loads(run.scene)["events"]["count"] for run in runs) == 610
 
 
-def test_a_study_of_nothing_is_its_scene():
+def test_a_study_without_factors_runs_its_scene():
     assert values(Study(tiny_scene()), "panel.tilt") == [(50,)]
 
 
-def test_a_study_leaves_its_scene_alone():
+def test_a_study_does_not_change_its_scene():
     scene = tiny_scene()
     before = scene.to_data()
     Study.product(scene, {"obstacles": [[], []], "panel.tilt": [1, 2]}).runs()
     assert scene.to_data() == before
 
 
-def test_words_are_values_too():
+def test_words_may_vary():
     study = Study.product(tiny_scene(), {"events.between": ["carry", "reseed"]})
     assert values(study, "events.between") == [("carry",), ("reseed",)]
 
@@ -117,7 +117,7 @@ def test_words_are_values_too():
         ),
     ],
 )
-def test_wrong_studies_are_refused_at_once(make, message):
+def test_wrong_studies_are_refused(make, message):
     with pytest.raises(InputError, match=message):
         make()
 

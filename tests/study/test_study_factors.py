@@ -1,4 +1,4 @@
-"""Values of axes and samples against expectations made by hand."""
+"""Values of axes and samples against values computed by hand."""
 
 import pytest
 
@@ -6,14 +6,14 @@ from snowshed import InputError
 from snowshed.study import Factor, Span, axis, latin_hypercube, linear, logarithmic, sobol
 
 
-def test_points_of_one_parameter():
+def test_points_of_a_single_parameter():
     assert axis("snow.cohesion", [0.1, 0.3]).points() == [
         {"snow.cohesion": 0.1},
         {"snow.cohesion": 0.3},
     ]
 
 
-def test_parameters_in_step():
+def test_several_parameters_may_vary_together():
     factor = Factor({"panel.height": [1, 2, 3], "panel.length": [4, 5, 6]})
     assert len(factor) == 3
     assert factor.points()[2] == {"panel.height": 3, "panel.length": 6}
@@ -27,7 +27,7 @@ def test_parameters_in_step():
         ({"panel.tilt": [1, 2], "panel.height": [1]}, "panel.tilt has 2, panel.height has 1"),
     ],
 )
-def test_factors_that_are_none(columns, message):
+def test_empty_and_unequal_factors_are_refused(columns, message):
     with pytest.raises(InputError, match=message):
         Factor(columns)
 
@@ -46,11 +46,11 @@ def test_factors_that_are_none(columns, message):
         (logarithmic(1, 8, 4), [1, 2, 4, 8]),
     ],
 )
-def test_ranges(values, expected):
+def test_ranges_have_the_expected_values(values, expected):
     assert values == expected
 
 
-def test_whole_numbers_stay_whole():
+def test_integers_stay_integers():
     assert all(isinstance(value, int) for value in linear(1, 5, step=2))
 
 
@@ -75,7 +75,7 @@ def test_whole_numbers_stay_whole():
         (lambda: latin_hypercube({}, 4), "names no parameter"),
     ],
 )
-def test_wrong_numbers_are_named(make, message):
+def test_wrong_numbers_are_refused(make, message):
     with pytest.raises(InputError, match=message):
         make()
 
@@ -92,7 +92,7 @@ def test_sobol_points_fill_every_elementary_box():
     assert len(boxes) == 16
 
 
-def test_a_seed_is_one_sample_and_another_seed_another():
+def test_a_seed_determines_the_sample():
     spans = {"a": Span(0, 1)}
     for method in (latin_hypercube, sobol):
         assert method(spans, 8, seed=3) == method(spans, 8, seed=3)

@@ -1,4 +1,4 @@
-"""Study files: their meaning, and the messages about wrong ones."""
+"""Study files: their meaning, and messages on errors."""
 
 import json
 import re
@@ -37,7 +37,7 @@ def values(study, *paths):
     return [tuple(value_at(scene, path) for path in paths) for scene in scenes]
 
 
-def test_the_template(load):
+def test_the_template_has_its_axes_and_settings(load):
     study = load(TEMPLATE)
     assert study.name == "cohesion-and-slope"
     assert study.axes == ["snow.cohesion", "snow.critical_state_slope"]
@@ -52,7 +52,7 @@ def test_the_template(load):
     assert set(values(study, *settings)) == {(2, 3, 0.2, 0.02, 0.5)}
 
 
-def test_what_the_template_has_commented_out_is_right_too(load):
+def test_commented_lines_of_the_template_are_valid(load):
     code = re.sub(r"^# (?=\[|[a-z_.]+ = )", "", TEMPLATE, flags=re.MULTILINE)
     code = code.replace("[0.1, 0.2, 0.3]", "[0.1]").replace("seeds = 2", "seeds = 1")
     study = load(code.replace("count = 20", "count = 2").replace('file = "', '# file = "'))
@@ -64,7 +64,7 @@ def test_what_the_template_has_commented_out_is_right_too(load):
     ]
 
 
-def test_the_name_is_the_files_unless_given(load):
+def test_the_name_defaults_to_that_of_the_file(load):
     assert load(SCENE).name == "study"
     assert load('name = "other"' + SCENE).name == "other"
 
@@ -86,7 +86,7 @@ def test_axes_of_all_forms(load):
     ]
 
 
-def test_parameters_called_like_the_keys_of_a_range_may_be_nested(load):
+def test_parameters_with_names_of_range_keys_may_be_nested(load):
     study = load(SCENE + "[axes]\nevents = { count = [1, 3] }\npanel.tilt = 40")
     assert values(study, "events.count") == [(1,), (3,)]
 
@@ -115,7 +115,7 @@ def test_zipped_groups_and_samples_are_crossed_with_axes(load):
     assert all(0.1 <= friction <= 0.3 and 100 <= density <= 400 for friction, density in sampled)
 
 
-def test_parts_are_united_and_crossed_with_what_stands_above(load):
+def test_parts_are_united_and_crossed_with_common_axes(load):
     study = load(
         SCENE
         + """
@@ -138,7 +138,7 @@ def test_parts_are_united_and_crossed_with_what_stands_above(load):
     ]
 
 
-def test_seeds(load):
+def test_seeds_are_a_count_or_a_list(load):
     assert values(load("seeds = 3" + SCENE), "seeding.seed") == [(1,), (2,), (3,)]
     assert values(load("seeds = [7, 3]" + SCENE), "seeding.seed") == [(7,), (3,)]
     assert values(load(SCENE), "seeding.seed") == [(1,)]
@@ -165,7 +165,7 @@ def test_later_sources_of_the_scene_override_earlier_ones(load, tmp_path):
     assert values(study, *paths) == [(0.33, 33, 0.12, 0.1, 0.02)]
 
 
-def test_files_are_found_from_the_file_that_names_them(load, tmp_path):
+def test_paths_are_relative_to_the_file_that_contains_them(load, tmp_path):
     for folder in ("", "other"):
         (tmp_path / folder).mkdir(exist_ok=True)
         np.save(tmp_path / folder / "grid.npy", np.ones((3, 3)))
@@ -184,7 +184,7 @@ def test_files_are_found_from_the_file_that_names_them(load, tmp_path):
             '"obstacles.0.shape.file" = ["grid.npy", "other/grid.npy"]\n[accuracy]',
         )
     )
-    # Both files hold the same, so they are the same run.
+    # Both files have the same content, so they give the same run.
     assert values(inline, "obstacles.0.shape.file") == [(str(tmp_path / "grid.npy"),)]
 
 
@@ -269,7 +269,7 @@ def test_files_are_found_from_the_file_that_names_them(load, tmp_path):
         ),
     ],
 )
-def test_errors_name_file_key_and_what_is_allowed(load, tmp_path, text, message):
+def test_errors_name_file_key_and_allowed_values(load, tmp_path, text, message):
     with pytest.raises(InputError, match=message) as caught:
         load(text)
     assert str(caught.value).startswith(f"{tmp_path / 'study.toml'}: ")

@@ -1,4 +1,4 @@
-"""Studies of loading tests: the same figures as of tests run alone."""
+"""Studies of loading tests give the figures of single tests."""
 
 import json
 
@@ -11,7 +11,7 @@ from snowshed.scene import grains_scene
 from snowshed.study import Study, read_table
 
 
-def test_the_table_tells_what_a_test_alone_tells(tmp_path):
+def test_the_table_agrees_with_a_single_test(tmp_path):
     scene = grains_scene(
         write_labels(tmp_path),
         VOXEL,
@@ -24,10 +24,10 @@ def test_the_table_tells_what_a_test_alone_tells(tmp_path):
     table = read_table(tmp_path / "runs")
     assert table["ended"].tolist() == ["rest", "rest"]
     run(json.loads(study.runs()[-1].scene), tmp_path / "out", pictures=False)
-    alone = json.loads((tmp_path / "out/grains.json").read_text())
+    single = json.loads((tmp_path / "out/grains.json").read_text())
     row = table.iloc[-1]
-    assert row["final_particles"] == alone["final_particles"]
+    assert row["final_particles"] == single["final_particles"]
     for name in ("spheres", "bonds", "tangent_modulus_pa", "strength_pa", "axial_strain"):
-        assert row[name] == pytest.approx(alone[name], rel=1e-15)
+        assert row[name] == pytest.approx(single[name], rel=1e-15)
     soft, stiff = table["tangent_modulus_pa"]
     assert soft < stiff

@@ -1,4 +1,4 @@
-"""The interface is whole."""
+"""The public interface of studies, and the examples of its guide."""
 
 import re
 
@@ -13,7 +13,7 @@ DOCS = (ROOT / "docs" / "guides" / "studies.md").read_text()
 TABLES_PAGE = (ROOT / "docs" / "reference" / "study-table.md").read_text()
 
 
-def test_every_public_name_is_there():
+def test_every_public_name_is_documented():
     for name in snowshed.study.__all__:
         assert getattr(snowshed.study, name).__doc__
 
@@ -32,11 +32,11 @@ def test_study_files_in_the_docs(tmp_path, block, runs):
 def test_scripts_in_the_docs(tmp_path, monkeypatch, capsys, block):
     monkeypatch.chdir(tmp_path)
     exec(block.replace('.run("results")', '.run("results", jobs=1)'), {})
-    shown = capsys.readouterr().out
-    assert "panel.tilt" in shown
+    output = capsys.readouterr().out
+    assert "panel.tilt" in output
 
 
-def test_the_docs_know_the_tables_of_the_store():
+def test_the_docs_describe_the_tables_of_the_store():
     for table in TABLES:
         if name := re.match(r"CREATE TABLE (?:IF NOT EXISTS )?(\w+)", table):
             assert f"| `{name[1]}` |" in TABLES_PAGE

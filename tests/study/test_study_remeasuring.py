@@ -1,11 +1,11 @@
-"""Stacks measured again from the particles that a store keeps."""
+"""Stacks measured again from the particles in a store."""
 
 import sqlite3
 
 import numpy as np
 import pandas as pd
 import pytest
-from study_helpers import ALONE, outcome, tiny_scene, tiny_study
+from study_helpers import SEQUENTIAL, outcome, tiny_scene, tiny_study
 
 from snowshed import InputError
 from snowshed.cli.main import main
@@ -18,47 +18,52 @@ from snowshed.study.store import Store
 
 
 @pytest.fixture(scope="module")
-def kept(tmp_path_factory):
+def store_with_particles(tmp_path_factory):
     """A run whose slabs have slid off, and one whose slabs stay, with their particles."""
     folder = tmp_path_factory.mktemp("kept") / "store"
     study = Study.product(tiny_scene(0.45), {"panel.friction": [0.1, 1.5]}, name="kept")
-    study.compute(folder, keep_particles=True, **ALONE)
+    study.compute(folder, keep_particles=True, **SEQUENTIAL)
     return folder
 
 
-def test_a_remeasured_table_is_the_measured_one(kept):
-    measured, again = read_table(kept), remeasure(kept)
-    assert list(again.columns) == list(measured.columns)
+def test_a_remeasured_table_equals_the_measured_table(store_with_particles):
+    measured, remeasured = read_table(store_with_particles), remeasure(store_with_particles)
+    assert list(remeasured.columns) == list(measured.columns)
     assert (measured["on_panel_kg"] > 0).any() and (measured["mass_kg"] > 0).any()
     for name in measured:
         if measured[name].dtype.kind == "f":
-            np.testing.assert_allclose(again[name], measured[name], rtol=1e-5, atol=1e-6)
+            np.testing.assert_allclose(remeasured[name], measured[name], rtol=1e-5, atol=1e-6)
         else:
-            assert again[name].tolist() == measured[name].tolist()
+            assert remeasured[name].tolist() == measured[name].tolist()
 
 
-def test_another_reading_takes_the_columns_without_a_prefix(kept):
-    first, other = remeasure(kept), remeasure(kept, trimming="equal_pace")
-    assert set(other["trimming"]) == {"equal_pace"}
+def test_another_trimming_rule_takes_the_columns_without_a_prefix(store_with_particles):
+    default, equal_pace = (
+        remeasure(store_with_particles),
+        remeasure(store_with_particles, trimming="equal_pace"),
+    )
+    assert set(equal_pace["trimming"]) == {"equal_pace"}
     for quantity in QUANTITIES:
         named = MEASURES["equal_pace"].column(quantity)
-        pd.testing.assert_series_equal(other[f"{quantity}_m"], first[named], check_names=False)
-    assert (other["length_m"] != first["length_m"]).any()
+        pd.testing.assert_series_equal(
+            equal_pace[f"{quantity}_m"], default[named], check_names=False
+        )
+    assert (equal_pace["length_m"] != default["length_m"]).any()
 
 
-def test_a_measure_of_ones_own(kept):
-    def highest(found):
-        return {"highest_m": float(found.positions[~found.on_panel, 2].max(initial=0.0))}
+def test_custom_measures_are_evaluated(store_with_particles):
+    def highest(particles):
+        return {"highest_m": float(particles.positions[~particles.on_panel, 2].max(initial=0.0))}
 
-    table = remeasure(kept, "kept", measure=highest)
+    table = remeasure(store_with_particles, "kept", measure=highest)
     assert (table["highest_m"] >= table["height_m"] - 1e-6).all()
     assert (table["highest_m"] > 0).any()
 
 
-def test_three_dimensions_are_kept_too():
+def test_particles_in_3d_are_read_back_as_stored():
     random = np.random.default_rng(1)
     ones = np.ones(1003, dtype=np.float32)
-    found = EventParticles(
+    particles = EventParticles(
         random.normal(size=(1003, 3)).astype(np.float32),
         ones,
         200 * ones,
@@ -67,27 +72,29 @@ def test_three_dimensions_are_kept_too():
         0.02,
         12.5,
     )
-    again = EventParticles.unpacked(found.packed())
-    for name, value in vars(found).items():
-        np.testing.assert_array_equal(getattr(again, name), value)
-    assert repr(again.measure()) == repr(found.measure())
+    unpacked = EventParticles.unpacked(particles.packed())
+    for name, value in vars(particles).items():
+        np.testing.assert_array_equal(getattr(unpacked, name), value)
+    assert repr(unpacked.measure()) == repr(particles.measure())
 
 
-def test_particles_are_kept_only_where_asked_for(tmp_path, kept):
+def test_particles_are_stored_only_on_request(tmp_path, store_with_particles):
     study = tiny_study(frictions=(0.1,))
-    study.compute(tmp_path / "store", **ALONE)
+    study.compute(tmp_path / "store", **SEQUENTIAL)
     with pytest.raises(InputError, match=r"no particles of 2 of 2 stacks.*without keep_particles"):
         remeasure(tmp_path / "store")
-    study.compute(tmp_path / "store", keep_particles=True, **ALONE)  # computed: nothing to keep
+    study.compute(
+        tmp_path / "store", keep_particles=True, **SEQUENTIAL
+    )  # already computed: no particles to store
     with Store.open(tmp_path / "store") as store:
         assert store.particles(study.runs()[0].hash) == {}
 
 
-def test_a_study_that_is_resumed_keeps_them_as_it_was_asked(tmp_path):
+def test_a_resumed_study_stores_particles_as_requested(tmp_path):
     study = tiny_study(frictions=(0.1,))
     with Store.create(tmp_path / "store") as store:
         store.register(study.name, study.axes, study.runs(), keep_particles=True)
-    resume(tmp_path / "store", **ALONE)
+    resume(tmp_path / "store", **SEQUENTIAL)
     assert len(remeasure(tmp_path / "store")) == 2
 
 
@@ -97,7 +104,7 @@ def test_a_failed_run_keeps_its_row_without_a_stack(tmp_path):
     with Store.create(tmp_path / "store") as store:
         store.register(study.name, study.axes, runs, keep_particles=True)
         store.record(outcome(runs[0].hash, "failed", 0, "broken"))
-    resume(tmp_path / "store", **ALONE)
+    resume(tmp_path / "store", **SEQUENTIAL)
     table = remeasure(tmp_path / "store")
     assert table["ended"].tolist()[0] == "failed" and len(table) == 5
     assert table["height_m"].isna().tolist() == [True] + 4 * [False]
@@ -125,16 +132,16 @@ def test_failed_runs_that_are_reset_lose_their_particles(tmp_path):
         ("a text", r"run \w+.*its particles are no bytes"),
     ],
 )
-def test_damaged_particles_are_named(tmp_path, data, message):
+def test_damaged_particles_are_refused(tmp_path, data, message):
     study = tiny_study(frictions=(0.1,))
-    study.compute(tmp_path / "store", keep_particles=True, **ALONE)
+    study.compute(tmp_path / "store", keep_particles=True, **SEQUENTIAL)
     with sqlite3.connect(tmp_path / "store" / FILE) as database:
         database.execute("UPDATE event_particles SET data = ? WHERE event = 2", (data,))
     with pytest.raises(InputError, match=rf"store\.sqlite: damaged: {message}"):
         remeasure(tmp_path / "store")
 
 
-def test_the_commands(tmp_path, capsys):
+def test_the_commands_store_and_remeasure_particles(tmp_path, capsys):
     tiny_study(frictions=(0.1,)).save(tmp_path / "study.toml")
     store, table = str(tmp_path / "store"), str(tmp_path / "table.csv")
     command = ["study", "run", str(tmp_path / "study.toml"), "-o", store, "--jobs", "1", "-q"]

@@ -1,4 +1,4 @@
-"""Studies computed by real processes: the same numbers as single runs, whatever happens."""
+"""Studies computed by real processes have the numbers of single runs, also after failures."""
 
 import json
 import os
@@ -14,7 +14,7 @@ import pandas as pd
 import pytest
 import study_helpers
 from helpers.processes import children_of, snowshed_command, wait_for
-from study_helpers import ALONE, contents, tiny_scene, tiny_study
+from study_helpers import SEQUENTIAL, contents, tiny_scene, tiny_study
 
 from snowshed import Obstacle, ResolvedScene, Shape, _core, read_events, run_events
 from snowshed.study import RunKey, Study, StudyError, read_table, resume
@@ -54,11 +54,11 @@ COMPUTE = ("--jobs", 1, "--threads", 1, "-q")
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory):
+def uninterrupted_study(tmp_path_factory):
     """The study file of `KILLABLE`, and the folder where it was computed without interruption."""
     folder = tmp_path_factory.mktemp("whole")
     (folder / "study.toml").write_text(KILLABLE)
-    Study.load(folder / "study.toml").run(folder / "store", **ALONE)
+    Study.load(folder / "study.toml").run(folder / "store", **SEQUENTIAL)
     return folder / "study.toml", folder / "store"
 
 
@@ -68,7 +68,7 @@ def task_of(scene, folder: Path) -> RunTask:
 
 
 def long_scene():
-    """Some seconds, with checkpoints on the way."""
+    """A scene of some seconds with frequent checkpoints."""
     return tiny_scene(max_time=1.0, events=8).set("output.checkpoint_interval", 0.01)
 
 
@@ -79,13 +79,13 @@ def outcome_of(workers):
     return ended[0]
 
 
-def test_the_table_holds_what_single_runs_give(computed_folder, tmp_path):
+def test_the_table_agrees_with_single_runs(computed_folder, tmp_path):
     table = read_table(computed_folder)
     for i, run in enumerate(tiny_study().runs()):
         run_events(ResolvedScene.parse(run.scene), tmp_path / str(i), pictures=False)
-        alone = read_events(tmp_path / str(i))[["event", *MEASURED_TYPES]]
+        single = read_events(tmp_path / str(i))[["event", *MEASURED_TYPES]]
         rows = table[table["hash"] == run.hash][["event", *MEASURED_TYPES]].reset_index(drop=True)
-        pd.testing.assert_frame_equal(rows, alone, check_dtype=False)
+        pd.testing.assert_frame_equal(rows, single, check_dtype=False)
     assert len(table) == 6
 
 
@@ -94,7 +94,7 @@ def test_neither_order_nor_threads_nor_parallel_work_change_the_table(computed_f
     assert contents(tmp_path / "store") == contents(computed_folder)
 
 
-def test_a_run_that_cannot_go_on_is_a_row_with_its_error(tmp_path):
+def test_a_failed_run_is_a_row_with_its_error(tmp_path):
     # The content of an obstacle's file is checked only when the run begins.
     np.save(tmp_path / "good.npy", np.hypot(*np.mgrid[-1:2, -1:2]) * 0.1 - 0.05)
     (tmp_path / "bad.npy").write_text("no array")
@@ -102,7 +102,7 @@ def test_a_run_that_cannot_go_on_is_a_row_with_its_error(tmp_path):
     scene = tiny_scene().append("obstacles", Obstacle(shape=shape))
     files = [str(tmp_path / "bad.npy"), str(tmp_path / "good.npy")]
     study = Study.product(scene, {"obstacles.0.shape.file": files})
-    table = study.run(tmp_path / "store", **ALONE)
+    table = study.run(tmp_path / "store", **SEQUENTIAL)
     assert table["obstacles.0.shape.file"].tolist() == [files[0], files[1], files[1]]
     assert table.ended.tolist() == ["failed", "time_limit", "time_limit"]
     assert "bad.npy" in table.error[0] and table.error[1:].tolist() == ["", ""]
@@ -124,20 +124,20 @@ def test_a_worker_computes_one_task_after_another(tmp_path):
         workers.close()
 
 
-def test_a_killed_worker_is_replaced_and_the_others_do_not_notice(tmp_path):
+def test_a_killed_worker_is_replaced_and_the_others_continue(tmp_path):
     workers = LocalWorkers(2, 1, 2)
     try:
         doomed = task_of(long_scene(), tmp_path / "doomed")
-        other = task_of(tiny_scene(), tmp_path / "other")
+        other_task = task_of(tiny_scene(), tmp_path / "other")
         workers.submit(doomed)
-        workers.submit(other)
+        workers.submit(other_task)
         victim = workers.pool.process_ids[0]
         wait_for(lambda: (tmp_path / "doomed" / "results" / "scene.json").exists())
         os.kill(victim, signal.SIGKILL)
         outcomes = {}
         while len(outcomes) < 2:
             outcomes.update((outcome.hash, outcome) for outcome in workers.collect(10))
-        assert outcomes[other.hash].status == "done"
+        assert outcomes[other_task.hash].status == "done"
         assert outcomes[doomed.hash].status == "lost"
         assert outcomes[doomed.hash].error == "the worker was killed by signal 9 (Killed)"
         workers.submit(doomed)
@@ -146,9 +146,9 @@ def test_a_killed_worker_is_replaced_and_the_others_do_not_notice(tmp_path):
         workers.close()
 
 
-def test_a_stopped_worker_leaves_a_checkpoint_and_another_ends_with_the_same_bits(tmp_path):
+def test_a_stopped_run_is_resumed_by_another_worker_to_the_same_bits(tmp_path):
     task = task_of(long_scene(), tmp_path / "stopped")
-    whole = compute(task_of(long_scene(), tmp_path / "whole"))
+    expected = compute(task_of(long_scene(), tmp_path / "whole"))
     workers = LocalWorkers(1, 1, 1)
     workers.submit(task)
     wait_for(lambda: workers.collect(0.05) or workers.fractions.get(task.hash, 0) > 0)
@@ -158,24 +158,24 @@ def test_a_stopped_worker_leaves_a_checkpoint_and_another_ends_with_the_same_bit
     assert json.loads((results / "run.json").read_text())["status"] == "interrupted"
     resumed = compute(task)
     assert resumed.status == "done"
-    assert untimed(resumed) == untimed(whole)
+    assert untimed(resumed) == untimed(expected)
 
 
 def untimed(outcome):
     return [{k: v for k, v in row.items() if k != "wall_s"} for row in outcome.events]
 
 
-def test_what_an_attempt_left_half_written_does_not_hinder_the_next(tmp_path):
-    whole = compute(task_of(tiny_scene(), tmp_path / "whole"))
+def test_incomplete_files_of_an_attempt_do_not_hinder_the_next(tmp_path):
+    expected = compute(task_of(tiny_scene(), tmp_path / "whole"))
     results = tmp_path / "torn" / "results"
     results.mkdir(parents=True)
     (results / ".scene.123.json").touch()
-    assert untimed(compute(task_of(tiny_scene(), tmp_path / "torn"))) == untimed(whole)
+    assert untimed(compute(task_of(tiny_scene(), tmp_path / "torn"))) == untimed(expected)
     (results / "checkpoint.bin").write_bytes(b"torn")
-    assert untimed(compute(task_of(tiny_scene(), tmp_path / "torn"))) == untimed(whole)
+    assert untimed(compute(task_of(tiny_scene(), tmp_path / "torn"))) == untimed(expected)
 
 
-def test_a_failure_is_reported_alike_after_its_process_was_killed(tmp_path, monkeypatch):
+def test_a_failure_is_reported_again_after_its_process_was_killed(tmp_path, monkeypatch):
     def fail(*_):
         raise _core.SimulationError("time step underflow")
 
@@ -183,12 +183,12 @@ def test_a_failure_is_reported_alike_after_its_process_was_killed(tmp_path, monk
     monkeypatch.setattr(_core.EventSequence, "run", fail)
     first = compute(task)
     monkeypatch.undo()
-    again = compute(task)
-    assert (first.status, first.error) == (again.status, again.error)
-    assert again.error == "time step underflow"
+    second = compute(task)
+    assert (first.status, first.error) == (second.status, second.error)
+    assert second.error == "time step underflow"
 
 
-def test_without_memory_enough_a_run_can_be_tried_again(tmp_path, monkeypatch):
+def test_a_run_that_lacked_memory_can_be_repeated(tmp_path, monkeypatch):
     def run_out_of_memory(*_):
         raise MemoryError
 
@@ -213,14 +213,16 @@ def test_without_shared_files_a_run_works_in_a_temporary_folder(tmp_path):
     assert not (tmp_path / "elsewhere").exists()
 
 
-def test_workers_that_cannot_start_are_no_fault_of_the_runs(tmp_path, monkeypatch):
+def test_workers_that_cannot_start_stop_the_study(tmp_path, monkeypatch):
     monkeypatch.setattr(sys, "executable", "/bin/false")
     with pytest.raises(StudyError, match="no worker can start: it ended with code 1"):
-        tiny_study().run(tmp_path / "store", **ALONE)
+        tiny_study().run(tmp_path / "store", **SEQUENTIAL)
 
 
-def test_no_worker_outlives_a_killed_study(tmp_path, whole):
-    command = snowshed_command("study", "run", whole[0], "-o", tmp_path / "s", *COMPUTE)
+def test_no_worker_outlives_a_killed_study(tmp_path, uninterrupted_study):
+    command = snowshed_command(
+        "study", "run", uninterrupted_study[0], "-o", tmp_path / "s", *COMPUTE
+    )
     wait_for(lambda: list((tmp_path / "s").glob("running/*/results/scene.json")))
     children = children_of(command.pid)
     assert children
@@ -229,10 +231,11 @@ def test_no_worker_outlives_a_killed_study(tmp_path, whole):
     wait_for(lambda: not any(Path(f"/proc/{child}").exists() for child in children))
 
 
-def test_ctrl_c_says_how_to_go_on_and_the_rest_is_computed(tmp_path):
+def test_ctrl_c_says_how_to_resume_and_the_rest_is_computed(tmp_path):
     study, folder = tmp_path / "study.toml", tmp_path / "store"
     longer = KILLABLE.replace("events = 2", "events = 4").replace("dx = 0.02", "dx = 0.01")
-    study.write_text(longer.replace("seeds = 2", "seeds = 1"))  # none ends before it is stopped
+    # The runs are long, so that none ends before the signal.
+    study.write_text(longer.replace("seeds = 2", "seeds = 1"))
     command = snowshed_command("study", "run", study, "-o", folder, *COMPUTE)
     wait_for(lambda: list(folder.glob("running/*/results/scene.json")))
     command.send_signal(signal.SIGINT)
@@ -242,17 +245,16 @@ def test_ctrl_c_says_how_to_go_on_and_the_rest_is_computed(tmp_path):
     statuses = [
         json.loads(path.read_text())["status"] for path in folder.glob("running/*/results/run.json")
     ]
-    assert statuses in ([], ["interrupted"])  # none if it was stopped before it began
-    resume(folder, **ALONE)
+    assert statuses in ([], ["interrupted"])  # empty if it was stopped before its run began
+    resume(folder, **SEQUENTIAL)
     with Store.open(folder) as store:
         assert {run.status for run in store.runs("study")} == {"done"}
 
 
 def kill_at_random_moments(study: Path, folder: Path, kills: int, rng: random.Random) -> int:
-    """Run a study, killing it again and again; return how often before it was done."""
+    """Run a study and kill it at random moments; return the number of kills until it was done."""
     for kill in range(kills):
         command = snowshed_command("study", "run", study, "-o", folder, *COMPUTE)
-        # Half of the time only the worker dies.
         victim = command.pid
         try:
             command.wait(rng.uniform(0.1, 3.0))
@@ -268,8 +270,8 @@ def kill_at_random_moments(study: Path, folder: Path, kills: int, rng: random.Ra
     return kills
 
 
-def kill_and_compare(tmp_path, whole, kills):
-    study, uninterrupted = whole
+def kill_and_compare(tmp_path, uninterrupted_study, kills):
+    study, uninterrupted = uninterrupted_study
     expected = contents(uninterrupted)
     table = read_table(uninterrupted).to_csv()
     rng = random.Random(kills)
@@ -278,19 +280,19 @@ def kill_and_compare(tmp_path, whole, kills):
         attempt += 1
         folder = tmp_path / f"killed-{attempt}"
         done += kill_at_random_moments(study, folder, kills - done, rng)
-        Study.load(study).run(folder, **ALONE)
+        Study.load(study).run(folder, **SEQUENTIAL)
         assert contents(folder) == expected
         assert read_table(folder).to_csv() == table
         assert not any((folder / "running").iterdir())
 
 
-def test_killed_at_random_moments_the_table_is_the_same(tmp_path, whole):
-    kill_and_compare(tmp_path, whole, kills=4)
+def test_kills_at_random_moments_do_not_change_the_table(tmp_path, uninterrupted_study):
+    kill_and_compare(tmp_path, uninterrupted_study, kills=4)
 
 
 @pytest.mark.slow
-def test_killed_a_hundred_times_the_table_is_the_same(tmp_path, whole):
-    kill_and_compare(tmp_path, whole, kills=100)
+def test_a_hundred_kills_do_not_change_the_table(tmp_path, uninterrupted_study):
+    kill_and_compare(tmp_path, uninterrupted_study, kills=100)
 
 
 def test_two_processes_share_one_store(tmp_path, computed_folder):
@@ -312,8 +314,8 @@ def test_two_processes_share_one_store(tmp_path, computed_folder):
     ],
     ids=["making the store", "storing results", "writing results"],
 )
-def test_a_disk_that_takes_no_more(tmp_path, limit_kb, seeding, file, computed_folder):
-    """The limit on the size of files stands for the full disk, at different places."""
+def test_a_full_disk_is_an_error_without_loss(tmp_path, limit_kb, seeding, file, computed_folder):
+    """A limit on the size of files imitates a full disk, at different stages."""
     (tmp_path / "study.toml").write_text(f"{TINY}[accuracy]\ndx = 0.02\n{seeding}")
     command = ["study", "run", str(tmp_path / "study.toml"), "-o", str(tmp_path / "full"), "-q"]
     limited = (
@@ -328,9 +330,9 @@ def test_a_disk_that_takes_no_more(tmp_path, limit_kb, seeding, file, computed_f
     assert full.stderr.startswith("error: ") and full.stderr.count("\n") == 1
     assert file in full.stderr and "stored results are safe" in full.stderr
     study = Study.load(tmp_path / "study.toml")
-    study.run(tmp_path / "full", **ALONE)
+    study.run(tmp_path / "full", **SEQUENTIAL)
     if seeding:
-        study.run(tmp_path / "whole", **ALONE)
+        study.run(tmp_path / "whole", **SEQUENTIAL)
     assert contents(tmp_path / "full") == contents(
         tmp_path / "whole" if seeding else computed_folder
     )

@@ -4,7 +4,7 @@ from datetime import datetime, timedelta
 
 import pandas as pd
 import pytest
-from study_helpers import ALONE, tiny_scene
+from study_helpers import SEQUENTIAL, tiny_scene
 
 from snowshed import InputError, read_events
 from snowshed.cli.main import main
@@ -20,7 +20,7 @@ SETTINGS = SeasonSettings(friction=0.5)
 
 
 def file_of(folder):
-    lines = [f"{one.date:%Y-%m-%d},{one.snowfall},{one.temperature}" for one in WINTER]
+    lines = [f"{row.date:%Y-%m-%d},{row.snowfall},{row.temperature}" for row in WINTER]
     file = folder / "winter.csv"
     file.write_text("\n".join(["date,snowfall_m,temperature_c", *lines]) + "\n")
     return file
@@ -31,18 +31,18 @@ def tilts(season, values=(40, 50)):
     return Study.product(scene, {"panel.tilt": list(values)}, name="tilts", season=season)
 
 
-def test_a_run_is_the_season_of_its_panel(tmp_path):
+def test_a_run_equals_the_season_of_its_panel(tmp_path):
     study = tilts(SeasonPart(WINTER, SETTINGS), (50,))
-    table = study.run(tmp_path / "store", **ALONE)
-    alone = tmp_path / "season"
+    table = study.run(tmp_path / "store", **SEQUENTIAL)
+    single = tmp_path / "season"
     scene = tiny_scene(max_time=0.3).update({"panel.width": 1.0, "panel.tilt": 50})
-    result = run_season(WINTER, scene, alone, settings=SETTINGS, pictures=False)
+    result = run_season(WINTER, scene, single, settings=SETTINGS, pictures=False)
     assert result.simulated == len(table) == 2
-    events = read_events(alone / "run")
+    events = read_events(single / "run")
     for name in ("height_m", "length_m", "mass_kg", "sim_time_s", "steps"):
         assert table[name].to_numpy() == pytest.approx(events[name].to_numpy(), rel=1e-8), name
     assert table["panel.tilt"].unique().tolist() == [50]
-    resume(tmp_path / "store", **ALONE)  # nothing is left; the store knows how its runs age
+    resume(tmp_path / "store", **SEQUENTIAL)  # computes nothing; the store records the season
     pd.testing.assert_frame_equal(read_table(tmp_path / "store"), table)
 
 
@@ -58,14 +58,14 @@ def test_a_study_file_names_the_winter(tmp_path, capsys):
     study = Study.load(file)
     assert study.season.settings == SeasonSettings(friction=0.5, settling=None, cover=0.1)
     study.save(tmp_path / "again.toml")
-    again = Study.load(tmp_path / "again.toml")
-    assert [run.hash for run in again.runs()] == [run.hash for run in study.runs()]
+    reloaded = Study.load(tmp_path / "again.toml")
+    assert [run.hash for run in reloaded.runs()] == [run.hash for run in study.runs()]
     assert len({run.hash for run in study.runs()}) == 2
     assert main(["study", "plan", str(file)]) == 0
     assert "2 runs" in capsys.readouterr().out
-    rougher = tmp_path / "other.toml"
-    rougher.write_text(file.read_text().replace("cover = 0.1", 'density = "jordan-1999"'))
-    hashes = {run.hash for run in Study.load(rougher).runs()}
+    other_density = tmp_path / "other.toml"
+    other_density.write_text(file.read_text().replace("cover = 0.1", 'density = "jordan-1999"'))
+    hashes = {run.hash for run in Study.load(other_density).runs()}
     assert len(hashes) == 2 and hashes.isdisjoint(run.hash for run in study.runs())
 
 
@@ -84,7 +84,7 @@ def test_a_study_file_names_the_winter(tmp_path, capsys):
         ('weather = "winter.csv"\nfriction = 5', r"panel.tilt = 40: no snow slides off"),
     ],
 )
-def test_bad_winters_are_named(tmp_path, season, message):
+def test_bad_seasons_are_refused(tmp_path, season, message):
     file_of(tmp_path)
     file = tmp_path / "study.toml"
     scene = '[scene]\npreset = "lab-50"\ndimension = 2\n'
@@ -93,7 +93,7 @@ def test_bad_winters_are_named(tmp_path, season, message):
         Study.load(file)
 
 
-def test_what_the_winter_decides_cannot_vary(tmp_path):
+def test_parameters_set_by_the_winter_cannot_vary(tmp_path):
     part = SeasonPart(WINTER, SETTINGS)
     for path, value in (("slab.thickness", 0.1), ("events.count", 2)):
         with pytest.raises(InputError, match="cannot be varied; the weather of the season sets it"):

@@ -1,4 +1,4 @@
-"""How the runs of a study are handed out, and what becomes of their outcomes."""
+"""Distribution of a study's runs to workers, and handling of their outcomes."""
 
 import signal
 import threading
@@ -67,7 +67,7 @@ def test_a_failed_run_does_not_stop_the_others_and_can_be_tried_again(scripted_w
     assert states(tmp_path / "store") == [("done", None)] * 3
 
 
-def test_a_worker_that_dies_costs_only_its_run(scripted_workers, tmp_path):
+def test_the_run_of_a_dead_worker_is_repeated(scripted_workers, tmp_path):
     died = []
 
     def die_once(task):
@@ -94,7 +94,7 @@ def test_a_run_whose_workers_always_die_fails(scripted_workers, tmp_path):
     assert error == "gave up after 3 attempts: the worker was killed by signal 9 (Killed)"
 
 
-def test_a_machine_that_cannot_stops_the_study_and_loses_nothing(scripted_workers, tmp_path):
+def test_a_machine_that_is_unable_stops_the_study_without_loss(scripted_workers, tmp_path):
     scripted_workers.answer = lambda task: (
         outcome(task.hash)
         if len(scripted_workers.tasks) < 3
@@ -113,8 +113,8 @@ def test_a_machine_that_cannot_stops_the_study_and_loses_nothing(scripted_worker
     assert states(tmp_path / "store") == [("done", None)] * 3
 
 
-def test_runs_that_end_beside_one_that_cannot_are_stored(scripted_workers, tmp_path, monkeypatch):
-    """Two end at once, the first unable; the third ends while the workers are stopped."""
+def test_runs_that_end_beside_an_unable_run_are_stored(scripted_workers, tmp_path, monkeypatch):
+    """Two runs end at once, the first as unable; the third ends while the workers are stopped."""
 
     def unable_first(task):
         unable = task.hash == scripted_workers.tasks[0].hash
@@ -136,7 +136,7 @@ def test_runs_that_end_beside_one_that_cannot_are_stored(scripted_workers, tmp_p
     assert [status for status, _ in states(tmp_path / "store")] == ["pending", "done", "done"]
 
 
-def test_a_full_disk_while_storing(scripted_workers, tmp_path, monkeypatch):
+def test_a_full_disk_while_storing_leaves_runs_pending(scripted_workers, tmp_path, monkeypatch):
     monkeypatch.setattr(session.Store, "record", _fill_disk_then_record(session.Store.record))
     with pytest.raises(StudyError, match="disk is full"):
         STUDY.run(tmp_path / "store")
@@ -147,19 +147,19 @@ def test_a_full_disk_while_storing(scripted_workers, tmp_path, monkeypatch):
 
 
 def _fill_disk_then_record(record):
-    def full(store, given):
+    def full(store, result):
         (pages,) = store.read("PRAGMA page_count")[0]
         store.read(f"PRAGMA max_page_count = {pages}")
-        record(store, outcome(given.hash, events=5000))
+        record(store, outcome(result.hash, events=5000))
 
     return full
 
 
-def test_an_interrupt_keeps_what_ended_meanwhile_and_says_how_to_go_on(scripted_workers, tmp_path):
+def test_an_interrupt_stores_ended_runs_and_says_how_to_resume(scripted_workers, tmp_path):
     study = tiny_study(frictions=(0.1, 0.2, 0.3, 0.4, 0.5))
 
     def interrupt(progress):
-        if progress.done == 1:  # then two run, of which one ends before the signal is seen
+        if progress.done == 1:  # two are running, one of which ends before the signal is seen
             signal.raise_signal(signal.SIGINT)
 
     with pytest.raises(StudyInterrupted, match="interrupted; resume with: snowshed study resume"):
@@ -172,49 +172,49 @@ def test_an_interrupt_keeps_what_ended_meanwhile_and_says_how_to_go_on(scripted_
 
 
 def test_runs_of_another_process_are_waited_for(scripted_workers, tmp_path):
-    with Store.create(tmp_path / "store") as other:
-        other.register("tiny", STUDY.axes, STUDY.runs())
-    ready, go_on = threading.Event(), threading.Event()
+    with Store.create(tmp_path / "store") as store:
+        store.register("tiny", STUDY.axes, STUDY.runs())
+    claimed, may_finish = threading.Event(), threading.Event()
 
     def compute_slowly():
-        with Store.open(tmp_path / "store") as mine, ownership(mine) as me:
-            mine.claim(HASHES[0], me)
-            ready.set()
-            go_on.wait(10)
-            mine.record(outcome(HASHES[0]))
+        with Store.open(tmp_path / "store") as own_store, ownership(own_store) as me:
+            own_store.claim(HASHES[0], me)
+            claimed.set()
+            may_finish.wait(10)
+            own_store.record(outcome(HASHES[0]))
 
     thread = threading.Thread(target=compute_slowly)
     thread.start()
-    ready.wait(10)
-    seen = []
+    claimed.wait(10)
+    reports = []
 
     def watch(progress):
-        seen.append(progress)
+        reports.append(progress)
         if progress.elsewhere == 1 and progress.done == 2:
-            go_on.set()
+            may_finish.set()
 
     STUDY.run(tmp_path / "store", progress=watch)
     thread.join()
     assert HASHES[0] not in {task.hash for task in scripted_workers.tasks}
-    assert (seen[-1].done, seen[-1].elsewhere, seen[-1].fraction) == (3, 0, 1.0)
+    assert (reports[-1].done, reports[-1].elsewhere, reports[-1].fraction) == (3, 0, 1.0)
 
 
 def test_runs_of_a_process_that_died_are_taken_over(scripted_workers, tmp_path):
-    with Store.create(tmp_path / "store") as other:
-        other.register("tiny", STUDY.axes, STUDY.runs())
+    with Store.create(tmp_path / "store") as store:
+        store.register("tiny", STUDY.axes, STUDY.runs())
         for hash_ in HASHES:
-            other.claim(hash_, "somebody-dead")
+            store.claim(hash_, "somebody-dead")
     STUDY.run(tmp_path / "store")
     assert len(scripted_workers.tasks) == 3
 
 
-def test_progress_tells_the_whole_story(scripted_workers, tmp_path):
-    seen = []
-    STUDY.run(tmp_path / "store", progress=seen.append)
-    assert (seen[0].count, seen[0].done, seen[0].fraction) == (3, 0, 0.0)
-    assert seen[0].expected_s > 0
-    assert [progress.done for progress in seen] == sorted(progress.done for progress in seen)
-    assert (seen[-1].done, seen[-1].running, seen[-1].fraction) == (3, 0, 1.0)
+def test_progress_reports_all_runs(scripted_workers, tmp_path):
+    reports = []
+    STUDY.run(tmp_path / "store", progress=reports.append)
+    assert (reports[0].count, reports[0].done, reports[0].fraction) == (3, 0, 0.0)
+    assert reports[0].expected_s > 0
+    assert [progress.done for progress in reports] == sorted(progress.done for progress in reports)
+    assert (reports[-1].done, reports[-1].running, reports[-1].fraction) == (3, 0, 1.0)
 
 
 def test_leftovers_of_killed_processes_are_removed(scripted_workers, tmp_path):
@@ -233,7 +233,7 @@ def test_leftovers_of_killed_processes_are_removed(scripted_workers, tmp_path):
     assert not any((tmp_path / "store" / "running").iterdir())
 
 
-def test_unfinished_runs_of_another_version_are_not_mixed_in(
+def test_unfinished_runs_of_another_version_are_not_resumed(
     scripted_workers, tmp_path, monkeypatch
 ):
     with Store.create(tmp_path / "store") as store:
@@ -254,7 +254,7 @@ def test_unfinished_runs_of_another_version_are_not_mixed_in(
         ({"jobs": 2, "scheduler": "tcp://127.0.0.1:1"}, "jobs: not allowed with a scheduler"),
     ],
 )
-def test_wrong_resources_leave_nothing_behind(tmp_path, options, message):
+def test_wrong_resources_are_refused_without_files(tmp_path, options, message):
     with pytest.raises(InputError, match=message):
         STUDY.run(tmp_path / "store", **options)
     assert not (tmp_path / "store").exists()
@@ -280,20 +280,20 @@ def test_processes_and_threads_fill_the_cores(
     assert (at_once, workers.capacity, workers.threads(runs)) == (processes, processes, each)
 
 
-def test_the_last_runs_of_many_get_the_cores_that_fall_free():
+def test_the_last_runs_use_the_free_cores():
     workers, _ = session.Resources(jobs=4).workers(100)
     workers._cores = 4
     assert [workers.threads(unfinished) for unfinished in (100, 4, 3, 2, 1)] == [1, 1, 1, 2, 4]
 
 
-def test_expected_durations():
+def test_the_expected_duration_of_several_processes():
     assert cost_estimate.makespan([4.0], 2) == 4.0
     assert cost_estimate.makespan([1.0] * 6, 3) == 2.0
     assert cost_estimate.makespan([3.0, 3.0, 2.0, 2.0, 2.0], 2) == 7.0
 
 
-def test_speeds_count_as_much_as_the_work_they_stand_for(monkeypatch):
-    """Nine runs of one unit, and one of 21 with half the speed: it gives two of three speeds."""
+def test_speeds_are_weighted_by_work(monkeypatch):
+    """Nine runs of one unit, and one of 21 with half the speed, which gives two of three speeds."""
     monkeypatch.setattr(
         cost_estimate, "speed", lambda scene, threads: 1.0 if scene == "big" else 2.0
     )
@@ -302,7 +302,7 @@ def test_speeds_count_as_much_as_the_work_they_stand_for(monkeypatch):
     assert cost_estimate.expected_time(["small"], [0.0], 1, 1) == 0.0
 
 
-def test_a_machine_that_is_held_up_for_a_moment_is_not_slow(monkeypatch):
+def test_a_short_disturbance_does_not_change_the_estimate(monkeypatch):
     speeds = iter([2.0, 1.0, 2.0] + [2.0] * 24)
     monkeypatch.setattr(cost_estimate, "speed", lambda scene, threads: next(speeds))
     scenes, works = ["a", "b", "c"], [3600.0] * 3
@@ -316,7 +316,7 @@ def test_speeds_before_a_short_study_are_measured_once(monkeypatch):
     assert sorted(measured) == ["a", "b", "c"]
 
 
-def test_the_estimate_of_work_is_that_of_plan():
+def test_the_estimate_of_work_agrees_with_plan():
     scene = STUDY.runs()[0].scene
     plan = _core.plan(scene)
     assert cost_estimate.work(scene) == pytest.approx(
@@ -325,7 +325,7 @@ def test_the_estimate_of_work_is_that_of_plan():
     assert cost_estimate.work(scene.replace('"dx": 0.02', '"dx": 1e-8')) == 0.0
 
 
-def test_estimating_many_runs_takes_little():
+def test_estimating_many_runs_is_fast():
     scenes = [run.scene for run in STUDY.runs()] * 10
     start = time.process_time()
     for scene in scenes:
@@ -333,15 +333,15 @@ def test_estimating_many_runs_takes_little():
     assert time.process_time() - start < 0.05 * len(scenes)
 
 
-def test_notes_on_runs_are_said_after_them_the_most_frequent_first(scripted_workers, tmp_path):
-    seen = iter(range(100))
+def test_notes_on_runs_are_reported_at_the_end_by_frequency(scripted_workers, tmp_path):
+    numbers = iter(range(100))
 
     def noted(task):
-        notes = ["the slab is thin", *(["one stays"] if next(seen) == 0 else [])]
+        notes = ["the slab is thin", *(["one stays"] if next(numbers) == 0 else [])]
         return replace(outcome(task.hash), notes=notes)
 
     scripted_workers.answer = noted
-    with pytest.warns(SnowshedNote), record_notes() as said:
+    with pytest.warns(SnowshedNote), record_notes() as reported:
         STUDY.run(tmp_path / "store")
     runs = len(states(tmp_path / "store"))
-    assert said == [f"{runs} runs: the slab is thin", "1 run: one stays"]
+    assert reported == [f"{runs} runs: the slab is thin", "1 run: one stays"]

@@ -1,4 +1,4 @@
-"""Studies of snow slides: the same figures as of slides run alone, and the maps that are kept."""
+"""Studies of snow slides: the figures of single slides, and the stored maps."""
 
 import json
 
@@ -30,33 +30,33 @@ def computed_folder(study, tmp_path_factory):
     return folder
 
 
-def test_the_table_tells_what_a_slide_alone_tells(study, computed_folder, tmp_path):
+def test_the_table_agrees_with_a_single_slide(study, computed_folder, tmp_path):
     table = read_table(computed_folder)
     assert table["ended"].tolist() == ["time_limit"] * 4
     assert table["numerics.friction"].tolist() == [0.3, 0.3, 0.5, 0.5]
-    assert not {"height_m", "dx", "trimming"} & set(table)  # of the other method
+    assert not {"height_m", "dx", "trimming"} & set(table)  # columns of stacks
     assert (table["time_step"] == 0.01).all() and (table["steps"] == 150).all()
     last = json.loads(study.runs()[-1].scene)
     run(last, tmp_path / "out", pictures=False)
-    alone = json.loads((tmp_path / "out/slide.json").read_text())
+    single = json.loads((tmp_path / "out/slide.json").read_text())
     row = table.iloc[-1]
     for name in ("run_out_m", "peak_speed_m_s", "released_kg", "bonds_broken", "reached_m2"):
-        assert row[name] == alone[name]
+        assert row[name] == single[name]
 
 
-def test_the_cost_of_a_study_of_slides_is_known_before(study):
+def test_the_cost_of_a_study_of_slides_is_estimated(study):
     seconds, at_once = study.expected_duration(jobs=1)
     assert 0.0 < seconds < 600.0 and at_once == 1
 
 
-def test_probabilities_and_percentiles_are_those_of_the_single_slides(
-    study, computed_folder, tmp_path
-):
+def test_probabilities_and_percentiles_agree_with_single_slides(study, computed_folder, tmp_path):
     single = []
-    for one in study.runs():
-        run(json.loads(one.scene), tmp_path / one.hash, pictures=False)
+    for stored in study.runs():
+        run(json.loads(stored.scene), tmp_path / stored.hash, pictures=False)
         names = ("pft", "pfv", "ppr")
-        single.append([read_raster(tmp_path / one.hash / f"peaks/{n}.asc").heights for n in names])
+        single.append(
+            [read_raster(tmp_path / stored.hash / f"peaks/{n}.asc").heights for n in names]
+        )
     thickness, speed, pressure = np.moveaxis(np.array(single), 1, 0)
     maps = hazard_maps(computed_folder, reached=0.1, pressures=[1.0])
     reached, hit = maps.exceedances
@@ -69,30 +69,32 @@ def test_probabilities_and_percentiles_are_those_of_the_single_slides(
     assert maps.terrain.heights.shape == thickness.shape[1:]
 
 
-def test_bands_of_the_terrain_join_to_the_same_maps(computed_folder, monkeypatch):
-    whole = hazard_maps(computed_folder)
+def test_maps_do_not_depend_on_the_bands_of_the_terrain(computed_folder, monkeypatch):
+    undivided = hazard_maps(computed_folder)
     monkeypatch.setattr("snowshed.analysis.hazard.maps.BAND_BYTES", 40_000)
-    parts = hazard_maps(computed_folder)
-    for one, other in zip(whole.exceedances, parts.exceedances):
-        assert (one.probability == other.probability).all()
-    assert all((whole.percentiles[k] == parts.percentiles[k]).all() for k in whole.percentiles)
+    in_bands = hazard_maps(computed_folder)
+    for expected, exceedance in zip(undivided.exceedances, in_bands.exceedances):
+        assert (exceedance.probability == expected.probability).all()
+    assert all(
+        (undivided.percentiles[k] == in_bands.percentiles[k]).all() for k in undivided.percentiles
+    )
 
 
-def test_a_study_that_kept_no_maps_says_so(study, tmp_path):
-    one = Study.product(study.scene.set("events.max_time", 0.1), {"numerics.friction": [0.3]})
-    one.compute(tmp_path / "runs", jobs=1, threads=1)
+def test_a_study_without_maps_is_refused(study, tmp_path):
+    small = Study.product(study.scene.set("events.max_time", 0.1), {"numerics.friction": [0.3]})
+    small.compute(tmp_path / "runs", jobs=1, threads=1)
     with pytest.raises(InputError, match=r"kept no maps.*--keep-particles"):
         hazard_maps(tmp_path / "runs")
 
 
-def test_damaged_maps_are_told(computed_folder):
+def test_damaged_maps_are_refused(computed_folder):
     with Store.open(computed_folder) as store:
         (data,) = store.particles(store.runs("slides")[0].hash).values()
     with pytest.raises(InputError, match="not maps that snowshed stored"):
         PeakMaps.unpacked(data[:-40])
 
 
-def test_the_interval_is_wilsons():
+def test_the_interval_agrees_with_scipy():
     from scipy.stats import binomtest
 
     for count, runs in ((0, 50), (7, 50), (25, 50), (50, 50), (1, 3)):

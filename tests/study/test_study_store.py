@@ -1,4 +1,4 @@
-"""The store: what is in it, who may compute, and what it survives."""
+"""The store: its contents, owners of runs, and failures."""
 
 import multiprocessing
 import os
@@ -26,17 +26,17 @@ def tiny_store(tmp_path):
         yield tiny_store
 
 
-def test_a_study_comes_back_in_order(tiny_store):
-    with Store.open(tiny_store.folder) as again:
-        assert again.studies() == ["tiny"]
-        assert again.axes("tiny") == ["panel.friction"]
-        assert [(run.hash, run.scene) for run in again.runs("tiny")] == [
+def test_a_study_is_read_back_in_order(tiny_store):
+    with Store.open(tiny_store.folder) as reopened:
+        assert reopened.studies() == ["tiny"]
+        assert reopened.axes("tiny") == ["panel.friction"]
+        assert [(run.hash, run.scene) for run in reopened.runs("tiny")] == [
             (run.hash, run.scene) for run in RUNS
         ]
-        assert {run.status for run in again.runs("tiny")} == {"pending"}
+        assert {run.status for run in reopened.runs("tiny")} == {"pending"}
 
 
-def test_a_changed_study_replaces_the_one_of_its_name_and_keeps_what_is_done(tiny_store):
+def test_a_changed_study_replaces_the_former_and_keeps_its_results(tiny_store):
     tiny_store.record(outcome(HASHES[0]))
     tiny_store.register("tiny", [], RUNS[:2])
     assert [run.status for run in tiny_store.runs("tiny")] == ["done", "pending"]
@@ -58,7 +58,7 @@ def test_a_changed_study_replaces_the_one_of_its_name_and_keeps_what_is_done(tin
         ("UPDATE event SET ended = x'ff'", "ended: b'.xff'"),
     ],
 )
-def test_what_a_store_cannot_hold_is_named(tiny_store, query, message):
+def test_impossible_contents_are_refused(tiny_store, query, message):
     tiny_store.record(outcome(HASHES[0]))
     connection = sqlite3.connect(tiny_store.folder / FILE)
     with connection:
@@ -78,12 +78,12 @@ def test_studies_share_runs(tiny_store):
         tiny_store.named("third")
 
 
-def test_what_is_recorded_is_read_back_exactly(tiny_store):
+def test_results_are_read_back_exactly(tiny_store):
     value = 0.1 + 0.2
-    given = outcome(HASHES[0], events=1)
-    given.events[0]["height_m"] = value
-    given.events[0]["density_kg_m3"] = None
-    tiny_store.record(given)
+    result = outcome(HASHES[0], events=1)
+    result.events[0]["height_m"] = value
+    result.events[0]["density_kg_m3"] = None
+    tiny_store.record(result)
     ((height, density, wall),) = tiny_store.read(
         "SELECT height_m, density_kg_m3, wall_s FROM event JOIN event_timing USING (hash, event)"
     )
@@ -97,8 +97,8 @@ def test_only_the_first_result_of_a_run_counts(tiny_store):
     assert tiny_store.read("SELECT count(*) FROM event") == [(2,)]
 
 
-def test_a_study_whose_files_were_moved_goes_on(tiny_store):
-    """Same hash, other path: what is computed stays, all else is looked for at the new place."""
+def test_a_study_with_moved_files_continues(tiny_store):
+    """The hash is the same. Results stay, and pending runs use the new paths."""
     tiny_store.record(outcome(HASHES[0]))
     moved = [replace(run, scene=run.scene.replace("{", '{"moved": 1, ', 1)) for run in RUNS]
     tiny_store.register("tiny", ["panel.friction"], moved)
@@ -116,21 +116,21 @@ def test_a_failed_run_can_be_tried_again(tiny_store):
 
 
 def test_a_run_belongs_to_one_owner_until_it_is_released_or_recorded(tiny_store):
-    one, other, _ = HASHES
-    assert tiny_store.claim(one, "a") and tiny_store.claim(other, "a")
-    assert tiny_store.claim(one, "a")
-    assert not tiny_store.claim(one, "b")
-    tiny_store.record(outcome(one))
-    assert not tiny_store.claim(one, "b")
+    first, second, _ = HASHES
+    assert tiny_store.claim(first, "a") and tiny_store.claim(second, "a")
+    assert tiny_store.claim(first, "a")
+    assert not tiny_store.claim(first, "b")
+    tiny_store.record(outcome(first))
+    assert not tiny_store.claim(first, "b")
     tiny_store.release("a")
-    assert tiny_store.claim(other, "b")
+    assert tiny_store.claim(second, "b")
     assert tiny_store.owners() == ["b"]
 
 
 def test_the_claims_of_a_dead_owner_are_taken_over(tiny_store):
     assert tiny_store.claim(HASHES[0], "died-long-ago")
-    with Store.open(tiny_store.folder) as another, ownership(another) as living:
-        assert another.claim(HASHES[1], living)
+    with Store.open(tiny_store.folder) as second_store, ownership(second_store) as living:
+        assert second_store.claim(HASHES[1], living)
         assert is_alive(tiny_store, living) and not is_alive(tiny_store, "died-long-ago")
         release_dead(tiny_store)
         assert tiny_store.claim(HASHES[0], "me")
@@ -140,14 +140,14 @@ def test_the_claims_of_a_dead_owner_are_taken_over(tiny_store):
 
 
 def _claim_all(folder, owner, answers):
-    with Store.open(folder) as mine:
-        answers.put([run.hash for run in mine.runs("race") if mine.claim(run.hash, owner)])
+    with Store.open(folder) as store:
+        answers.put([run.hash for run in store.runs("race") if store.claim(run.hash, owner)])
 
 
-def test_processes_that_race_for_runs_share_them_out(tmp_path):
+def test_racing_processes_share_the_runs(tmp_path):
     runs = tiny_study(frictions=tuple(0.1 + i / 1000 for i in range(40))).runs()
-    with Store.create(tmp_path / "store") as mine:
-        mine.register("race", [], runs)
+    with Store.create(tmp_path / "store") as store:
+        store.register("race", [], runs)
     context = multiprocessing.get_context("spawn")
     answers = context.Queue()
     processes = [
@@ -163,8 +163,8 @@ def test_processes_that_race_for_runs_share_them_out(tmp_path):
 
 
 def _create(folder, answers):
-    with Store.create(folder) as mine:
-        mine.register("race", [], RUNS)
+    with Store.create(folder) as store:
+        store.register("race", [], RUNS)
     answers.put("made")
 
 
@@ -178,8 +178,8 @@ def test_processes_that_make_the_same_store_at_once_all_succeed(tmp_path):
     for process in processes:
         process.start()
     assert [answers.get(timeout=120) for _ in processes] == ["made"] * 4
-    with Store.open(tmp_path / "new" / "store") as mine:
-        assert len(mine.runs("race")) == 3
+    with Store.open(tmp_path / "new" / "store") as store:
+        assert len(store.runs("race")) == 3
 
 
 def test_a_full_disk_is_a_clear_error_and_loses_nothing(tiny_store):
@@ -203,7 +203,7 @@ def test_runs_are_found_by_the_beginning_of_their_hash(tiny_store):
         tiny_store.find("")
 
 
-def test_measures_that_came_later_are_added_to_an_older_store(tiny_store, monkeypatch):
+def test_new_measures_are_added_to_an_older_store(tiny_store, monkeypatch):
     tiny_store.record(outcome(HASHES[0]))
     tiny_store.close()
     monkeypatch.setattr(database, "STORED_TYPES", {**STORED_TYPES, "wetness": "REAL"})
@@ -211,7 +211,7 @@ def test_measures_that_came_later_are_added_to_an_older_store(tiny_store, monkey
         assert newer.read("SELECT height_m, wetness FROM event WHERE event = 1") == [(10.0, None)]
 
 
-def test_folders_that_do_not_serve(tmp_path):
+def test_unsuitable_folders_are_refused(tmp_path):
     (tmp_path / "file").touch()
     (tmp_path / "full").mkdir()
     (tmp_path / "full" / "thesis.txt").touch()
@@ -227,7 +227,7 @@ def test_folders_that_do_not_serve(tmp_path):
     assert [path.name for path in (tmp_path / "full").iterdir()] == ["thesis.txt"]
 
 
-def test_databases_that_are_no_store(tmp_path):
+def test_other_databases_are_refused(tmp_path):
     connection = sqlite3.connect(tmp_path / FILE)
     connection.execute("CREATE TABLE run (distance REAL)")
     connection.close()
@@ -238,7 +238,7 @@ def test_databases_that_are_no_store(tmp_path):
         Store.open(tmp_path)
 
 
-def test_a_damaged_store_whose_error_is_no_text(tmp_path):
+def test_a_damaged_store_with_an_undecodable_error_is_refused(tmp_path):
     connection = sqlite3.connect(tmp_path / FILE)
     connection.execute("CREATE TABLE run (distance REAL)")
     connection.execute("PRAGMA writable_schema = ON")
@@ -249,7 +249,7 @@ def test_a_damaged_store_whose_error_is_no_text(tmp_path):
         Store.open(tmp_path)
 
 
-def test_a_store_of_another_form_is_refused(tiny_store):
+def test_a_store_of_another_version_is_refused(tiny_store):
     tiny_store.read("PRAGMA user_version = 99")
     with pytest.raises(InputError, match="another version of snowshed"):
         Store.open(tiny_store.folder)
@@ -259,7 +259,7 @@ def test_a_store_that_cannot_be_written_can_be_read(tmp_path, monkeypatch):
     with Store.create(tmp_path / "store") as tiny_store:
         tiny_store.register("tiny", ["panel.friction"], RUNS)
         tiny_store.record(outcome(HASHES[0]))
-        monkeypatch.setattr(os, "access", lambda *where: False)
+        monkeypatch.setattr(os, "access", lambda *arguments: False)
         with pytest.raises(InputError, match=r"left in the middle of a change"):
             Store.open(tmp_path / "store")
     before = {file: file.stat().st_mtime_ns for file in (tmp_path / "store").iterdir()}
@@ -270,5 +270,5 @@ def test_a_store_that_cannot_be_written_can_be_read(tmp_path, monkeypatch):
     assert {file: file.stat().st_mtime_ns for file in (tmp_path / "store").iterdir()} == before
 
 
-def test_rows_say_which_version_computed_them(tiny_store):
+def test_runs_have_the_version_that_computed_them(tiny_store):
     assert {run.version for run in tiny_store.runs("tiny")} == {_core.version}

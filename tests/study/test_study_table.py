@@ -1,4 +1,4 @@
-"""The table of a study, and the files it is exported to."""
+"""The table of a study, and its exported files."""
 
 import re
 import sqlite3
@@ -46,7 +46,7 @@ def test_one_row_per_run_and_event_in_the_order_of_the_study(computed_folder):
     assert table["hash"].tolist() == [run.hash for run in tiny_study().runs() for _ in range(2)]
 
 
-def test_every_row_says_how_it_was_computed(computed_folder):
+def test_every_row_has_its_settings(computed_folder):
     table = read_table(computed_folder)
     assert set(EVENT_COLUMNS) - {"wall_s"} <= set(table.columns)
     assert not {"wall_s", *TIMING} & set(table.columns)
@@ -58,7 +58,7 @@ def test_every_row_says_how_it_was_computed(computed_folder):
     assert (timed.threads == 1).all() and (timed.particles > 0).all()
 
 
-def test_rows_from_before_the_readings_had_names_are_of_the_one_there_was(mixed):
+def test_rows_of_early_versions_have_the_trimming_rule_of_their_time(mixed):
     """An older store gains columns, which are empty in its rows; failed runs have no measures."""
     named = [name for name in MEASURED_TYPES if "trimm" in name or name.startswith("equal_pace")]
     with sqlite3.connect(mixed / FILE) as database:
@@ -75,7 +75,7 @@ def test_rows_from_before_the_readings_had_names_are_of_the_one_there_was(mixed)
         assert same[measured].all()
 
 
-def test_a_store_of_the_last_version_is_read_by_the_names_of_today(tmp_path):
+def test_a_store_of_the_last_version_is_read_with_present_names(tmp_path):
     study = Study.product(tiny_scene(), {"numerics.step_factor": [0.5]}, name="tiny")
     folder = store_with(tmp_path / "store", study, "done")
     with sqlite3.connect(folder / FILE) as store:
@@ -88,7 +88,7 @@ def test_a_store_of_the_last_version_is_read_by_the_names_of_today(tmp_path):
     assert table["numerics.step_factor"].tolist() == table["courant_factor"].tolist() == [0.5, 0.5]
 
 
-def test_failed_and_missing_runs(mixed):
+def test_failed_runs_have_an_error_and_missing_runs_no_rows(mixed):
     table = read_table(mixed)
     assert table.event.tolist() == [1, 2, 1, 2]
     assert table.ended.tolist() == ["rest", "rest", "rest", "failed"]
@@ -97,7 +97,7 @@ def test_failed_and_missing_runs(mixed):
     assert table.steps.isna().tolist() == [False, False, False, True]
 
 
-def test_values_that_a_part_did_not_vary_are_those_of_the_scene(tmp_path):
+def test_parameters_that_a_part_does_not_vary_come_from_the_scene(tmp_path):
     parts = [[Factor({"panel.tilt": [40]})], [Factor({"panel.height": [1.0]})]]
     study = Study(tiny_scene(), parts)
     table = read_table(store_with(tmp_path / "store", study, "done", "done"))
@@ -105,7 +105,7 @@ def test_values_that_a_part_did_not_vary_are_those_of_the_scene(tmp_path):
     assert rows.to_numpy().tolist() == [[40, 0.33], [50, 1]]
 
 
-def test_vectors_are_texts_and_what_a_scene_lacks_is_empty(tmp_path):
+def test_vectors_become_text_and_missing_parts_empty_cells(tmp_path):
     scene = tiny_scene()
     obstacles = [[], [Obstacle(shape=Shape.sphere((3, 0), 0.1), friction=0.7)]]
     domain = {"domain": [{"min": [-9, -9], "max": [9, 9]}]}
@@ -124,7 +124,7 @@ def test_a_table_without_rows_has_its_columns(tmp_path):
 
 
 @pytest.mark.parametrize("form", ["csv", "parquet", "nc"])
-def test_an_axis_that_every_table_has_anyway_is_one_column(tmp_path, form):
+def test_an_axis_that_is_also_a_setting_is_a_single_column(tmp_path, form):
     study = Study.product(tiny_study().scene, {"dimension": [2, 3]}, name="both")
     folder = store_with(tmp_path / "store", study, "done", "done")
     assert list(read_table(folder)).count("dimension") == 1
@@ -138,7 +138,7 @@ def test_netcdf_needs_a_run_that_is_done(tmp_path):
     assert not (tmp_path / "table.nc").exists()
 
 
-def test_several_studies_must_be_named(tmp_path):
+def test_one_of_several_studies_must_be_named(tmp_path):
     store_with(tmp_path / "store", tiny_study(), "done", "done", "done")
     store_with(tmp_path / "store", tiny_study("other", (0.3, 0.5)))
     with pytest.raises(InputError, match="name one of: other, tiny"):
@@ -146,7 +146,7 @@ def test_several_studies_must_be_named(tmp_path):
     assert read_table(tmp_path / "store", "other")["panel.friction"].tolist() == [0.3, 0.3]
 
 
-def test_csv_and_parquet_give_the_table_back(mixed, tmp_path):
+def test_csv_and_parquet_preserve_the_table(mixed, tmp_path):
     table = read_table(mixed)
     export(mixed, tmp_path / "t.csv")
     export(mixed, tmp_path / "t.parquet")
@@ -178,8 +178,8 @@ def test_a_product_unfolds_into_a_dimension_per_parameter(tmp_path):
     assert grid.height_m.sizes == {"panel.tilt": 2, "panel.height": 3, "event": 2}
 
 
-def test_the_recipe_of_the_guide_works_with_files(tmp_path):
-    """xarray reads texts of a file late, and cannot sort such texts into dimensions."""
+def test_the_example_of_the_guide_works_with_files(tmp_path):
+    """xarray reads texts of a file lazily, and cannot make dimensions of such texts."""
     study = Study.product(tiny_scene(), {"panel.tilt": [40, 50], "panel.height": [1.0, 2.0]})
     export(store_with(tmp_path / "store", study, *["done"] * 4), tmp_path / "t.nc")
     guide = (ROOT / "docs" / "reference" / "study-table.md").read_text(encoding="utf-8")
@@ -189,7 +189,7 @@ def test_the_recipe_of_the_guide_works_with_files(tmp_path):
     assert grid.height_m.sizes == {"panel.tilt": 2, "panel.height": 2, "event": 2}
 
 
-def test_the_form_is_told_by_the_ending_or_given(mixed, tmp_path):
+def test_the_format_follows_from_the_ending_or_the_option(mixed, tmp_path):
     export(mixed, tmp_path / "table.txt", form="csv")
     assert (tmp_path / "table.txt").read_text().startswith("hash,panel.friction,seed,event,")
     with pytest.raises(InputError, match=r"unknown format .* allowed: csv, parquet, netcdf"):
@@ -198,14 +198,14 @@ def test_the_form_is_told_by_the_ending_or_given(mixed, tmp_path):
 
 
 @pytest.mark.parametrize(("form", "library"), [("parquet", "pyarrow"), ("netcdf", "xarray")])
-def test_without_its_library_a_form_says_what_to_install(mixed, tmp_path, hide, form, library):
+def test_without_its_library_a_format_says_what_to_install(mixed, tmp_path, hide, form, library):
     hide(library)
     with pytest.raises(InputError, match=r'pip install "snowshed\[study\]"'):
         export(mixed, tmp_path / "table", form=form)
     assert not (tmp_path / "table").exists()
 
 
-def test_units_of_measures_are_known():
+def test_all_measures_except_counts_and_words_have_units():
     from snowshed.study.formats import _units
 
     units = _units()

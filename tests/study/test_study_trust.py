@@ -1,4 +1,4 @@
-"""A store may come from anybody: nothing outside it is touched, and damage is found."""
+"""A store may come from anyone: files outside it are not touched, and damage is detected."""
 
 import random
 import sqlite3
@@ -39,7 +39,7 @@ def change(folder, *queries):
     connection.close()
 
 
-def test_a_link_in_the_place_of_the_runs_is_refused(folder, tmp_path):
+def test_a_link_instead_of_the_folder_of_runs_is_refused(folder, tmp_path):
     (tmp_path / "home").mkdir()
     (tmp_path / "home/precious").write_text("x")
     (folder / "running").rmdir()
@@ -49,18 +49,18 @@ def test_a_link_in_the_place_of_the_runs_is_refused(folder, tmp_path):
     assert names(tmp_path / "home") == ["precious"]
 
 
-def test_what_is_not_ours_stays(folder):
-    mine = folder / "running/mine"
-    mine.mkdir()
-    (mine / "a.txt").write_text("x")
+def test_foreign_files_are_not_removed(folder):
+    foreign = folder / "running/mine"
+    foreign.mkdir()
+    (foreign / "a.txt").write_text("x")
     (folder / "running/notes.lock").write_text("x")
-    (folder / "running" / ("0" * 32)).symlink_to(mine)
+    (folder / "running" / ("0" * 32)).symlink_to(foreign)
     session.resume(folder)
     assert names(folder / "running") == ["0" * 32, "mine", "notes.lock"]
-    assert names(mine) == ["a.txt"]
+    assert names(foreign) == ["a.txt"]
 
 
-def test_the_name_of_an_owner_leads_nowhere(folder, tmp_path):
+def test_the_name_of_an_owner_is_not_used_as_a_path(folder, tmp_path):
     (tmp_path / "victim.lock").write_text("x")
     change(folder, "UPDATE run SET owner = '../../victim'")
     with Store.open(folder) as store:
@@ -85,14 +85,14 @@ def test_the_name_of_an_owner_leads_nowhere(folder, tmp_path):
         "UPDATE checksum SET digest = 'x'",
     ],
 )
-def test_a_changed_store_is_found(folder, query):
+def test_a_changed_store_is_refused(folder, query):
     change(folder, "PRAGMA ignore_check_constraints = on", query)
     with pytest.raises(InputError, match="damaged: "):
         read_table(folder, timing=True)
 
 
-def test_flipped_bits_are_found_or_change_nothing(folder):
-    whole = read_table(folder, timing=True)
+def test_flipped_bits_are_refused_or_change_nothing(folder):
+    expected = read_table(folder, timing=True)
     file = folder / FILE
     good = file.read_bytes()
     chance = random.Random(1)
@@ -102,13 +102,13 @@ def test_flipped_bits_are_found_or_change_nothing(folder):
         for extra in ("-wal", "-shm"):
             (folder / f"{FILE}{extra}").unlink(missing_ok=True)
         try:
-            found = read_table(folder, timing=True)
+            table = read_table(folder, timing=True)
         except (InputError, StudyError):
             continue
-        assert found.equals(whole), at
+        assert table.equals(expected), at
 
 
-def as_before_checksums(folder):
+def remove_checksums(folder):
     change(folder, "DROP TABLE checksum", "PRAGMA user_version = 1")
 
 
@@ -118,19 +118,19 @@ def test_a_store_that_lost_its_checksums_is_damaged(folder):
         read_table(folder)
 
 
-def test_an_earlier_version_that_computes_is_told_from_damage(folder):
-    """It would add results without checksums; one that begins later refuses the store itself."""
-    as_before_checksums(folder)
+def test_a_running_earlier_version_is_distinguished_from_damage(folder):
+    """It would add results without checksums. If it starts later, it refuses the store itself."""
+    remove_checksums(folder)
     owner = "node-1-0123abcd"
     change(folder, f"UPDATE run SET owner = '{owner}' WHERE rowid = 1")
-    there = pytest.raises(InputError, match="an earlier version of snowshed is computing in it")
-    with holding(folder / "running" / f"{owner}.lock", Path.touch), there:
+    refused = pytest.raises(InputError, match="an earlier version of snowshed is computing in it")
+    with holding(folder / "running" / f"{owner}.lock", Path.touch), refused:
         read_table(folder)
     assert len(read_table(folder)) > 0
     assert sqlite3.connect(folder / FILE).execute("PRAGMA user_version").fetchone() == (2,)
 
 
-def test_results_without_a_checksum_are_told_from_changed_ones(folder):
+def test_results_without_a_checksum_are_distinguished_from_changed_ones(folder):
     change(folder, "DELETE FROM checksum WHERE name LIKE 'results%'")
     with pytest.raises(InputError, match="without its checksum: damaged, or added by an earlier"):
         read_table(folder)

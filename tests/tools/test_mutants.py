@@ -114,7 +114,7 @@ def copy_of(project, faults):
     return copy
 
 
-def test_a_fault_is_in_the_copy_alone_and_only_for_its_trial(project):
+def test_a_fault_is_injected_only_in_the_copy_and_for_its_trial(project):
     copy = copy_of(project, [fault()])
     with copy.inject(fault()):
         assert (copy.folder / "sum.py").read_text() == "a - b\n"
@@ -145,25 +145,25 @@ with copy.inject(fault):
 """
 
 
-@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGKILL])
-def test_what_a_signal_ends_is_restored_at_the_latest_by_the_next_run(project, sent):
+@pytest.mark.parametrize("sent_signal", [signal.SIGINT, signal.SIGKILL])
+def test_sources_are_restored_after_an_interrupt_or_by_the_next_run(project, sent_signal):
     copy = SourceCopy(project, project.parent / "copy", [fault()])
-    words = [sys.executable, "-c", WAITING, str(project), str(copy.folder)]
+    command = [sys.executable, "-c", WAITING, str(project), str(copy.folder)]
     with subprocess.Popen(
-        words, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
+        command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
     ) as process:
         assert process.stdout.readline() == b"changed\n"
         assert (copy.folder / "sum.py").read_text() == "a - b\n"
-        process.send_signal(sent)
+        process.send_signal(sent_signal)
         process.wait(timeout=30)
     restored = (copy.folder / "sum.py").read_text() == "a + b\n"
-    assert restored == (sent == signal.SIGINT)
+    assert restored == (sent_signal == signal.SIGINT)
     copy.update(["sum.py", "sum.cpp"])
     assert (copy.folder / "sum.py").read_text() == "a + b\n"
     assert (project / "sum.py").read_text() == "a + b\n"
 
 
-def test_files_that_stay_keep_their_times_and_old_ones_go(project):
+def test_unchanged_files_keep_their_times_and_others_are_removed(project):
     copy = copy_of(project, [])
     before = (copy.folder / "sum.py").stat().st_mtime_ns
     (project / "sum.cpp").write_text("x = 1;\n", encoding="utf-8")
@@ -185,12 +185,12 @@ def test_faults_with_a_switch_are_compiled_together(project):
     assert text == f"x = ({switch});\ny = b;\n"
 
 
-def test_a_fault_without_a_switch_displaces_those_it_overlaps():
+def test_a_fault_without_a_switch_replaces_those_it_overlaps():
     switched = [(1, in_cpp())]
-    one = fault(file="sum.cpp", old="x = a + b;", new="")
-    assert with_faults("x = a + b;\ny = b;\n", switched, one) == "\ny = b;\n"
-    other = fault(file="sum.cpp", old="y = b", new="y = 0")
-    assert with_faults("x = a + b;\ny = b;\n", switched, other).endswith("(a + b));\ny = 0;\n")
+    overlapping = fault(file="sum.cpp", old="x = a + b;", new="")
+    assert with_faults("x = a + b;\ny = b;\n", switched, overlapping) == "\ny = b;\n"
+    separate = fault(file="sum.cpp", old="y = b", new="y = 0")
+    assert with_faults("x = a + b;\ny = b;\n", switched, separate).endswith("(a + b));\ny = 0;\n")
 
 
 def test_switches_that_overlap_are_refused():
@@ -204,17 +204,20 @@ def test_switches_that_overlap_are_refused():
 
 @pytest.fixture
 def workshop(tmp_path):
-    """Build tree and environment whose programs print what a test has chosen."""
-    shop = Workshop(tmp_path, tmp_path)
+    """A function that writes the test programs of a workshop; they print given texts."""
+    workshop = Workshop(tmp_path, tmp_path)
 
-    def says(cpp="", python="", code=0):
-        for path, text in ((shop.tree / "snowshed_tests", cpp), (shop.venv / "bin/python", python)):
+    def write_programs(cpp="", python="", code=0):
+        for path, text in (
+            (workshop.tree / "snowshed_tests", cpp),
+            (workshop.venv / "bin/python", python),
+        ):
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(f"#!/bin/sh\ncat <<'END'\n{text}\nEND\n{SLEEP}exit {code}\n")
             path.chmod(0o755)
-        return shop
+        return workshop
 
-    return says
+    return write_programs
 
 
 SLEEP = '[ "$SNOWSHED_FAULT" = 9 ] && exec sleep 60\n'
@@ -227,7 +230,7 @@ def test_the_first_test_that_fails_is_named(workshop):
     assert python.first_failure(["tests/test_sum.py"]) == "tests/test_sum.py::test_it[3]"
 
 
-def test_all_that_pass_say_nothing(workshop):
+def test_no_failure_is_reported_if_all_tests_pass(workshop):
     assert workshop().first_failure(["cpp:Sum*", "tests/test_sum.py"]) == ""
 
 
@@ -248,17 +251,17 @@ def test_tests_that_do_not_exist_are_an_error(workshop):
 # --- results ---------------------------------------------------------------------------------
 
 
-def test_results_are_kept(tmp_path):
+def test_results_are_stored_for_existing_faults(tmp_path):
     results = Results()
     results.enter("minus", "cpp:Sum.IsRight")
     results.enter("gone", "")
     results.write(tmp_path / "results.json", [fault()])
-    again = Results.read(tmp_path / "results.json")
-    assert again.caught_by == {"minus": "cpp:Sum.IsRight"}
-    assert again.date["minus"] == results.date["minus"]
+    read = Results.read(tmp_path / "results.json")
+    assert read.caught_by == {"minus": "cpp:Sum.IsRight"}
+    assert read.date["minus"] == results.date["minus"]
 
 
-def test_the_tables_count_and_explain():
+def test_tables_count_faults_and_explain_survivors():
     faults = [fault(), fault(name="zero", survives="Nobody adds zero.")]
     caught_by = {"minus": "tests/a/test_sum.py::test_it[3]", "zero": ""}
     text = summary(faults, caught_by)
@@ -284,21 +287,21 @@ AREAS = {
 }
 
 
-def test_the_faults_are_in_the_sources():
+def test_every_fault_applies_to_the_sources():
     faults = read_faults()
     check_places(faults, ROOT)
     assert len(faults) >= 60
-    assert {one.area for one in faults} == AREAS
-    for name in {one.file for one in faults}:
-        switched = [(1, one) for one in faults if one.file == name and one.switch]
+    assert {fault.area for fault in faults} == AREAS
+    for name in {fault.file for fault in faults}:
+        switched = [(1, fault) for fault in faults if fault.file == name and fault.switch]
         assert with_faults((ROOT / name).read_text(encoding="utf-8"), switched)
 
 
 def test_every_fault_has_a_result_and_survivors_a_reason():
     faults, caught_by = read_faults(), Results.read().caught_by
-    assert {one.name for one in faults} == set(caught_by)
-    survivors = [one for one in faults if not caught_by[one.name]]
-    assert all(one.survives for one in survivors)
+    assert {fault.name for fault in faults} == set(caught_by)
+    survivors = [fault for fault in faults if not caught_by[fault.name]]
+    assert all(fault.survives for fault in survivors)
     assert len(survivors) <= 0.05 * len(faults)
 
 

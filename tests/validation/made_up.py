@@ -1,4 +1,4 @@
-"""Made-up case with known answers that can fail in every way."""
+"""A made-up case with known answers, which can also fail in several ways."""
 
 import os
 import signal
@@ -30,10 +30,10 @@ def measure(settings):
     if mode == "takes long":
         time.sleep(60)
     if mode == "imports":
-        known = "colorsys" in sys.modules
+        imported = "colorsys" in sys.modules
         import colorsys
 
-        return Outcome([Measured("height", float(known), 0.0, 0.0)], bool(colorsys), 1)
+        return Outcome([Measured("height", float(imported), 0.0, 0.0)], bool(colorsys), 1)
     factor, cost = {"apic": (4.4, 0.02), "pic": (24.0, 0.015)}[settings.get("transfer", "apic")]
     error = factor * dx**2
     return Outcome(
@@ -71,4 +71,6 @@ def made_up_case(*, entries=None, quantities=(HEIGHT, DRIFT), remarks="PIC damps
 
 def program(*arguments):
     """Run ``python -m validation`` in this process and return its exit code."""
-    return main([str(one) for one in arguments], command=validate, name="python -m validation")
+    return main(
+        [str(argument) for argument in arguments], command=validate, name="python -m validation"
+    )

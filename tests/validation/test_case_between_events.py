@@ -21,7 +21,7 @@ SMALL = {"dimension": 2, "dx": 0.02, "events": 2, "seedings": 2, "seed": 101}
 @pytest.fixture(scope="module")
 def reseeded():
     outcome = CASE.measure({**SMALL, "between": "reseed"})
-    return {one.quantity: one for one in outcome.measured}
+    return {result.quantity: result for result in outcome.measured}
 
 
 @pytest.fixture(scope="module")
@@ -37,20 +37,20 @@ def test_reseeding_measures_all_quantities_within_their_limits(reseeded):
             assert abs(reseeded[quantity.name].error) <= quantity.limit, quantity.name
 
 
-def test_carrying_over_converts_nothing():
-    names = [one.quantity for one in CASE.measure({**SMALL, "between": "carry"}).measured]
+def test_carried_stacks_have_no_conversion():
+    names = [result.quantity for result in CASE.measure({**SMALL, "between": "carry"}).measured]
     assert names == ["mass", "height", "height_noise", "length", "length_noise"]
 
 
-def test_the_largest_change_of_all_conversions_is_shown_in_cells(reseeded, runs):
+def test_the_largest_change_of_all_conversions_is_given_in_cells(reseeded, runs):
     for name in COMPARED:
-        changes = [one.change(name) / 0.02 for run in runs for one in run.conversions]
-        found = reseeded[f"conversion_{name}"]
-        assert abs(found.error) == max(abs(change) for change in changes)
-        assert found.error in changes
+        changes = [conversion.change(name) / 0.02 for run in runs for conversion in run.conversions]
+        result = reseeded[f"conversion_{name}"]
+        assert abs(result.error) == max(abs(change) for change in changes)
+        assert result.error in changes
 
 
-def test_a_conversion_measures_the_stack_as_it_was_left(runs):
+def test_a_conversion_starts_from_the_last_measured_stack(runs):
     for run in runs:
         (conversion,) = run.conversions
         for name in COMPARED:
@@ -74,13 +74,13 @@ def test_a_chunk_that_vanishes_shortens_the_stack_but_not_its_body():
     assert conversion.loose_change == pytest.approx(-60 / 1171)
 
 
-def test_space_is_counted_in_particles_of_the_slabs(reseeded, runs):
+def test_the_space_of_particles_is_relative_to_the_slabs(reseeded, runs):
     """A slab of 0.245 m x 0.02 m has as many particles per volume as the stack."""
-    found = [run.conversions[-1].particles_after for run in runs]
-    in_a_slab = [run.cost.particles - count for run, count in zip(runs, found)]
-    assert np.std(in_a_slab) < 1
+    in_the_stack = [run.conversions[-1].particles_after for run in runs]
+    in_the_slab = [run.cost.particles - count for run, count in zip(runs, in_the_stack)]
+    assert np.std(in_the_slab) < 1
     assert reseeded["conversion_space"].value == pytest.approx(
-        np.mean(found) / np.mean(in_a_slab), rel=0.02
+        np.mean(in_the_stack) / np.mean(in_the_slab), rel=0.02
     )
     assert reseeded["conversion_space"].value > 1
 
@@ -95,8 +95,8 @@ def test_noise_is_in_deviations_of_carried_stacks(reseeded, runs):
 
 @pytest.mark.parametrize("settings", CASE.matrix(True) + CASE.matrix(False), ids=str)
 def test_every_entry_makes_a_scene_that_has_carried_stacks(settings):
-    rest = {name: value for name, value in settings.items() if name != "seedings"}
-    data = lab_scene(rest).resolve().data
+    scene_settings = {name: value for name, value in settings.items() if name != "seedings"}
+    data = lab_scene(scene_settings).resolve().data
     assert data["events"]["between"] == settings["between"]
     assert recorded(data["dimension"], settings["dx"]).spread("height", settings["events"]) > 0
     assert settings["seed"] >= between_events.FIRST_SEED

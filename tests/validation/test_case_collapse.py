@@ -22,7 +22,7 @@ from snowshed._core import CamClay
         (4.0, 3, 3.2, 1.109),
     ],
 )
-def test_laws(aspect, dimension, runout, height):
+def test_the_laws_have_the_expected_values(aspect, dimension, runout, height):
     assert granular_column.runout_law(aspect, dimension) == pytest.approx(runout, abs=1e-3)
     assert granular_column.height_law(aspect, dimension) == pytest.approx(height, abs=1e-3)
 
@@ -43,18 +43,20 @@ def principal_stresses(p, q, dimension):
 
 @pytest.mark.parametrize("dimension", [2, 3])
 @pytest.mark.parametrize("angle", [22.0, 30.0])
-def test_the_snow_ends_at_coulombs_friction_when_it_is_sheared(dimension, angle):
+def test_sheared_snow_reaches_coulombs_friction(dimension, angle):
     """The core's return mapping gives sin phi in shear at constant volume."""
     slope = granular_column.critical_state_slope(angle, dimension)
     law = CamClay(1e5, 0.3, slope, 0.0, collapse.HARDENING, dimension)
     p, q, ev = 300.0, 0.0, law.initial_plastic_strain(20.0)
     for _ in range(3000):
         p, q, ev = law.return_map(p, q + 3 * law.shear * 1e-5, ev)
-    most, least = principal_stresses(p, q, dimension)
-    assert (most - least) / (most + least) == pytest.approx(np.sin(np.radians(angle)), rel=1e-3)
+    largest, smallest = principal_stresses(p, q, dimension)
+    assert (largest - smallest) / (largest + smallest) == pytest.approx(
+        np.sin(np.radians(angle)), rel=1e-3
+    )
 
 
-def test_the_snow_has_hardly_any_strength_of_its_own():
+def test_the_snow_has_negligible_strength():
     scene = collapse.column_scene({"dimension": 2, "dx": 0.01, "friction_angle": 30.0}, 2.0)
     snow = scene.resolve().data["snow"]
     weight = snow["density"] * 9.81 * 2.0 * collapse.RADIUS
@@ -95,7 +97,7 @@ def deposits():
     return {aspect: collapse.collapse(settings, aspect) for aspect in (0.5, 1.0, 3.0)}
 
 
-def test_columns_come_to_rest_the_taller_the_farther_and_higher(deposits):
+def test_taller_columns_run_farther_and_stay_higher(deposits):
     assert {deposit.ended for deposit in deposits.values()} == {"rest"}
     runouts = [deposit.runout for deposit in deposits.values()]
     heights = [deposit.height for deposit in deposits.values()]
@@ -111,8 +113,8 @@ def test_measure_compares_with_the_laws(dimension):
     runout, height = outcome.measured
     assert (runout.quantity, height.quantity) == ("runout", "height")
     assert runout.exact == granular_column.runout_law(1.0, dimension)
-    for one in outcome.measured:
-        assert one.error == pytest.approx(one.value / one.exact - 1)
+    for result in outcome.measured:
+        assert result.error == pytest.approx(result.value / result.exact - 1)
     # This is the run-out of the method with five cells per radius; see the remarks.
     assert runout.error == pytest.approx({2: -0.30, 3: -0.51}[dimension], abs=0.06)
     assert height.error == pytest.approx(-0.15, abs=0.04)
@@ -120,12 +122,12 @@ def test_measure_compares_with_the_laws(dimension):
     assert outcome.wall_s > 0
 
 
-def test_glass_beads_have_a_law_of_their_own():
+def test_glass_beads_have_their_own_law():
     settings = {"dimension": 2, "dx": 0.025, "aspect": 1.0, "friction_angle": 22.0}
-    assert [one.quantity for one in CASE.measure(settings).measured] == ["runout_glass"]
+    assert [result.quantity for result in CASE.measure(settings).measured] == ["runout_glass"]
 
 
-def test_exponent_is_that_of_a_power_law(monkeypatch):
+def test_the_exponent_of_a_power_law_is_recovered(monkeypatch):
     def power(settings, aspect):
         return collapse.Deposit(3 * aspect**0.6, 1.0, "rest", 1.0, 100, 10, 10)
 

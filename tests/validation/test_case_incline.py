@@ -11,11 +11,11 @@ COARSE = {**DEFAULTS, "dx": 0.025, "length": 0.5, "speed": 0.0}
 
 
 def measured(outcome):
-    return {one.quantity: one for one in outcome.measured}
+    return {result.quantity: result for result in outcome.measured}
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_directions(dimension):
+def test_directions_of_the_plane(dimension):
     plane = Incline(30.0, dimension)
     slope, normal = np.array(plane.slope), np.array(plane.normal)
     assert len(slope) == dimension
@@ -25,7 +25,7 @@ def test_directions(dimension):
     assert plane.along[[0, 2]].tolist() == slope[[0, -1]].tolist()
 
 
-def test_coulomb():
+def test_the_acceleration_of_coulombs_law():
     assert Incline(90.0, 2).coulomb(0.5) == pytest.approx(9.81)
     assert Incline(0.0, 2).coulomb(0.5) == pytest.approx(-0.5 * 9.81)
     assert Incline(35.0, 2).coulomb(np.tan(np.radians(35))) == pytest.approx(0)
@@ -43,7 +43,7 @@ def test_every_entry_makes_a_scene(case):
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 @pytest.mark.parametrize("full", [False, True])
 def test_matrices_list_no_entry_twice(case, full):
-    entries = [tuple(sorted(one.items())) for one in case.matrix(full)]
+    entries = [tuple(sorted(entry.items())) for entry in case.matrix(full)]
     assert len(set(entries)) == len(entries)
 
 
@@ -60,36 +60,36 @@ def test_the_slab_lies_on_the_plane(dimension):
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.6])
-def test_what_friction_cannot_hold_slides_as_coulomb_says(friction):
-    found = measured(SLAB.measure({**COARSE, "friction": friction}))
-    assert abs(found["acceleration"].error) < 0.01
-    assert ("effective_friction" in found) == (friction > 0)
-    for one in found.values():
-        assert one.error == pytest.approx(one.value / one.exact - 1)
+def test_sliding_slabs_follow_coulombs_law(friction):
+    results = measured(SLAB.measure({**COARSE, "friction": friction}))
+    assert abs(results["acceleration"].error) < 0.01
+    assert ("effective_friction" in results) == (friction > 0)
+    for result in results.values():
+        assert result.error == pytest.approx(result.value / result.exact - 1)
 
 
-def test_too_much_friction_would_be_noticed():
+def test_a_wrong_friction_is_detected():
     """The measured friction follows from the acceleration, not from the settings."""
     sliding = incline.Sliding({**COARSE, "friction": 0.5}, incline.TILT)
-    found = {one.quantity: one for one in incline._slide(sliding, 0.4)}
-    assert found["effective_friction"].value == pytest.approx(0.5, rel=0.01)
-    assert found["effective_friction"].error == pytest.approx(0.25, rel=0.05)
+    results = {result.quantity: result for result in incline._slide(sliding, 0.4)}
+    assert results["effective_friction"].value == pytest.approx(0.5, rel=0.01)
+    assert results["effective_friction"].error == pytest.approx(0.25, rel=0.05)
 
 
-def test_a_slab_at_rest_stays_where_friction_holds_it():
+def test_friction_holds_a_slab_at_rest():
     (creep,) = SLAB.measure({**COARSE, "friction": 0.95}).measured
     assert creep.quantity == "creep"
     assert abs(creep.error) < 1e-3
 
 
-def test_a_thrown_slab_stops_where_it_should():
+def test_a_thrown_slab_stops_at_the_expected_distance():
     settings = {**COARSE, "model": "elastic", "friction": 1.2, "speed": 1.0}
-    found = measured(SLAB.measure(settings))
-    assert abs(found["stopping_distance"].error) < 0.01
-    assert abs(found["creep"].value) < 1e-3
+    results = measured(SLAB.measure(settings))
+    assert abs(results["stopping_distance"].error) < 0.01
+    assert abs(results["creep"].value) < 1e-3
 
 
-def test_the_angle_is_found_between_those_that_were_tried(monkeypatch):
+def test_the_angle_is_found_by_bisection(monkeypatch):
     """Bisection is exact to its width if slabs slide exactly by Coulomb's law."""
 
     core = SimpleNamespace(particle_updates=6, total_steps=3, particle_count=2)
@@ -108,10 +108,10 @@ def test_the_angle_is_found_between_those_that_were_tried(monkeypatch):
     (angle,) = outcome.measured
     assert angle.exact == pytest.approx(np.degrees(np.arctan(0.7)))
     assert abs(angle.error) < incline.ANGLE_TOLERANCE
-    tried = outcome.wall_s / 0.5
-    assert (outcome.updates, outcome.steps) == (6 * tried, 3 * tried)
+    count = outcome.wall_s / 0.5
+    assert (outcome.updates, outcome.steps) == (6 * count, 3 * count)
 
 
-def test_the_angle_of_a_coarse_slab():
+def test_the_angle_of_a_coarse_slab_is_accurate():
     (angle,) = ANGLE.measure({**COARSE, "length": 0.25, "friction": 0.6}).measured
     assert abs(angle.error) < 0.1

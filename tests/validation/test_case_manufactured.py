@@ -15,7 +15,7 @@ from validation.manufactured.motions import (
 
 MOTIONS = [AxialWaves(0.04), Vortex(1.0)]
 TIME_OF_MAXIMUM = 0.4 / WAVE_SPEED  # a time near that of the largest displacement
-NEAR = 1e-4  # m, for differences in space
+DIFFERENCE_STEP = 1e-4  # m, for differences in space
 
 
 def difference(function, at, step):
@@ -25,9 +25,9 @@ def difference(function, at, step):
 
 
 def gradient(field, points):
-    """Return d field/dX of vectors or tensors; the last index belongs to X."""
+    """Return d field/dX of vectors or tensors; the last index is that of X."""
     parts = [
-        difference(lambda x, axis=axis: field(points + x * np.eye(2)[axis]), 0.0, NEAR)
+        difference(lambda x, axis=axis: field(points + x * np.eye(2)[axis]), 0.0, DIFFERENCE_STEP)
         for axis in range(2)
     ]
     return np.stack(parts, axis=-1)
@@ -65,7 +65,7 @@ def test_velocities_are_the_rate_of_displacements(motion):
 
 
 @pytest.mark.parametrize("motion", MOTIONS, ids=["waves", "vortex"])
-def test_the_sides_of_the_square_carry_nothing(motion):
+def test_the_sides_of_the_square_are_free_of_stress(motion):
     along = np.linspace(0, 1, 21)
     for side in (0.0, 1.0):
         for axis in range(2):
@@ -74,7 +74,7 @@ def test_the_sides_of_the_square_carry_nothing(motion):
             assert np.abs(traction).max() < 1e-5 * YOUNGS_MODULUS
 
 
-def test_strains_are_as_large_as_they_are_said_to_be():
+def test_strains_have_their_stated_size():
     points = np.stack(np.meshgrid(*[np.linspace(0, 1, 401)] * 2), axis=-1).reshape(-1, 2)
     time = 0.5 / WAVE_SPEED
     stretch = gradient(lambda x: AxialWaves(0.04).displacement(x, time), points)
@@ -85,57 +85,57 @@ def test_strains_are_as_large_as_they_are_said_to_be():
     assert np.sqrt(shear.max()) == pytest.approx(0.84, abs=0.01)
 
 
-def test_a_body_whose_motion_is_none_stays_where_it_is():
+def test_a_body_without_motion_stays_at_rest():
     body = ForcedBody(Vortex(0.0), {**SCHEME, **APIC, "dx": 0.1})
     for _ in range(5):
         body.step()
     assert np.abs(body.residual()).max() < 1e-15
 
 
-def test_all_of_a_force_is_applied_although_steps_vary(monkeypatch):
+def test_the_full_force_is_applied_with_varying_steps(monkeypatch):
     """Momentum is force times time if the force is constant in space and time."""
     monkeypatch.setattr(Vortex, "body_force", lambda self, points, time: 0 * points + [3.0, -1.0])
     body = ForcedBody(Vortex(0.5), {**SCHEME, **FLIP, "dx": 0.1})
-    begun = body.drive.mean(body.drive.core.velocities())
+    initial = body.drive.mean(body.drive.core.velocities())
     steps = set()
     for _ in range(10):
         body.step()
         steps.add(round(body.drive.core.time_step_s, 12))
     assert len(steps) > 5
-    gained = body.drive.mean(body.drive.core.velocities()) - begun
+    gained = body.drive.mean(body.drive.core.velocities()) - initial
     # The next force corrects the last step's change of length.
-    still = body._velocity_correction.mean(axis=0)
-    assert gained[[0, 2]] + still == pytest.approx(np.array([3.0, -1.0]) * body.time)
+    pending = body._velocity_correction.mean(axis=0)
+    assert gained[[0, 2]] + pending == pytest.approx(np.array([3.0, -1.0]) * body.time)
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
-def test_matrices(case):
+def test_matrices_list_no_entry_twice_and_reach_the_limits(case):
     for full in (False, True):
         entries = case.matrix(full)
-        assert len({tuple(sorted(one.items())) for one in entries}) == len(entries)
+        assert len({tuple(sorted(entry.items())) for entry in entries}) == len(entries)
         for settings in entries:
             assert manufactured.motion_of(settings).omega > 0
     for quantity in case.quantities:
         for full in (False, True):
-            assert any(quantity.limit_for.items() <= one.items() for one in case.matrix(full))
+            assert any(quantity.limit_for.items() <= entry.items() for entry in case.matrix(full))
 
 
 @pytest.mark.parametrize("start", [WAVES, VORTEX], ids=["waves", "vortex"])
 @pytest.mark.parametrize("transfer", [FLIP, APIC], ids=["flip", "apic"])
-def test_finer_cells_follow_better(start, transfer):
+def test_finer_cells_are_more_accurate(start, transfer):
     # Steps are short, because APIC's longest steps would hide some of the error of the cells.
     settings = {**SCHEME, **start, **transfer, "particles_per_voxel": 9, "courant_factor": 0.6}
     errors = [manufactured.measure({**settings, "dx": 1 / n}).measured[0].error for n in (12, 18)]
     assert errors[1] < errors[0] / 1.5**1.6
 
 
-def test_smaller_steps_come_nearer_to_smallest(monkeypatch):
+def test_smaller_steps_approach_the_smallest(monkeypatch):
     monkeypatch.setattr(manufactured, "MIN_COURANT_FACTOR", 0.9 / 16)
     settings = manufactured.steps_matrix(False)[0]
-    found = [
+    results = [
         manufactured.measure_steps({**settings, "courant_factor": factor}).measured
         for factor in (0.9, 0.45)
     ]
-    assert [one.quantity for one in found[0]] == ["step", "displacement"]
-    coarse, fine = (one[0].error for one in found)
+    assert [result.quantity for result in results[0]] == ["step", "displacement"]
+    coarse, fine = (result[0].error for result in results)
     assert fine < 0.6 * coarse

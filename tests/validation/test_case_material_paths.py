@@ -17,14 +17,14 @@ def equations(dimension=3, **changes):
 
 
 def measured(outcome):
-    return {one.quantity: one for one in outcome.measured}
+    return {result.quantity: result for result in outcome.measured}
 
 
 # --- the rate equations -----------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_elastic_constants_are_those_of_the_core(dimension):
+def test_elastic_constants_agree_with_the_core(dimension):
     law, core = equations(dimension), CamClay(*CONSTANTS, dimension)
     assert law.shear_modulus == pytest.approx(core.shear)
     assert law.stiffness.mean() == pytest.approx(core.bulk)
@@ -34,7 +34,7 @@ def test_elastic_constants_are_those_of_the_core(dimension):
 
 @pytest.mark.parametrize("dimension", [2, 3])
 @pytest.mark.parametrize("sense", [-1, 1])
-def test_isotropic_paths_end_where_volumes_add_up(dimension, sense):
+def test_isotropic_paths_satisfy_the_volume_balance(dimension, sense):
     law = equations(dimension)
     bulk, start, strain = law.stiffness.mean(), law.initial_state(STRENGTH), sense * 0.05
 
@@ -50,7 +50,7 @@ def test_isotropic_paths_end_where_volumes_add_up(dimension, sense):
 
 @pytest.mark.parametrize("lateral", [0.0, -0.5, 0.3])
 @pytest.mark.parametrize("sense", [-1, 1])
-def test_yielding_states_stay_on_the_ellipse_and_volumes_add_up(lateral, sense):
+def test_yielding_states_stay_on_the_ellipse_and_balance_volume(lateral, sense):
     law = equations()
     rate = sense * np.array([1.0, lateral, lateral])
     times = evenly(0.05, 10)
@@ -87,7 +87,7 @@ def test_elastic_paths_are_straight():
     assert np.all(states[:, -1] == start[-1])
 
 
-def test_spent_snow_carries_nothing_and_opens():
+def test_fully_softened_snow_opens_without_stress():
     law = equations()
     start = law.initial_state(STRENGTH)
     states = law.integrate(start, np.array([1.0, 0.0, 0.0]), np.array([0.09, 0.1]))
@@ -95,7 +95,7 @@ def test_spent_snow_carries_nothing_and_opens():
     assert states[:, -1] == pytest.approx(start[-1] + np.array([0.09, 0.1]))
 
 
-def test_no_answer_is_given_where_strength_all_but_vanishes():
+def test_vanishing_strength_is_an_error():
     law = equations()
     start = law.initial_state(STRENGTH)
     with pytest.raises(ArithmeticError, match="strength"):
@@ -118,9 +118,9 @@ def test_without_cohesion_the_critical_state_is_on_q_equal_m_p(monkeypatch):
 @pytest.mark.parametrize("full", [False, True])
 def test_matrices_list_no_entry_twice_and_reach_the_limits(case, full):
     entries = case.matrix(full)
-    assert len({tuple(sorted(one.items())) for one in entries}) == len(entries)
+    assert len({tuple(sorted(entry.items())) for entry in entries}) == len(entries)
     for quantity in case.quantities if full else ():
-        assert any(quantity.limit_for.items() <= one.items() for one in entries)
+        assert any(quantity.limit_for.items() <= entry.items() for entry in entries)
 
 
 @pytest.mark.parametrize("case", CASES[1:], ids=lambda case: case.name)
@@ -135,19 +135,19 @@ def test_errors_fall_with_the_increment(case):
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
-def test_entries_measure_what_the_case_lists(case):
+def test_entries_measure_the_quantities_of_their_case(case):
     names = {quantity.name for quantity in case.quantities}
-    seen = set()
+    measured_names = set()
     for method in ("backward Euler", "extrapolated"):
         settings = {**case.matrix(True)[-1], "method": method, "increment": 1e-4}
         outcome = case.measure(settings)
-        seen |= set(measured(outcome))
+        measured_names |= set(measured(outcome))
         assert outcome.updates > 0
         assert outcome.wall_s > 0
-    assert names <= seen
+    assert names <= measured_names
 
 
-def test_another_law_would_be_noticed(monkeypatch):
+def test_another_law_is_detected(monkeypatch):
     """A core with a slightly different slope exceeds the limit, even with small steps."""
     changed = CONSTANTS._replace(critical_state_slope=CONSTANTS.critical_state_slope * 1.0001)
     reference = StrainPath(-0.06, lateral=0.0).reference()
@@ -158,7 +158,7 @@ def test_another_law_would_be_noticed(monkeypatch):
     assert error > 10 * material_paths.MAX_DEVIATION
 
 
-def test_softened_snow_takes_all_that_it_opens():
+def test_the_opening_of_softened_snow_is_exact():
     settings = {"dimension": 3, "increment": 1e-4, "method": "backward Euler"}
     opening = measured(material_paths.measure_tension(settings))["opening"]
     assert opening.value > 0

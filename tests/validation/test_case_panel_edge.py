@@ -28,7 +28,7 @@ def test_friction_slows_a_rigid_slab_down():
     assert landings[0].time_s < landings[1].time_s < landings[2].time_s
 
 
-def test_long_slabs_are_held_up_longer_and_fly_further():
+def test_long_slabs_fly_farther():
     near, far = (RigidSlab(length, 0.04, 40, 0.0, 1.0).landing(1.0) for length in (0.05, 0.3))
     assert far.distance > near.distance
 
@@ -44,7 +44,7 @@ def parabola(wind):
     ]  # fmt: skip
 
 
-def test_deviation_from_the_parabola():
+def test_the_deviation_from_the_parabola():
     assert panel_edge.parabola_deviation(parabola(0.0)) < 1e-12
     flight = parabola(0.1)
     distance = np.linalg.norm(flight[-1].position - flight[0].position)
@@ -66,21 +66,21 @@ def test_every_entry_makes_a_scene(settings):
     assert data["numerics"]["dx"] == settings["dx"]
 
 
-def test_a_coarse_throw():
+def test_a_coarse_throw_is_within_its_limits():
     outcome = CASE.measure({**SLAB, "dx": 0.02, "transfer": "apic"})
-    found = {one.quantity: one for one in outcome.measured}
-    assert set(found) == {quantity.name for quantity in CASE.quantities}
-    assert abs(found["landing"].error) < 0.01
-    assert found["flight"].error < 1e-3
+    results = {result.quantity: result for result in outcome.measured}
+    assert set(results) == {quantity.name for quantity in CASE.quantities}
+    assert abs(results["landing"].error) < 0.01
+    assert results["flight"].error < 1e-3
     for quantity in CASE.quantities:
-        assert abs(found[quantity.name].error) <= quantity.limit, quantity.name
-    assert found["spin"].error > 0.1  # too fast; see the remarks
+        assert abs(results[quantity.name].error) <= quantity.limit, quantity.name
+    assert results["spin"].error > 0.1  # too fast; see the remarks
 
 
-def test_flip_turns_a_slab_at_the_edge_as_fast_as_it_can():
-    found = {one.quantity: one for one in CASE.measure({**SLAB, "dx": 0.02}).measured}
-    assert found["spin"].error == pytest.approx(0.18, abs=0.12)
-    assert found["spin_kept"].value < 0.1  # the share of PIC damps it away
+def test_flip_turns_a_slab_too_fast_and_damps_its_spin():
+    results = {result.quantity: result for result in CASE.measure({**SLAB, "dx": 0.02}).measured}
+    assert results["spin"].error == pytest.approx(0.18, abs=0.12)
+    assert results["spin_kept"].value < 0.1  # the share of PIC damps it away
 
 
 def test_a_slab_that_stays_is_an_error():

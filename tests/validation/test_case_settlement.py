@@ -12,7 +12,7 @@ COARSE = {**settlement.REGULAR_SETTINGS, "dx": 0.04}
 
 
 def measured(outcome):
-    return {one.quantity: one for one in outcome.measured}
+    return {result.quantity: result for result in outcome.measured}
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -36,7 +36,7 @@ def test_settlement_is_the_integral_of_the_shortening(kind):
         assert np.all(np.diff(slope) > -1e-6)  # deeper layers are compressed more
 
 
-def test_a_column_that_never_yields_is_the_elastic_one(monkeypatch):
+def test_a_column_that_never_yields_equals_the_elastic_column(monkeypatch):
     monkeypatch.setattr(settlement, "STRENGTH", 1e6)
     elastic, yielding = ElasticColumn(2), YieldingColumn(2)
     depth = np.linspace(0.0, 0.4, 9)
@@ -75,10 +75,10 @@ def test_the_yielding_column_is_in_equilibrium():
 
 
 def _overshoot(law, down):
-    """y along the elastic path, and the strain, for interpolation to y = 0."""
+    """Return y along the elastic path, and the strain, for interpolation to y = 0."""
     x = np.linspace(0.001, 0.02, 20001)
     start = law.initial_state(settlement.STRENGTH)
-    return [law.yield_function(start + np.append(down * one, 0.0)) for one in x], x
+    return [law.yield_function(start + np.append(down * strain, 0.0)) for strain in x], x
 
 
 def test_depths_beyond_the_table_are_refused():
@@ -87,16 +87,16 @@ def test_depths_beyond_the_table_are_refused():
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
-def test_every_entry_makes_a_scene_and_none_comes_twice(case):
+def test_every_entry_makes_a_scene_and_occurs_once(case):
     for full in (False, True):
         entries = case.matrix(full)
-        assert len({tuple(sorted(one.items())) for one in entries}) == len(entries)
+        assert len({tuple(sorted(entry.items())) for entry in entries}) == len(entries)
         for settings in entries:
             data = settlement.column_scene(settings).resolve().data
             assert data["seeding"]["pattern"] == settings["pattern"]
             assert data["snow"]["youngs_modulus"] == settlement.YOUNGS_MODULUS
     for quantity in case.quantities:
-        assert any(quantity.limit_for.items() <= one.items() for one in case.matrix(True))
+        assert any(quantity.limit_for.items() <= entry.items() for entry in case.matrix(True))
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -111,12 +111,12 @@ def test_the_column_stands_between_its_walls(dimension):
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
-def test_coarse_columns_settle_and_finer_ones_better(case):
-    found = [measured(case.measure({**COARSE, "dx": dx})) for dx in (0.04, 0.02)]
-    errors = [one["settlement"].error for one in found]
+def test_finer_columns_settle_more_accurately(case):
+    results = [measured(case.measure({**COARSE, "dx": dx})) for dx in (0.04, 0.02)]
+    errors = [result["settlement"].error for result in results]
     assert 0.02 < errors[1] < errors[0] < 0.1
-    assert all(one["pressure"].error < 0.01 for one in found)
-    assert set(found[0]) == {quantity.name for quantity in case.quantities}
+    assert all(result["pressure"].error < 0.01 for result in results)
+    assert set(results[0]) == {quantity.name for quantity in case.quantities}
 
 
 def test_the_column_rests_when_it_is_measured():

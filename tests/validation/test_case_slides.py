@@ -9,7 +9,7 @@ from validation.slide import case_rotation as slide_rotation
 from validation.slide.site import Plane, Site, maps_of, rectangle, slide_drive
 
 
-def test_the_dam_keeps_its_snow():
+def test_the_exact_dam_break_conserves_mass():
     time = 2.0
     s = np.linspace(-20.0, 40.0, 6001)
     thickness = dam_break.exact_thickness(s, time)
@@ -20,7 +20,7 @@ def test_the_dam_keeps_its_snow():
 
 
 @pytest.mark.parametrize(("shape", "mass"), [("ridge", 2 / 3 * 20 * 28), ("cap", np.pi * 100 / 2)])
-def test_terraces_hold_the_snow_of_the_parabola(shape, mass):
+def test_terraces_have_the_mass_of_the_parabola(shape, mass):
     plane = parabolic_cap.PLANE
     site = Site(plane.height, -20.0, -28.0, 44.0, 28.0, parabolic_cap.terraces(shape))
     settings = {"cell": 2.0, "layer_thickness": 0.1, "density": 300.0}
@@ -31,11 +31,11 @@ def test_terraces_hold_the_snow_of_the_parabola(shape, mass):
 
 def test_voellmys_block_follows_its_equation():
     step = 1e-4
-    now, then = (slide_block.block_motion("voellmy", t) for t in (1.0, 1.0 + step))
+    present, later = (slide_block.block_motion("voellmy", t) for t in (1.0, 1.0 + step))
     drag = 9.81 / (slide_block.TURBULENCE * slide_block.THICKNESS)
-    rate = slide_block.PLANE.coulomb(slide_block.FRICTION) - drag * now.speed**2
-    assert (then.speed - now.speed) / step == pytest.approx(rate, rel=1e-3)
-    assert (then.distance - now.distance) / step == pytest.approx(now.speed, rel=1e-3)
+    rate = slide_block.PLANE.coulomb(slide_block.FRICTION) - drag * present.speed**2
+    assert (later.speed - present.speed) / step == pytest.approx(rate, rel=1e-3)
+    assert (later.distance - present.distance) / step == pytest.approx(present.speed, rel=1e-3)
 
 
 def test_a_map_turned_four_times_is_the_same():
@@ -48,7 +48,7 @@ def test_a_map_turned_four_times_is_the_same():
     assert turned[1:-1, 1:-1] == pytest.approx(maps.peak_thickness[1:-1, 1:-1], abs=1e-9)
 
 
-def test_too_much_friction_in_the_block_is_seen():
+def test_a_wrong_friction_of_the_block_is_detected():
     settings = {**slide_block.DEFAULTS, "layer_thickness": 0.25, "law": "coulomb"}
     right = slide_block.measure(settings).measured[1]
     wrong = slide_block.measure({**settings, "friction": 1.02 * slide_block.FRICTION}).measured[1]

@@ -17,11 +17,11 @@ APIC = {"transfer": "apic"}
 
 
 def measured(outcome):
-    return {one.quantity: one for one in outcome.measured}
+    return {result.quantity: result for result in outcome.measured}
 
 
-def test_the_beams_frequency_is_that_of_its_energies():
-    """Return Rayleigh's quotient, the elastic energy over the kinetic energy of the mode."""
+def test_the_beams_frequency_agrees_with_rayleighs_quotient():
+    """Rayleigh's quotient is the elastic energy of the mode over its kinetic energy."""
     x = np.linspace(0, 1, 2001)
     w, psi = BEAM.shape(x)
     shear = 1e6 / 2.6 * 0.2 * 10 * (1 + 3 / 7) / (12 + 11 * 3 / 7)
@@ -49,7 +49,7 @@ def test_timoshenkos_beam_is_slower_than_eulers(slenderness):
     assert missing == pytest.approx(0.84 / slenderness**2, rel=0.1)
 
 
-def test_swing_of_a_vibration_with_another_on_top():
+def test_a_fit_recovers_the_slower_of_two_vibrations():
     t = np.linspace(0, 3, 400)
     slow = np.exp(-0.3 * t) * np.sin(2 * np.pi * 2 * t)
     swing = Swing.fit(t, slow + 1e-3 * np.sin(2 * np.pi * 17 * t), frequency=2.1)
@@ -68,32 +68,32 @@ def spline(basis, u):
 
 @pytest.mark.parametrize("basis", ["quadratic", "cubic"])
 @pytest.mark.parametrize("transfer", TRANSFERS, ids=str)
-def test_smoothing_is_that_of_interpolating_a_wave(basis, transfer):
+def test_smoothing_agrees_with_interpolating_a_wave(basis, transfer):
     """Interpolate once from particles to grid and back, on a ring of 20 cells with 64 particles
     each."""
     cells, count = 20, 64
-    places = (np.arange(cells * count) + 0.5) / count
-    arms = (np.arange(cells) - places[:, np.newaxis] + cells / 2) % cells - cells / 2
-    weights = spline(basis, arms)
+    positions = (np.arange(cells * count) + 0.5) / count
+    offsets = (np.arange(cells) - positions[:, np.newaxis] + cells / 2) % cells - cells / 2
+    weights = spline(basis, offsets)
     k = 2 * np.pi / cells
-    speeds = np.cos(k * places)
-    affine = -k * np.sin(k * places)
+    speeds = np.cos(k * positions)
+    affine = -k * np.sin(k * positions)
     # These are the grid's velocities of a wave that has passed the grid once before.
     grid = weights.T @ speeds / count
     if transfer == APIC:
         scale = 4 if basis == "quadratic" else 3
-        speeds, affine = weights @ grid, scale * (weights * arms) @ grid
-        again = weights.T @ speeds + np.sum(weights * arms * affine[:, np.newaxis], axis=0)
+        speeds, affine = weights @ grid, scale * (weights * offsets) @ grid
+        next_grid = weights.T @ speeds + np.sum(weights * offsets * affine[:, np.newaxis], axis=0)
     else:
         ratio = transfer["flip_ratio"]
-        again = weights.T @ (ratio * speeds + (1 - ratio) * (weights @ grid))
-    remaining = (again / count) @ grid / (grid @ grid)
+        next_grid = weights.T @ (ratio * speeds + (1 - ratio) * (weights @ grid))
+    remaining = (next_grid / count) @ grid / (grid @ grid)
     settings = {**transfer, "basis": basis, "dx": 1.0}
     assert Smoothing.of(settings, k).velocity_share == pytest.approx(remaining, abs=1e-4)
 
 
 @pytest.mark.parametrize("transfer", TRANSFERS, ids=str)
-def test_what_smoothing_takes_per_period_is_what_its_recurrence_takes(transfer):
+def test_the_loss_per_period_agrees_with_the_recurrence(transfer):
     smoothing = Smoothing.of({**transfer, "basis": "quadratic", "dx": 0.05}, np.pi)
     frequency, dt = 2.0, 0.001
     # Symplectic Euler raises a frequency by (omega dt)^2/24, which is left out.
@@ -111,22 +111,22 @@ def test_what_smoothing_takes_per_period_is_what_its_recurrence_takes(transfer):
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
-def test_every_entry_makes_a_scene_and_none_comes_twice(case):
+def test_every_entry_makes_a_scene_and_occurs_once(case):
     make = vibration.bar_scene if case is ELASTIC_BAR else vibration.cantilever_scene
     for full in (False, True):
         entries = case.matrix(full)
-        assert len({tuple(sorted(one.items())) for one in entries}) == len(entries)
+        assert len({tuple(sorted(entry.items())) for entry in entries}) == len(entries)
         for settings in entries:
             data = make(settings).resolve().data
             assert data["numerics"]["dx"] == settings["dx"]
             assert data["numerics"]["sleep_speed"] == 0
             assert len(data["obstacles"]) == (case is not ELASTIC_BAR)
         for quantity in case.quantities:
-            assert any(quantity.limit_for.items() <= one.items() for one in entries)
+            assert any(quantity.limit_for.items() <= entry.items() for entry in entries)
 
 
 @pytest.mark.parametrize("offset", [0.0, 0.3])
-def test_where_the_bodies_are(offset):
+def test_bodies_have_the_offset_to_the_grid(offset):
     settings = {**BAR_DEFAULTS, **APIC, "grid_offset": offset}
     x = vibration.TimedEventDriver(vibration.bar_scene(settings)).core.positions()[:, 0]
     assert x.min() == pytest.approx((offset + 0.25) * 0.05)
@@ -140,21 +140,21 @@ def test_where_the_bodies_are(offset):
     assert inside.mean() == pytest.approx(4 / 44, abs=0.01)
 
 
-def test_a_coarse_bar_rings_as_it_should_and_fades_as_explained():
-    found = {
+def test_a_coarse_bar_has_the_expected_frequency_and_loss():
+    results = {
         str(transfer): measured(ELASTIC_BAR.measure({**BAR_DEFAULTS, **transfer}))
         for transfer in TRANSFERS
     }
-    for one in found.values():
-        assert abs(one["frequency"].error) < 0.01
-        assert abs(one["unexplained_loss"].error) < 5e-4
-    lost = [one["loss_per_period"].value for one in found.values()]
-    flip, flip_99, flip_95, apic, pic = lost
+    for result in results.values():
+        assert abs(result["frequency"].error) < 0.01
+        assert abs(result["unexplained_loss"].error) < 5e-4
+    losses = [result["loss_per_period"].value for result in results.values()]
+    flip, flip_99, flip_95, apic, pic = losses
     assert apic < flip < flip_99 < flip_95 < pic
 
 
-def test_a_coarse_cantilever():
+def test_a_coarse_cantilever_has_about_its_frequency():
     settings = {**CANTILEVER_DEFAULTS, **APIC, "dx": 0.05}
-    found = measured(vibration.CANTILEVER.measure(settings))
-    assert abs(found["frequency"].error) < 0.04
-    assert 0 < found["loss_per_period"].value < 0.02
+    results = measured(vibration.CANTILEVER.measure(settings))
+    assert abs(results["frequency"].error) < 0.04
+    assert 0 < results["loss_per_period"].value < 0.02

@@ -14,13 +14,13 @@ from snowshed import InputError
 from snowshed.analysis.accuracy.measurements import Measured, MeasuredSolution
 from snowshed.analysis.accuracy.recorded import load_recorded
 
-WHOLE = MeasuredSolution("bar", {"dx": 0.1, "apic": True}, [Measured("height", 1.0, 2.0, -0.5)])
+COMPLETE = MeasuredSolution("bar", {"dx": 0.1, "apic": True}, [Measured("height", 1.0, 2.0, -0.5)])
 
 # A line of measurements.jsonl, and the message on it.
 LINES = {
     "nothing": (b"", "damaged: Expecting value"),
     "random bytes": (bytes(range(128, 250)), "damaged: 'utf-8' codec can't decode byte 0x80"),
-    "half": (json.dumps(WHOLE.to_json()).encode()[:99], "damaged: "),
+    "half": (json.dumps(COMPLETE.to_json()).encode()[:99], "damaged: "),
     "deep": (b"[" * 100_000, "damaged: maximum recursion depth exceeded"),
     "list": (b"[]", "damaged: not a JSON object"),
     "no case": ({"case": None}, "damaged: /case: null is not a text"),
@@ -41,19 +41,19 @@ LINES = {
 
 
 @pytest.mark.parametrize("name", LINES)
-def test_a_damaged_line_of_measurements(name, tmp_path):
+def test_a_damaged_line_of_measurements_is_refused_with_its_number(name, tmp_path):
     line, message = LINES[name]
     if isinstance(line, dict):
-        line = json.dumps({**WHOLE.to_json(), **line}).encode()
+        line = json.dumps({**COMPLETE.to_json(), **line}).encode()
     folder = ValidationFolder.create(tmp_path)
-    folder.measurements.append(WHOLE)
+    folder.measurements.append(COMPLETE)
     with folder.measurements.path.open("ab") as file:
         file.write(line + b"\n")
     with pytest.raises(InputError) as caught:
         folder.measurements.read()
-    said = str(caught.value)
-    assert said.startswith(f"{tmp_path / 'measurements.jsonl'}:2: ")
-    assert message in said and len(said) < 400 + len(str(tmp_path))
+    error = str(caught.value)
+    assert error.startswith(f"{tmp_path / 'measurements.jsonl'}:2: ")
+    assert message in error and len(error) < 400 + len(str(tmp_path))
 
 
 def test_a_file_that_cannot_grow_is_named(tmp_path):
@@ -62,20 +62,20 @@ def test_a_file_that_cannot_grow_is_named(tmp_path):
     try:
         resource.setrlimit(resource.RLIMIT_FSIZE, (0, limits[1]))
         with pytest.raises(OSError, match=r"measurements\.jsonl"):
-            folder.measurements.append(WHOLE)
+            folder.measurements.append(COMPLETE)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
 
 
-def test_a_device_without_end_is_no_file_of_measurements(tmp_path):
+def test_an_endless_device_is_refused(tmp_path):
     (tmp_path / "measurements.jsonl").symlink_to("/dev/zero")
     with pytest.raises(InputError, match="not a regular file"):
         ValidationFolder(tmp_path).measurements.read()
 
 
-@pytest.mark.parametrize("missing", WHOLE.to_json())
-def test_a_missing_key_of_a_measurement(missing):
-    data = {key: value for key, value in WHOLE.to_json().items() if key != missing}
+@pytest.mark.parametrize("missing", COMPLETE.to_json())
+def test_a_missing_key_of_a_measurement_is_named(missing):
+    data = {key: value for key, value in COMPLETE.to_json().items() if key != missing}
     with pytest.raises(InputError, match=rf"^m\.jsonl:1: damaged: /{missing} is missing$"):
         MeasuredSolution.from_json(data, "m.jsonl:1")
 
@@ -89,7 +89,7 @@ def test_a_missing_key_of_a_measurement(missing):
         (b'{"measurements": [1]}', "/measurements/0: damaged: not a JSON object"),
     ],
 )
-def test_a_damaged_file_of_recorded_measurements(content, message, tmp_path, capsys):
+def test_a_damaged_file_of_recorded_measurements_is_refused(content, message, tmp_path, capsys):
     path = tmp_path / "recorded.json"
     path.write_bytes(content)
     with pytest.raises(InputError, match=r"recorded\.json: ") as caught:
@@ -113,7 +113,7 @@ RUNS = pd.DataFrame({"outcome": ["rest", "failed"], "n": [1.5, None], "wall_s": 
         ('"runs"', '"walks"', "damaged: /runs is missing"),
     ],
 )
-def test_damaged_runs_of_the_stress_suite(old, new, message, tmp_path):
+def test_damaged_runs_of_the_stress_suite_are_refused(old, new, message, tmp_path):
     folder = ValidationFolder.create(tmp_path)
     folder.keep_stress(RUNS, full=False, seed=1)
     file = tmp_path / "stress.json"
@@ -124,7 +124,7 @@ def test_damaged_runs_of_the_stress_suite(old, new, message, tmp_path):
     assert message in str(caught.value)
 
 
-def test_the_runs_of_another_stress_suite_do_not_count(tmp_path):
+def test_the_runs_of_another_stress_suite_are_not_used(tmp_path):
     folder = ValidationFolder.create(tmp_path)
     folder.keep_stress(RUNS, full=False, seed=1)
     assert folder.kept_stress(full=True, seed=1) is None
@@ -132,13 +132,15 @@ def test_the_runs_of_another_stress_suite_do_not_count(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["measurements.jsonl", "stress.json"])
-def test_resuming_in_a_damaged_folder_is_one_line_and_code_2(name, tmp_path, capsys, monkeypatch):
+def test_resuming_in_a_damaged_folder_gives_one_line_and_code_2(
+    name, tmp_path, capsys, monkeypatch
+):
     monkeypatch.setattr(listing, "case_modules", lambda: {"made_up": "validation.made_up.case"})
     monkeypatch.setattr(listing, "cases_of", lambda module: [made_up_case(entries=[{"dx": 0.1}])])
     monkeypatch.setattr(stress, "run", lambda *_: pytest.fail("the damage was not found"))
     ValidationFolder.create(tmp_path / "out")
     (tmp_path / "out" / name).write_text("snow\n")
     assert program("-q", "--resume", "-o", tmp_path / "out") == 2
-    said = capsys.readouterr().err
-    assert said.startswith(f"error: {tmp_path / 'out' / name}:") and said.count("\n") == 1
+    error = capsys.readouterr().err
+    assert error.startswith(f"error: {tmp_path / 'out' / name}:") and error.count("\n") == 1
     assert not (tmp_path / "out" / "validation.html").exists()

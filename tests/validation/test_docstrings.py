@@ -5,7 +5,7 @@ import pkgutil
 import pytest
 import validation
 
-MODULES = [one.name for one in pkgutil.walk_packages(validation.__path__, "validation.")]
+MODULES = [module.name for module in pkgutil.walk_packages(validation.__path__, "validation.")]
 
 
 @pytest.mark.parametrize("name", MODULES)

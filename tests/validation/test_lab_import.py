@@ -29,11 +29,11 @@ def reference(monkeypatch):
     return lab_records.keys_of(GRID, settings)[0]
 
 
-def test_a_folder_gives_the_entry_that_record_makes(reference, tmp_path):
+def test_a_folder_gives_the_same_entry_as_recording(reference, tmp_path):
     """A run in memory and the stored particles of the run give the same entry."""
-    made = tmp_path / "made.json"
-    lab_records.record(made, "objective")
-    (wanted,) = lab_records.read_entries(made)
+    stored = tmp_path / "made.json"
+    lab_records.record(stored, "objective")
+    (expected,) = lab_records.read_entries(stored)
     scene = tmp_path / "scene.json"
     lab_scene(reference).set("output.film", False).resolve().save(scene)
     out = tmp_path / "out"
@@ -41,12 +41,12 @@ def test_a_folder_gives_the_entry_that_record_makes(reference, tmp_path):
     entry = imported(out, "machine", "2026-11-26")
     assert (entry["machine"], entry["date"]) == ("machine", "2026-11-26")
     for name in ("dimension", "dx", "seed", "events", "scheme", "sleep_speed", "version"):
-        assert entry[name] == wanted[name]
+        assert entry[name] == expected[name]
     for name in COMPARED:  # particles are stored in single precision
-        assert entry[name] == pytest.approx(wanted[name], abs=2e-5)
-    for mine, other in zip(entry["costs"], wanted["costs"]):
-        assert mine[2:] == other[2:]
-    assert [cost[1] for cost in entry["costs"]] == [0, wanted["costs"][-1][1]]
+        assert entry[name] == pytest.approx(expected[name], abs=2e-5)
+    for imported_cost, recorded_cost in zip(entry["costs"], expected["costs"]):
+        assert imported_cost[2:] == recorded_cost[2:]
+    assert [cost[1] for cost in entry["costs"]] == [0, expected["costs"][-1][1]]
     assert 0 < entry["costs"][0][0] < entry["costs"][1][0]
 
 
@@ -62,66 +62,67 @@ def test_a_folder_gives_the_entry_that_record_makes(reference, tmp_path):
     ],
     ids=str,
 )
-def test_other_scenes_are_not_taken(reference, change):
+def test_other_scenes_are_refused(reference, change):
     scene = lab_scene(reference)
     assert settings_of(scene.resolve(), "out") == reference
     with pytest.raises(InputError, match="out: the scene is that of no recorded run"):
         settings_of(scene.update(change).resolve(), "out")
 
 
-def test_an_unfinished_run_is_not_taken(reference, tmp_path):
+def test_an_unfinished_run_is_refused(reference, tmp_path):
     (tmp_path / "run.json").write_text(json.dumps({"status": "running"}))
     with pytest.raises(InputError, match="not finished"):
         imported(tmp_path, "machine", "2026-11-26")
 
 
-def test_the_package_brings_the_measurements_of_the_recorded_runs():
+def test_the_package_has_the_measurements_of_the_recorded_runs():
     """The packaged measurements follow from lab_stack.json, except for the last digits of sums."""
     packaged = [
-        one
-        for one in load_recorded()
-        if one.case == CASE.name and scheme_of(one.settings) == SCHEME
+        stored
+        for stored in load_recorded()
+        if stored.case == CASE.name and scheme_of(stored.settings) == SCHEME
     ]
     computed = measurements_of(SCHEME)
-    assert [one.key for one in packaged] == [one.key for one in computed]
-    for one, other in zip(packaged, computed):
+    assert [stored.key for stored in packaged] == [stored.key for stored in computed]
+    for stored, expected in zip(packaged, computed):
         for name in ("steps", "particles", "updates", "machine", "version", "date"):
-            assert getattr(one, name) == getattr(other, name)
-        assert one.wall_s == pytest.approx(other.wall_s)
-        assert len(one.measured) == len(other.measured)
-        for mine, wanted in zip(one.measured, other.measured):
-            assert mine.quantity == wanted.quantity
-            assert astuple(mine)[1:] == pytest.approx(astuple(wanted)[1:], abs=1e-9)
-    problems = {(one.settings["dimension"], one.settings["events"]) for one in packaged}
+            assert getattr(stored, name) == getattr(expected, name)
+        assert stored.wall_s == pytest.approx(expected.wall_s)
+        assert len(stored.measured) == len(expected.measured)
+        for result, expected_result in zip(stored.measured, expected.measured):
+            assert result.quantity == expected_result.quantity
+            assert astuple(result)[1:] == pytest.approx(astuple(expected_result)[1:], abs=1e-9)
+    problems = {(stored.settings["dimension"], stored.settings["events"]) for stored in packaged}
     assert problems == {(2, 1), (2, 2), (2, 3), (2, 5), (3, 1), (3, 2)}
 
 
-def test_measurements_are_those_of_the_runs():
+def test_measurements_follow_from_the_runs():
     """Compute one measurement from the numbers of the file: mean, error of a single run, cost."""
     runs = lab_records.read_entries(lab_records.FILE)
-    mine = [r for r in runs if scheme_of(r) == SCHEME and r["dimension"] == 2]
-    heights = [r["height"][1] for r in mine if r["dx"] == 0.01]
-    finest = [r["height"][1] for r in mine if r["dx"] == 0.0025]
+    planar = [r for r in runs if scheme_of(r) == SCHEME and r["dimension"] == 2]
+    heights = [r["height"][1] for r in planar if r["dx"] == 0.01]
+    finest = [r["height"][1] for r in planar if r["dx"] == 0.0025]
     exact = sum(finest) / len(finest)
     squares = [(height / exact - 1) ** 2 for height in heights]
-    costs = [r["costs"] for r in mine if r["dx"] == 0.01]
-    (found,) = [
-        one
-        for one in measurements_of(SCHEME)
-        if (one.settings["dimension"], one.settings["dx"], one.settings["events"]) == (2, 0.01, 2)
+    costs = [r["costs"] for r in planar if r["dx"] == 0.01]
+    (measurement,) = [
+        candidate
+        for candidate in measurements_of(SCHEME)
+        if (candidate.settings["dimension"], candidate.settings["dx"], candidate.settings["events"])
+        == (2, 0.01, 2)
     ]
-    height = found.measured[0]
+    height = measurement.measured[0]
     assert height.quantity == "height"
     assert height.value == pytest.approx(sum(heights) / len(heights))
     assert height.exact == pytest.approx(exact)
     assert height.error == pytest.approx((sum(squares) / len(squares)) ** 0.5)
-    assert found.steps == round(sum(cost[1][2] for cost in costs) / len(costs))
-    # All updates at the speed of the fastest run; of each run only the share of two events.
+    assert measurement.steps == round(sum(cost[1][2] for cost in costs) / len(costs))
+    # Each run counts with all updates at the speed of the fastest run, and the share of two events.
     quickest = min(cost[-1][0] / cost[-1][1] for cost in costs)
     times = [cost[-1][1] * quickest * cost[1][0] / cost[-1][0] for cost in costs]
-    assert found.wall_s == pytest.approx(sum(times) / len(times))
-    assert found.updates == 0  # counted for all events only
-    assert found.machine == "AMD EPYC"
+    assert measurement.wall_s == pytest.approx(sum(times) / len(times))
+    assert measurement.updates == 0  # counted for all events only
+    assert measurement.machine == "AMD EPYC"
 
 
 def test_a_part_of_a_run_ends_with_its_event():
@@ -136,16 +137,18 @@ def test_a_part_of_a_run_ends_with_its_event():
         recorded_runs(2, 0.01, "thesis")[0].cost  # noqa: B018
 
 
-def test_new_measurements_take_the_place_of_those_of_the_same_scheme(tmp_path):
+def test_new_measurements_replace_those_of_the_same_scheme(tmp_path):
     path = tmp_path / "recorded.json"
-    others = [
+    unrelated = [
         MeasuredSolution("bar", {"dx": 1.0}, []),
         MeasuredSolution(CASE.name, {"dx": 0.01}, []),
     ]
-    record([*others, MeasuredSolution(CASE.name, {"dx": 0.5, "scheme": "objective"}, [])], path)
+    record([*unrelated, MeasuredSolution(CASE.name, {"dx": 0.5, "scheme": "objective"}, [])], path)
     new = MeasuredSolution(CASE.name, {"dx": 0.25, "scheme": "objective"}, [])
     renew([new], path)
-    assert [one.key for one in load_recorded(path)] == [one.key for one in (*others, new)]
+    assert [measurement.key for measurement in load_recorded(path)] == [
+        measurement.key for measurement in (*unrelated, new)
+    ]
 
 
 def test_times_of_several_machines_are_not_mixed(monkeypatch):
@@ -154,8 +157,8 @@ def test_times_of_several_machines_are_not_mixed(monkeypatch):
     def mixed(dimension, dx, scheme):
         runs = recorded_runs(dimension, dx, scheme)
         first = runs[0]
-        other = RecordedRun(first.measures, first.costs, "another", first.version, first.date)
-        return [other, *runs[1:]]
+        another = RecordedRun(first.measures, first.costs, "another", first.version, first.date)
+        return [another, *runs[1:]]
 
     monkeypatch.setattr(recorded_measurements, "recorded_runs", mixed)
     with pytest.raises(InputError, match=r"differ in their machine: AMD EPYC, another"):

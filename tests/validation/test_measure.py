@@ -40,7 +40,7 @@ def file(tmp_path):
 
 def test_every_entry_of_every_matrix_is_measured_once(file):
     measurements = measure_cases([made_up_case()], file)
-    assert [one.settings for one in measurements] == made_up_case().matrix(False)
+    assert [measurement.settings for measurement in measurements] == made_up_case().matrix(False)
     first = measurements[0]
     assert first.measured[0] == Measured("height", pytest.approx(2.352), 2.0, pytest.approx(0.176))
     assert first.wall_s == pytest.approx(0.1)
@@ -51,18 +51,18 @@ def test_every_entry_of_every_matrix_is_measured_once(file):
     assert len(tasks_of([made_up_case()], full=True)) == 6
 
 
-def test_a_failing_measurement_becomes_a_result_that_says_why(file):
+def test_a_failed_measurement_is_recorded_with_the_reason(file):
     entries = [{"mode": mode} for mode in (*FAILURES, "works")]
     *failed, works = measure_cases([made_up_case(entries=entries)], file)
-    for one, reason in zip(failed, FAILURES.values()):
-        assert one.failure.startswith(reason)
-        assert [m.quantity for m in one.measured] == ["height", "drift"]
+    for measurement, reason in zip(failed, FAILURES.values()):
+        assert measurement.failure.startswith(reason)
+        assert [result.quantity for result in measurement.measured] == ["height", "drift"]
     assert not works.failure
     table = to_table([*failed, works])
     assert table["error"].isna().tolist() == [True] * 8 + [False] * 2
 
 
-def test_peak_memory_is_that_of_the_measurement_alone(file):
+def test_peak_memory_is_of_a_single_measurement(file):
     entries = [{"mode": "needs memory"}, {"mode": "works"}]
     large, small = measure_cases([made_up_case(entries=entries)], file)
     assert large.peak_memory_mb > MEGABYTES > small.peak_memory_mb > 0
@@ -74,11 +74,11 @@ def test_processes_start_quickly(file):
         [made_up_case(entries=[{"dx": 1.0 / i} for i in range(1, 41)])], file
     )
     elapsed = time.perf_counter() - started
-    assert elapsed < 10.0  # of Python starting each time: about a minute on a busy machine
-    assert sum(one.elapsed_s for one in measurements) < elapsed
+    assert elapsed < 10.0  # starting Python for each would take a minute on a busy machine
+    assert sum(measurement.elapsed_s for measurement in measurements) < elapsed
 
 
-def test_what_cannot_be_imported_fails_alone(file, monkeypatch):
+def test_only_the_case_that_cannot_be_imported_fails(file, monkeypatch):
     def measure(settings):
         raise AssertionError
 
@@ -86,41 +86,41 @@ def test_what_cannot_be_imported_fails_alone(file, monkeypatch):
     nowhere.measure, measure.__module__, measure.__qualname__ = measure, "nowhere", "measure"
     monkeypatch.setitem(sys.modules, "nowhere", nowhere)
     lost = replace(made_up_case(entries=[{"dx": 0.1}]), name="lost", measure=measure)
-    one, other = measure_cases([lost, made_up_case(entries=[{"dx": 0.1}])], file)
-    assert one.failure.startswith("ModuleNotFoundError: No module named 'nowhere'")
-    assert not other.failure
+    failed, successful = measure_cases([lost, made_up_case(entries=[{"dx": 0.1}])], file)
+    assert failed.failure.startswith("ModuleNotFoundError: No module named 'nowhere'")
+    assert not successful.failure
 
 
-def test_a_measurement_leaves_nothing_behind_for_the_next(file):
+def test_measurements_do_not_share_imports(file):
     entries = [{"mode": "imports", "seed": seed} for seed in (1, 2)]
     measurements = measure_cases([made_up_case(entries=entries)], file)
-    assert [one.measured[0].value for one in measurements] == [0.0, 0.0]
+    assert [measurement.measured[0].value for measurement in measurements] == [0.0, 0.0]
 
 
-def test_what_was_measured_is_not_measured_again(file, monkeypatch):
+def test_measurements_are_not_repeated_unless_they_failed(file, monkeypatch):
     entries = [{"mode": "raises"}, {"dx": 0.1}]
     measure_cases([made_up_case(entries=entries)], file)
-    seen = []
+    reports = []
     entries.append({"dx": 0.2})
-    measure_cases([made_up_case(entries=entries)], file, progress=seen.append)
-    assert [p.doing for p in seen] == ["made_up: raises", "made_up: dx 0.2"]  # failures again
-    assert [(p.done, p.count) for p in seen] == [(1, 3), (2, 3)]
+    measure_cases([made_up_case(entries=entries)], file, progress=reports.append)
+    assert [p.doing for p in reports] == ["made_up: raises", "made_up: dx 0.2"]  # failures again
+    assert [(p.done, p.count) for p in reports] == [(1, 3), (2, 3)]
     assert len(file.read()) == 4
     monkeypatch.setattr(measure._core, "version", "another")
-    measure_cases([made_up_case(entries=entries[1:])], file, progress=seen.append)
-    assert len(seen) == 4
+    measure_cases([made_up_case(entries=entries[1:])], file, progress=reports.append)
+    assert len(reports) == 4
 
 
-def test_a_line_that_was_cut_off_is_measured_again(file):
-    (one,) = measure_cases([made_up_case(entries=[{"dx": 0.1}])], file)
-    with file.path.open("a") as torn:
-        torn.write('{"case": "made_up", "sett')
-    assert file.read() == [one]
-    file.append(one)
-    assert file.read() == [one, one]
+def test_a_truncated_line_is_ignored(file):
+    (measurement,) = measure_cases([made_up_case(entries=[{"dx": 0.1}])], file)
+    with file.path.open("a") as stream:
+        stream.write('{"case": "made_up", "sett')
+    assert file.read() == [measurement]
+    file.append(measurement)
+    assert file.read() == [measurement, measurement]
 
 
-def test_an_interrupt_ends_the_measurement_and_keeps_the_others(tmp_path):
+def test_an_interrupt_ends_the_measurement_and_keeps_finished_ones(tmp_path):
     code = (
         "from pathlib import Path; from made_up import made_up_case; import signal, sys\n"
         # Where the tests run in the background, interrupts are ignored.
@@ -153,8 +153,8 @@ def test_the_estimate_follows_known_durations_and_the_present_pace(monkeypatch):
     clock = [100.0]
     monkeypatch.setattr(time, "monotonic", lambda: clock[0])
     tasks = tasks_of([made_up_case(entries=[{"dx": 1}, {"dx": 2}, {"dx": 3}])], full=False)
-    known = {tasks[0].key: 1.0, tasks[1].key: 3.0}  # the third: 2 s, their mean
-    estimate = Estimate(tasks, known)
+    durations = {tasks[0].key: 1.0, tasks[1].key: 3.0}  # the third: 2 s, their mean
+    estimate = Estimate(tasks, durations)
     assert estimate.after(0) == (0.0, 6.0)
     clock[0] += 2.0  # twice as slow as in the earlier runs
     assert estimate.after(1) == (pytest.approx(1 / 6), pytest.approx(10.0))
@@ -181,7 +181,7 @@ def test_the_table_has_a_row_for_each_quantity_and_a_column_for_each_setting():
         to_table([MeasuredSolution("one", {"steps": 3}, [])])
 
 
-def test_a_folder_is_new_or_of_an_earlier_suite(tmp_path):
+def test_a_folder_is_either_created_or_resumed(tmp_path):
     with pytest.raises(InputError, match="nothing to resume"):
         ValidationFolder.reopen(tmp_path)
     ValidationFolder.create(tmp_path)
@@ -191,21 +191,23 @@ def test_a_folder_is_new_or_of_an_earlier_suite(tmp_path):
 
 
 def test_cases_are_found_by_module_and_by_name(monkeypatch):
-    one, other = made_up_case(), made_up_case(remarks="")
-    object.__setattr__(other, "name", "other")
-    held = {"first": [one], "second": [other]}
-    modules = {name: f"validation.{name}.case" for name in held}
+    first, second = made_up_case(), made_up_case(remarks="")
+    object.__setattr__(second, "name", "other")
+    cases_by_module = {"first": [first], "second": [second]}
+    modules = {name: f"validation.{name}.case" for name in cases_by_module}
     monkeypatch.setattr(listing, "case_modules", lambda: modules)
-    monkeypatch.setattr(listing, "cases_of", lambda module: held[module.split(".")[1]])
-    assert listing.load_cases() == [one, other]
-    assert listing.load_cases(["second"]) == [other]
-    assert listing.load_cases(["other"]) == [other]
+    monkeypatch.setattr(listing, "cases_of", lambda module: cases_by_module[module.split(".")[1]])
+    assert listing.load_cases() == [first, second]
+    assert listing.load_cases(["second"]) == [second]
+    assert listing.load_cases(["other"]) == [second]
     with pytest.raises(InputError, match="--case third: no such case; there are first, made_up"):
         listing.load_cases(["third"])
 
 
-def test_measurements_survive_json():
-    one = MeasuredSolution("a", {"dx": 0.1}, [Measured("b", float("inf"), 1.0, float("nan"))])
-    text = json.dumps(one.to_json(), allow_nan=False)
-    again = MeasuredSolution.from_json(json.loads(text), "m.jsonl")
-    assert again.to_json() == one.to_json()
+def test_measurements_are_read_back_from_json():
+    measurement = MeasuredSolution(
+        "a", {"dx": 0.1}, [Measured("b", float("inf"), 1.0, float("nan"))]
+    )
+    text = json.dumps(measurement.to_json(), allow_nan=False)
+    read = MeasuredSolution.from_json(json.loads(text), "m.jsonl")
+    assert read.to_json() == measurement.to_json()

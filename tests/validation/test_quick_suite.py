@@ -11,7 +11,7 @@ from snowshed.analysis.accuracy.measurements import to_table
 
 MODULES = case_modules()
 #: The slowest modules. Faster tests, here in `test_case_*.py` or in C++, cover the same code.
-LONG = {
+SLOW_MODULES = {
     "elastic_vibration",
     "laboratory_between_events",
     "manufactured",
@@ -25,7 +25,7 @@ LONG = {
 def modules():
     """Return the modules as parameters; `make test-slow` runs the long ones."""
     return [
-        pytest.param(module, id=name, marks=[pytest.mark.slow] if name in LONG else [])
+        pytest.param(module, id=name, marks=[pytest.mark.slow] if name in SLOW_MODULES else [])
         for name, module in MODULES.items()
     ]
 
@@ -38,6 +38,6 @@ def test_modules_are_found():
 def test_criteria_hold(module, tmp_path):
     cases = cases_of(module)
     measurements = measure_cases(cases, MeasurementFile(tmp_path / "measurements.jsonl"))
-    assert {one.case for one in measurements} == {case.name for case in cases}
-    found = compare(to_table(measurements), cases)
-    assert not problems(Validation(cases, measurements, full=False), found)
+    assert {measurement.case for measurement in measurements} == {case.name for case in cases}
+    criteria = compare(to_table(measurements), cases)
+    assert not problems(Validation(cases, measurements, full=False), criteria)

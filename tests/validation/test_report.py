@@ -63,25 +63,25 @@ def test_the_page_needs_no_other_file(page, report):
     assert not re.search(r"https?://|<script|@import|url\(", html)
 
 
-def test_the_page_can_be_read(report):
+def test_the_page_is_accessible(report):
     check_page(report / "validation.html")
 
 
-def test_the_page_says_what_holds_and_what_does_not(page):
+def test_the_page_lists_criteria_that_hold_and_that_fail(page):
     text = " ".join(" ".join(page.text).split())
     assert "0 of 2 criteria" not in text
     assert "1 of 2 criteria does not hold" in text
     assert "Of 3 runs of the stress suite 1 failed" in text
-    held = row_with(page, "holds", "A made-up case", "height, m")
-    assert held[3:6] == ["apic, dx 0.1", "≤ 6 %", "4.4 %"]
+    holding = row_with(page, "holds", "A made-up case", "height, m")
+    assert holding[3:6] == ["apic, dx 0.1", "≤ 6 %", "4.4 %"]
     failed = row_with(page, "does not hold", "A made-up case", "drift, kg m2/s")
     assert failed[3:6] == ["all settings", "order ≥ 1.9 in dx", "failed"]
-    assert "KeyError: 'flip'" in text  # why
+    assert "KeyError: 'flip'" in text  # the reason
 
 
-def test_the_page_tells_who_measured_what(page):
+def test_the_page_describes_the_suite_and_its_cases(page):
     text = " ".join(" ".join(page.text).split())
-    for said in (
+    for phrase in (
         "full",
         "7, 1 failed",
         "The error is <known>.",
@@ -89,7 +89,7 @@ def test_the_page_tells_who_measured_what(page):
         "PIC damps.",
         "None may fail.",
     ):
-        assert said in text
+        assert phrase in text
     for title in ("What holds", "Cheapest settings", "Where the method is poor", "How runs ended"):
         assert title in text
 
@@ -120,7 +120,7 @@ def test_numbers_are_rounded(page):
     assert row_with(page, "rest") == ["rest", "2", "0.123"]
 
 
-def test_tables_and_numbers_are_files_too(report):
+def test_results_are_written_as_files_too(report):
     table = pd.read_csv(report / "results.csv")
     assert len(table) == 14
     assert table["error"].isna().sum() == 2
@@ -131,8 +131,8 @@ def test_tables_and_numbers_are_files_too(report):
     assert data["about"]["suite"] == "full"
     assert [criterion["holds"] for criterion in data["criteria"]] == [True, False]
     assert len(data["measurements"]) == 7
-    assert [one["order"] for one in data["orders"]] == pytest.approx([2.0] * 4)
-    reached = [one["reached"] for one in data["cheapest"]]
+    assert [entry["order"] for entry in data["orders"]] == pytest.approx([2.0] * 4)
+    reached = [entry["reached"] for entry in data["cheapest"]]
     assert reached == [True, True, True, False]
 
 
@@ -146,47 +146,47 @@ def test_a_suite_in_which_everything_failed_has_a_report(tmp_path):
     assert "stress" not in page.ids
 
 
-def test_the_front_is_named_where_it_matters():
+def test_points_of_the_front_are_named_if_they_differ():
     assert worth_naming([], [], []) == []
     assert worth_naming([2], [0, 0, 1.0], [0, 0, 0.1]) == [2]
     times, errors = [1.0, 2.0, 2.1, 9.0], [0.5, 0.4, 0.2, 0.199]
     assert worth_naming([0, 1, 2, 3], times, errors) == [0, 2]
 
 
-def test_what_varies_looks_different():
+def test_varying_settings_have_different_styles():
     settings = [{"dx": dx, "basis": b, "transfer": t} for dx in (1, 2) for b in "qc" for t in "fa"]
     styles = LineStyles.of(settings, settings, along=["dx"])
-    lines = [styles.for_line(one) for one in settings[:4]]
+    lines = [styles.for_line(entry) for entry in settings[:4]]
     assert len({(line["color"], line["marker"]) for line in lines}) == 4
     assert len({line["color"] for line in lines}) == 2  # the transfer
-    assert lines == [styles.for_line(one) for one in settings[4:]]
+    assert lines == [styles.for_line(entry) for entry in settings[4:]]
     assert sorted(line.get_label() for line in styles.key(settings)) == ["a", "c", "f", "q"]
 
 
-def test_a_value_looks_the_same_whatever_else_is_drawn():
+def test_a_value_has_the_same_style_in_every_figure():
     settings = [{"dx": dx, "basis": b, "transfer": t} for dx in (1, 2) for b in "qc" for t in "fa"]
-    drawn = [one for one in settings if one["transfer"] == "a"]
+    drawn = [entry for entry in settings if entry["transfer"] == "a"]
     styles = LineStyles.of(settings, drawn, along=["dx"])
     assert sorted(line.get_label() for line in styles.key(drawn)) == ["c", "q"]
-    both = [LineStyles.of(settings, some, along=["dx"]) for some in (settings, settings[:2])]
-    colours = [[styles.for_line(one)["color"] for one in settings[:2]] for styles in both]
+    both = [LineStyles.of(settings, shown, along=["dx"]) for shown in (settings, settings[:2])]
+    colours = [[styles.for_line(entry)["color"] for entry in settings[:2]] for styles in both]
     assert colours[0] == colours[1]
 
 
-def test_dashes_tell_nothing_where_there_are_no_lines():
+def test_dashes_are_used_only_for_lines():
     settings = [{"a": a, "b": b, "c": c} for a in (1, 2) for b in (1, 2) for c in (1, 2)]
     assert len(LineStyles.of(settings, settings).key(settings)) == 4
     assert len(LineStyles.of(settings, settings, along=["dx"]).key(settings)) == 6
 
 
-def test_errors_are_drawn_against_time_where_they_say_which_way_is_better(tmp_path):
-    several, one = [{"transfer": "apic"}, {"transfer": "pic"}], [{"transfer": "apic"}]
+def test_errors_are_drawn_against_time_if_settings_can_be_compared(tmp_path):
+    several, single = [{"transfer": "apic"}, {"transfer": "pic"}], [{"transfer": "apic"}]
     diagnostic = Quantity("height", "height, cells", relative=False)
     no_drift = replace(DRIFT, order_in=None)
     for number, (quantity, entries, drawn) in enumerate(
         [
             (HEIGHT, several, True),
-            (HEIGHT, one, False),
+            (HEIGHT, single, False),
             (diagnostic, several, False),
             (replace(diagnostic, limit=1.0), several, True),
         ]
@@ -196,10 +196,10 @@ def test_errors_are_drawn_against_time_where_they_say_which_way_is_better(tmp_pa
         case = made_up_case(entries=entries, quantities=[quantity, no_drift])
         measured = measure_cases([case], MeasurementFile(folder / "m.jsonl"))
         pictures = sections.section(case, measured, to_table(measured)).pictures
-        assert [one.name for one in pictures] == ["made_up-error-against-run-time"] * drawn
+        assert [picture.name for picture in pictures] == ["made_up-error-against-run-time"] * drawn
 
 
-def test_quantities_that_were_not_measured_have_no_column(tmp_path):
+def test_unmeasured_quantities_have_no_column(tmp_path):
     case = made_up_case(
         entries=[{"transfer": "apic"}], quantities=[HEIGHT, DRIFT, Quantity("tilt", "tilt")]
     )
@@ -209,13 +209,13 @@ def test_quantities_that_were_not_measured_have_no_column(tmp_path):
     assert [title.split(",")[0] for title in titles] == ["height", "drift"]
 
 
-def test_settings_that_are_not_given_are_named():
+def test_missing_settings_are_named():
     assert sections._cell({"dx": 0.1}, "flip_ratio") == "default"
     assert sections._cell({"dx": 0.1}, "aspect") == formatting.MISSING
     assert sections._cell({"dimension": 3}, "dimension") == "3D"
 
 
-def test_tables_of_texts_are_as_wide_as_their_heads():
+def test_frames_become_tables_of_rounded_numbers():
     frame = pd.DataFrame({"a_b": [1.23456, float("nan")], "c": ["x", "y"], "d": [1_234_567, 12345]})
     grid = sections.frame_grid(frame)
     assert grid.head == ["a b", "c", "d"]
@@ -228,5 +228,5 @@ def test_tables_of_texts_are_as_wide_as_their_heads():
     ("value", "text"),
     [(1e-6, "10⁻⁶"), (-0.5, "-0.5"), (1e5, "100,000"), (999.9, "1,000"), (1e-4, "0.0001")],
 )
-def test_numbers_text(value, text):
+def test_numbers_are_written_briefly(value, text):
     assert formatting.number(value) == text

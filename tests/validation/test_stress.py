@@ -44,13 +44,13 @@ def balances_of(ledger: Ledger, **laid: float) -> Conservation:
     return balances
 
 
-def test_balances_are_relative_to_what_came_in() -> None:
+def test_balances_are_relative_to_the_input() -> None:
     ledger = Ledger()
     balances = balances_of(ledger, kinetic_j=20.0, gravitational_j=100.0)
     ledger.values.update(
         kinetic_j=15.0, gravitational_j=70.0, plastic_j=30.0, transfer_j=3.0, sleep_j=1.0
     )
-    balances.sample()  # 50 J came in; 15 J are there, 34 J were spent: 1 J is missing
+    balances.sample()  # input 50 J; 15 J stored, 34 J dissipated: 1 J is missing
     errors = balances.energy_errors()
     assert errors["energy_error"] == pytest.approx(1 / 50)
     assert errors["energy_gain"] == 0
@@ -62,7 +62,7 @@ def test_balances_are_relative_to_what_came_in() -> None:
     assert errors["energy_gain"] == pytest.approx((2 + 34) / 50)
 
 
-def test_balances_of_a_second_event_count_what_it_brought() -> None:
+def test_balances_of_a_second_event_include_its_input() -> None:
     ledger = Ledger()
     balances = balances_of(ledger, kinetic_j=20.0, gravitational_j=100.0)
     ledger.values.update(kinetic_j=0.0, gravitational_j=90.0, sticking_j=30.0)
@@ -74,7 +74,7 @@ def test_balances_of_a_second_event_count_what_it_brought() -> None:
     assert balances.energy_errors()["energy_error"] == pytest.approx(0.0, abs=1e-15)
 
 
-def test_momentum_is_that_of_free_flight() -> None:
+def test_the_momentum_is_compared_with_free_flight() -> None:
     ledger = Ledger()
     ledger.velocity = np.array([[1.0, 0, 0], [0, 0, 2.0]])
     balances = balances_of(ledger)
@@ -84,7 +84,7 @@ def test_momentum_is_that_of_free_flight() -> None:
     assert balances.momentum_error(0.5) == pytest.approx(0.5 / (1 + 6 + 20))
 
 
-SOUND: dict[str, Any] = {
+VALID: dict[str, Any] = {
     "ended": "rest",
     "message": "",
     "precision": "float",
@@ -114,8 +114,8 @@ SOUND: dict[str, Any] = {
         ({"energy_error": math.inf}, "failed"),
     ],
 )
-def test_verdicts(change: dict[str, Any], outcome: str) -> None:
-    verdict, reason = judge({**SOUND, **change})
+def test_verdicts_on_records(change: dict[str, Any], outcome: str) -> None:
+    verdict, reason = judge({**VALID, **change})
     assert verdict == outcome
     assert bool(reason) == (outcome == "failed")
 
@@ -125,7 +125,7 @@ def test_bad_input_is_refused_without_measures() -> None:
     assert judge(record) == ("refused", "")
 
 
-def test_free_fall_differs_from_the_balance_by_what_symplectic_euler_does() -> None:
+def test_the_balance_of_free_fall_has_the_error_of_symplectic_euler() -> None:
     """A block in free fall has only one error: it falls too far by g t dt/2."""
     point = {**reference(), "kind": "throw", "speed": 0.1, "precision": "double"}
     scene = build(point, max_time=0.005)
@@ -140,31 +140,31 @@ def test_free_fall_differs_from_the_balance_by_what_symplectic_euler_does() -> N
     balances.sample()
     time, dt = simulation.time_s, simulation.time_step_s
     assert balances.momentum_error(time) < 1e-12
-    came_in = 0.5 * 0.1**2 + 9.81 * (0.08 * time + 0.5 * 9.81 * time**2)
-    too_far = 0.5 * 9.81 * time * dt
-    expected = 9.81 * too_far / came_in
+    input_energy = 0.5 * 0.1**2 + 9.81 * (0.08 * time + 0.5 * 9.81 * time**2)
+    excess_fall = 0.5 * 9.81 * time * dt
+    expected = 9.81 * excess_fall / input_energy
     assert balances.energy_errors()["energy_error"] == pytest.approx(expected, rel=0.05)
 
 
 @pytest.fixture(scope="module")
-def some() -> pd.DataFrame:
+def sample_runs() -> pd.DataFrame:
     quick = trials(full=False)
     return run_trials([Trial(t.design, t.varied, t.point, 100) for t in quick[::4]])
 
 
-def test_runs_rest_or_go_on_or_stop_with_a_reason(some: pd.DataFrame) -> None:
-    failed = some[some.outcome == "failed"]
+def test_no_run_of_a_sample_fails(sample_runs: pd.DataFrame) -> None:
+    failed = sample_runs[sample_runs.outcome == "failed"]
     assert failed.empty, failed.reason.tolist()
-    assert set(some.design) == {"reference", "single", "pairwise", "random"}
+    assert set(sample_runs.design) == {"reference", "single", "pairwise", "random"}
 
 
-def test_tables_count_every_run_once(some: pd.DataFrame) -> None:
-    tables = {table.name: table for table in summarise(some)}
-    assert tables["outcomes"].frame["all"].sum() == len(some)
-    stopped = some.outcome.isin(["refused", "stopped"]).sum()
+def test_tables_count_every_run_once(sample_runs: pd.DataFrame) -> None:
+    tables = {table.name: table for table in summarise(sample_runs)}
+    assert tables["outcomes"].frame["all"].sum() == len(sample_runs)
+    stopped = sample_runs.outcome.isin(["refused", "stopped"]).sum()
     assert tables["errors"].frame["runs"].sum() == stopped
-    assert tables["cost"].frame["runs"].sum() == len(some) - stopped
-    assert tables["savings"].frame["runs"].sum() == len(some) - stopped
+    assert tables["cost"].frame["runs"].sum() == len(sample_runs) - stopped
+    assert tables["savings"].frame["runs"].sum() == len(sample_runs) - stopped
     assert tables["failures"].frame.empty
     assert all(table.title and table.remark for table in tables.values())
 
@@ -177,7 +177,7 @@ def test_snow_comes_to_rest() -> None:
     assert judge({**point, **record}) == ("rest", "")
 
 
-def test_a_particle_that_is_compressed_beyond_measure_is_named() -> None:
+def test_an_extremely_compressed_particle_is_named() -> None:
     """Nothing stops elastic snow of 10 kPa at Mach 15."""
     point = {**reference(), "kind": "collide", "model": "elastic", "youngs_modulus": 1e4}
     record = solve({**point, "density": 917.0, "speed": 100.0, "transfer": "apic"}, steps=500)

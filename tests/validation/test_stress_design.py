@@ -15,23 +15,23 @@ from snowshed import InputError, _core
 QUICK = trials(full=False)
 
 
-def of(design: str) -> list[Any]:
+def trials_of(design: str) -> list[Any]:
     return [t for t in QUICK if t.design == design]
 
 
-def test_singles_try_every_extreme_and_every_choice_about_the_reference() -> None:
-    tried = {(name, t.point[name]) for t in of("single") for name in t.point}
-    assert tried >= {(p.name, level) for p in PARAMETERS for level in p.levels}
-    for trial in of("single"):
+def test_single_changes_cover_every_extreme_and_choice() -> None:
+    levels = {(name, t.point[name]) for t in trials_of("single") for name in t.point}
+    assert levels >= {(p.name, level) for p in PARAMETERS for level in p.levels}
+    for trial in trials_of("single"):
         changed = [name for name, value in reference().items() if trial.point[name] != value]
         assert set(changed) <= {trial.varied, "kind"}
 
 
 def test_pairwise_covers_every_pair_of_levels() -> None:
-    points = [t.point for t in of("pairwise")]
+    points = [t.point for t in trials_of("pairwise")]
     for a, b in combinations(PARAMETERS, 2):
-        met = {(point[a.name], point[b.name]) for point in points}
-        assert met == {(x, y) for x in a.levels for y in b.levels}
+        pairs = {(point[a.name], point[b.name]) for point in points}
+        assert pairs == {(x, y) for x in a.levels for y in b.levels}
 
 
 def test_random_points_stay_in_their_ranges_and_spread_evenly() -> None:
@@ -58,10 +58,10 @@ def test_a_seed_fixes_the_random_points() -> None:
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_scenes_hold_what_they_are_to_show(kind: str, dimension: int) -> None:
+def test_scenes_contain_the_extreme_that_they_test(kind: str, dimension: int) -> None:
     point = {**reference(), "kind": kind, "dimension": dimension, "thickness": 0.3, "speed": 7.0}
-    ready = build(point).resolve()
-    simulation = _core.Simulation(ready.json)
+    resolved = build(point).resolve()
+    simulation = _core.Simulation(resolved.json)
     simulation.begin_event()
     speeds = np.linalg.norm(simulation.velocities(), axis=1)
     assert speeds.max() == pytest.approx(3.5 if kind == "collide" else 7.0, rel=1e-6)

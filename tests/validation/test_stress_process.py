@@ -1,4 +1,4 @@
-"""A run that crashes, hangs or raises gives a record, and the next run goes on."""
+"""A run that crashes, hangs or raises gives a record, and the next run starts."""
 
 import os
 import sys
@@ -10,7 +10,7 @@ from validation.stress.process import ProcessRun, record, stress_pool
 from validation.stress.space import reference
 
 
-def clumsy(run, report):
+def faulty_compute(run, report):
     """Stand in for `process.compute`; `steps` selects the failure."""
     if run.steps == 1:
         sys.stderr.write("first\nlast words\n")
@@ -21,9 +21,9 @@ def clumsy(run, report):
     return {"ended": str(run.steps), "message": os.environ["OMP_NUM_THREADS"]}
 
 
-def test_crashes_and_hangs_are_records_and_the_next_run_goes_on(monkeypatch):
+def test_crashes_and_hangs_are_recorded_and_the_next_run_starts(monkeypatch):
     monkeypatch.syspath_prepend(str(Path(__file__).parent))
-    monkeypatch.setattr(process, "compute", clumsy)
+    monkeypatch.setattr(process, "compute", faulty_compute)
     with stress_pool(limit_s=10.0) as pool:
         assert record(pool, ProcessRun({}, 7)) == {"ended": "7", "message": "1"}
         crash = record(pool, ProcessRun({}, 1))
@@ -37,11 +37,11 @@ def test_crashes_and_hangs_are_records_and_the_next_run_goes_on(monkeypatch):
         assert record(pool, ProcessRun({}, 9))["ended"] == "9"
 
 
-def test_the_record_says_what_solve_found():
+def test_the_record_has_the_result_of_solve():
     with stress_pool() as pool:
-        found = record(pool, ProcessRun({**reference(), "kind": "collide"}, 30))
-        assert found["ended"] == "time_limit"
-        assert found["finite"] and found["checkpoint"]
+        solved = record(pool, ProcessRun({**reference(), "kind": "collide"}, 30))
+        assert solved["ended"] == "time_limit"
+        assert solved["finite"] and solved["checkpoint"]
         raised = record(pool, ProcessRun({"kind": "no such kind"}, 30))
         assert raised["ended"] == "raised"
         assert "KeyError" in raised["message"]

@@ -26,24 +26,24 @@ def made_up_measure_of_height_only(settings):
 
 @pytest.fixture
 def cases(monkeypatch):
-    """Replace all cases by one made-up case, and return its settings, which tests change."""
-    held = {"quantities": HOLDING, "entries": None}
+    """Replace all cases by a made-up case, and return its settings, which tests change."""
+    case_settings = {"quantities": HOLDING, "entries": None}
 
     def cases_of(module):
-        case = made_up_case(**held)
+        case = made_up_case(**case_settings)
         object.__setattr__(case, "measure", made_up_measure_of_height_only)
         return [case]
 
     monkeypatch.setattr(listing, "case_modules", lambda: {"made_up": "validation.made_up.case"})
     monkeypatch.setattr(listing, "cases_of", cases_of)
-    return held
+    return case_settings
 
 
 def validate(folder, *options):
     return program(*options, "--no-stress", "-o", folder)
 
 
-def test_it_writes_the_report_and_says_that_all_holds(cases, tmp_path, capsys):
+def test_the_command_writes_a_report_and_its_summary(cases, tmp_path, capsys):
     assert validate(tmp_path / "out") == 0
     out, err = capsys.readouterr()
     assert "What holds" in out
@@ -77,7 +77,7 @@ def test_the_exit_code_is_1_if_a_measurement_fails(cases, tmp_path, capsys):
     assert "A made-up case, dx 0.2, raises: ValueError: no such snow" in capsys.readouterr().err
 
 
-def test_bad_input(cases, tmp_path, capsys):
+def test_bad_input_is_refused(cases, tmp_path, capsys):
     assert validate(tmp_path / "out", "--case", "other") == 2
     assert "--case other: no such case; there are made_up" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
@@ -90,7 +90,7 @@ def test_bad_input(cases, tmp_path, capsys):
     assert program() == 2
 
 
-def test_an_interrupted_suite_goes_on(cases, tmp_path, capsys, monkeypatch):
+def test_an_interrupted_suite_is_resumed(cases, tmp_path, capsys, monkeypatch):
     measured, count = measure.measure_once, iter(range(9))
 
     def interrupted(*request):
@@ -110,7 +110,7 @@ def test_an_interrupted_suite_goes_on(cases, tmp_path, capsys, monkeypatch):
 def test_measurements_can_be_recorded(cases, tmp_path):
     path = tmp_path / "recorded.json"
     assert validate(tmp_path / "out", "-q", "--record", path) == 0
-    assert [one.case for one in load_recorded(path)] == ["made_up"] * 4
+    assert [measurement.case for measurement in load_recorded(path)] == ["made_up"] * 4
 
 
 def test_the_stress_suite_runs_once_and_is_reported(cases, tmp_path, capsys, monkeypatch):
@@ -147,20 +147,20 @@ def test_the_stress_suite_runs_once_and_is_reported(cases, tmp_path, capsys, mon
     assert len(calls) == 2
 
 
-def test_help_stays_quick():
+def test_the_help_imports_no_heavy_module():
     heavy = {"jinja2", "matplotlib", "pandas", "rich", "scipy", "validation.framework.report"}
     assert heavy & modules_after("import validation.framework.command") == set()
 
 
-@pytest.mark.parametrize("words", [["validation"], ["reproductions", "saito2012"]])
-def test_python_m(words):
+@pytest.mark.parametrize("module", [["validation"], ["reproductions", "saito2012"]])
+def test_the_package_runs_as_a_module(module):
     def run(*arguments):
-        command = [sys.executable, "-m", *words, *arguments]
+        command = [sys.executable, "-m", *module, *arguments]
         return subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
 
-    shown = run("-h")
-    assert (shown.returncode, shown.stderr) == (0, "")
-    assert shown.stdout.startswith(f"Usage: python -m {' '.join(words)} [OPTIONS]")
+    printed = run("-h")
+    assert (printed.returncode, printed.stderr) == (0, "")
+    assert printed.stdout.startswith(f"Usage: python -m {' '.join(module)} [OPTIONS]")
     refused = run()
     assert (refused.returncode, refused.stdout) == (2, "")
     assert refused.stderr == "error: Missing option '-o' / '--output'.\n"

@@ -1,1 +1,1 @@
-"""Injected faults, by which the tests are tested; see docs/trust/injected-faults.md."""
+"""Injected faults, by which the tests are tested; see docs/develop/injected-faults.md."""

@@ -16,8 +16,8 @@ from tools.mutants.trial import BuildError, Workshop
 ROOT = Path(__file__).parents[2]
 #: Pages that contain tables of the results.
 PAGES = {
-    ROOT / "docs/trust/injected-faults.md": summary,
-    ROOT / "docs/trust/list-of-faults.md": fault_list,
+    ROOT / "docs/develop/injected-faults.md": summary,
+    ROOT / "docs/develop/list-of-faults.md": fault_list,
 }
 FOLDER = ROOT / "build/mutants"
 TARGETS = ("snowshed_tests", "_core", "snowshed-run")

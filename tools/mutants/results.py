@@ -1,4 +1,4 @@
-"""Results of injected faults: their file, and their tables on pages in docs/trust."""
+"""Results of injected faults: their file, and their tables on pages in docs/develop."""
 
 from __future__ import annotations
 

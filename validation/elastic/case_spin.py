@@ -14,7 +14,8 @@ from validation.elastic.bodies import TRANSFERS, elastic_scene, from_plane, in_p
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import TimedEventDriver, relative
 
-RADIUS, HEIGHT = 1.0, 0.5  # m; the height of the cylinder, in 3D
+RADIUS = 1.0  # m
+HEIGHT = 0.5  # m, of the cylinder in 3D
 YOUNGS_MODULUS, POISSONS_RATIO, DENSITY = 1e6, 0.3, 210.0  # Pa, 1, kg/m3
 #: The rim turns at a fifth of the speed of waves in a rod, sqrt(E/rho).
 RATE = 0.2 * math.sqrt(YOUNGS_MODULUS / DENSITY) / RADIUS  # rad/s
@@ -23,9 +24,9 @@ TURN = 2 * math.pi / RATE  # s
 CASE_SETTINGS = frozenset({"begins", "turns"})
 #: Steps between two samples, or between two dampings of the velocities.
 STEPS = 4
-#: For bodies that begin in equilibrium: the number of turns in which the radial oscillation is
-#: damped, and the share of the radial velocities that is removed each time.
-SETTLING_TURNS, DAMPED_SHARE = 1.0, 0.1
+# Damping of the radial oscillation, for bodies that begin in equilibrium.
+SETTLING_TURNS = 1.0  # turns in which it is damped
+DAMPED_SHARE = 0.1  # share of the radial velocities that is removed each time
 
 DISC: CaseSettings = {
     "dimension": 2,

@@ -82,8 +82,8 @@ class Vibrating:
 
 #: Height of the bar, in cells; it has no effect because Poisson's ratio is 0.
 BAR_CELLS = 4
-#: Largest strain, and number of periods in which the bar vibrates.
-BAR_STRAIN, BAR_PERIODS = 1e-3, 6
+BAR_STRAIN = 1e-3  # largest strain of the bar
+BAR_PERIODS = 6  # periods in which the bar vibrates
 BAR_FREQUENCY = math.sqrt(YOUNGS_MODULUS / DENSITY) / (2 * LENGTH)
 BAR_DEFAULTS: CaseSettings = {**DEFAULTS, "dx": 0.05}
 
@@ -183,11 +183,13 @@ ELASTIC_BAR = Case(
 
 # --- the cantilever ---------------------------------------------------------------------------
 
-CANTILEVER_HEIGHT, POISSONS_RATIO = 0.2, 0.3  # m
+CANTILEVER_HEIGHT = 0.2  # m
+POISSONS_RATIO = 0.3
 #: Length of the beam within its clamp, in cells.
 HELD_CELLS = 4
-#: Largest deflection over the length, periods, and steps between two samples.
-DEFLECTION, CANTILEVER_PERIODS, STEPS = 2e-3, 1.5, 10
+DEFLECTION = 2e-3  # largest deflection over the length
+CANTILEVER_PERIODS = 1.5  # periods in which the cantilever vibrates
+STEPS = 10  # steps between two samples
 CANTILEVER_DEFAULTS: CaseSettings = {**DEFAULTS, "dx": 0.025, "length": LENGTH}
 
 

@@ -7,8 +7,8 @@ from contextlib import AbstractContextManager
 from typing import Optional
 
 from snowshed.base.progress import Reporter
-from snowshed.cli.progress import progress_bar
-from snowshed.cli.terminal import plain_table, wide_console
+from snowshed.cli.output.progress import progress_bar
+from snowshed.cli.output.terminal import plain_table, wide_console
 from validation.framework import sections
 from validation.framework.case import Case
 from validation.framework.criteria import Criterion

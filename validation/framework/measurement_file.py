@@ -15,7 +15,7 @@ from snowshed.io.json_file import parse_object
 
 
 class MeasurementFile:
-    """Measurements as JSON lines; a last line that a crash has cut off is ignored.
+    """Measurements as JSON lines; a last line that a crash has truncated is ignored.
 
     Parameters
     ----------

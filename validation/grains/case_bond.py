@@ -11,7 +11,8 @@ from validation.framework.drive import relative
 from validation.grains.loading import grains_drive, load_all, residual
 
 VOXEL = 5e-5  # m
-BLOCK_WIDTH, SAMPLE_HEIGHT = 5, 6  # voxels; the bond lies in the middle
+BLOCK_WIDTH = 5  # voxels
+SAMPLE_HEIGHT = 6  # voxels; the bond lies in the middle
 MODULUS, RATIO, STRENGTH = 1e9, 0.3, 1e6  # Pa, 1, Pa
 CASE_SETTINGS = frozenset({"test", "speed"})
 DEFAULTS: CaseSettings = {
@@ -26,8 +27,10 @@ DEFAULTS: CaseSettings = {
     "shear_strength": STRENGTH,
     "friction": 0.0,
 }
-#: Springs in a row (at both plates and in the bond); each has the compliance (2 r)²/(E r), m/Pa.
-SPRINGS, COMPLIANCE = 3, 4 * (VOXEL / 2) / MODULUS
+#: Springs in a row: at both plates and in the bond.
+SPRINGS = 3
+#: Compliance of each spring, (2 r)²/(E r), m/Pa.
+COMPLIANCE = 4 * (VOXEL / 2) / MODULUS
 
 
 def stage_of(test: str, speed: float) -> LoadingStage:

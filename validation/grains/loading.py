@@ -18,7 +18,8 @@ from snowshed.scene.loading import Cone, LoadingStage
 from validation.framework.drive import TimedEventDriver
 
 GRAIN = 3e-4  # m, edge of the cells that cut the ice into grains
-WAVES, WAVELENGTH = 80, 1.4  # number in the random field; wavelength over GRAIN
+WAVES = 80  # waves in the random field
+WAVELENGTH = 1.4  # over GRAIN
 THRESHOLD = 0.45  # level of the field above which there is ice, in standard deviations
 
 

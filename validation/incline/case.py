@@ -14,7 +14,8 @@ from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import TimedEventDriver, absolute, apply_settings, relative
 
 TILT = 40.0  # degrees
-THICKNESS, WIDTH = 0.05, 0.1  # m; the width in 3D only
+THICKNESS = 0.05  # m
+WIDTH = 0.1  # m, in 3D
 #: Settings of the case that are not parameters of the scene.
 CASE_SETTINGS = frozenset({"friction", "condition", "length", "speed"})
 
@@ -194,8 +195,8 @@ SLAB = Case(
 
 # --- the stopping angle -----------------------------------------------------------------------
 
-#: Half the range of searched tilts, and the width at which the search ends, degrees.
-SEARCHED_TILTS, ANGLE_TOLERANCE = 4.0, 0.02
+SEARCHED_TILTS = 4.0  # degrees, half the range of searched tilts
+ANGLE_TOLERANCE = 0.02  # degrees, width of the range at which the search ends
 #: Smallest acceleration of a slab that counts as sliding, m/s2: a ten-thousandth of g.
 MIN_GROWTH = 1e-4 * GRAVITY
 

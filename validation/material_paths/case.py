@@ -25,9 +25,9 @@ SOURCE = (
 POINTS = 20
 COARSE_INCREMENTS = (1e-3, 1e-4, 1e-5)
 FINE_INCREMENTS = (1e-6, 2.5e-8)
-#: Largest allowed deviation, and the strain increments with which plain and extrapolated backward
-#: Euler must reach it.
-MAX_DEVIATION, PLAIN_INCREMENT, EXTRAPOLATED_INCREMENT = 1e-6, 2.5e-8, 1e-5
+MAX_DEVIATION = 1e-6  # from the rate equations
+PLAIN_INCREMENT = 2.5e-8  # of strain, with which backward Euler must reach it
+EXTRAPOLATED_INCREMENT = 1e-5  # of strain, with which extrapolated backward Euler must reach it
 
 
 @dataclass(frozen=True)

@@ -23,8 +23,8 @@ from snowshed.base.arrays import Floats
 #: Softening snow is followed until its strength has fallen to this part; stress and strength then
 #: vanish together, and their ratio would be lost in rounding.
 MIN_STRENGTH_SHARE = 1e-3
-#: Tolerances of the integration: of the solution, and of strains.
-RELATIVE_TOLERANCE, ABSOLUTE_TOLERANCE = 1e-12, 1e-15
+RELATIVE_TOLERANCE = 1e-12  # of the integrated solution
+ABSOLUTE_TOLERANCE = 1e-15  # of integrated strains
 
 
 @dataclass(frozen=True)

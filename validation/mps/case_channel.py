@@ -14,7 +14,8 @@ from validation.framework.drive import relative
 from validation.mps.bodies import GRAVITY, mps_drive
 
 HALF_GAP, LENGTH = 0.1, 2.4  # m
-STEADY_FROM_S, AVERAGED_S = 0.2, 0.2  # s
+STEADY_FROM_S = 0.2
+AVERAGED_S = 0.2
 DENSITY, VISCOSITY = 100.0, 20.0  # kg/m3, Pa s
 FORCE = DENSITY * GRAVITY  # Pa/m, the weight that drives the flow
 PLUG_HALF_WIDTH = 0.5 * HALF_GAP  # m; the plug does not yield

@@ -18,8 +18,8 @@ SNOW = MpsSettings(density=200.0, friction_angle=24.0)
 CASE_SETTINGS = frozenset({"tilt", "board"})
 STEPS = 60
 BLOCK_EDGE = 0.2  # m; the block of snow falls by a quarter of its edge onto a tilted plane
-#: Distance of the board from the block's middle down the plane, and its height above the plane, m.
-BOARD_DISTANCE, BOARD_HEIGHT = 0.25, 0.3
+BOARD_DISTANCE = 0.25  # m, down the plane from the block's middle
+BOARD_HEIGHT = 0.3  # m, above the plane
 
 DEFAULTS: CaseSettings = {"spacing": 0.02, "tilt": 35.0, "board": 0.0}
 #: Viscosities in Pa s, and yield stresses in Pa.

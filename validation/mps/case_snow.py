@@ -104,7 +104,7 @@ def measure_heap(settings: CaseSettings) -> Outcome:
 
 
 def heap_matrix(full: bool) -> list[CaseSettings]:
-    """Return distances between particles, and walls of particles."""
+    """Return the settings to measure: particle spacings, then walls of particles."""
     spacings = (0.03, 0.02, 0.015) if full else (0.03, 0.02)
     settings_list: list[CaseSettings] = [{"spacing": spacing} for spacing in spacings]
     return [*settings_list, {"spacing": 0.02, "walls": "particles"}]

@@ -54,7 +54,7 @@ def measure_column(settings: CaseSettings) -> Outcome:
 
 
 def column_matrix(full: bool) -> list[CaseSettings]:
-    """Return distances between particles, and the other walls and gradients."""
+    """Return the settings to measure: particle spacings, then variants of walls and gradients."""
     time = 10.0 if full else 1.0
     spacings = SPACINGS if full else SPACINGS[:2]
     settings_list: list[CaseSettings] = [{"spacing": spacing, "time": time} for spacing in spacings]
@@ -110,7 +110,7 @@ def _absolute_error(name: str, value: float) -> Measured:
 
 
 def dam_matrix(full: bool) -> list[CaseSettings]:
-    """Return distances between particles, and the other walls and gradients."""
+    """Return the settings to measure: particle spacings, then variants of walls and gradients."""
     across = PARTICLES_ACROSS if full else PARTICLES_ACROSS[:2]
     settings_list: list[CaseSettings] = [{"across": count} for count in across]
     return settings_list + [

@@ -16,7 +16,8 @@ from validation.framework.drive import TimedEventDriver, apply_settings, relativ
 from validation.panel_edge.rigid_slab import RigidSlab
 
 TILT, PANEL_LENGTH, PANEL_HEIGHT = 40.0, 2.0, 5.0  # degrees, m, m
-LENGTH, THICKNESS, WIDTH = 0.2, 0.04, 0.1  # of the slab, m; the width in 3D only
+LENGTH, THICKNESS = 0.2, 0.04  # m, of the slab
+WIDTH = 0.1  # m, of the slab in 3D
 DROP = 1.0  # m below the edge, where the slab lands
 #: Settings of the case that are not numerical parameters of the scene.
 CASE_SETTINGS = frozenset({"friction", "condition", "length"})
@@ -31,8 +32,8 @@ SLAB: CaseSettings = {
     "model": "cam_clay",
     "length": LENGTH,
 }
-#: Steps between two samples, and the distance past the edge, in cells, at which a slab is free.
-STEPS, FREE_CELLS = 20, 3
+STEPS = 20  # steps between two samples
+FREE_CELLS = 3  # cells past the edge at which a slab is free
 
 
 class Moment(NamedTuple):
@@ -191,7 +192,7 @@ CASE = Case(
     matrix=matrix,
     measure=measure,
     remarks="""
-    The place of landing is right to half a percent, but the rotation is wrong. The slab leaves the
+    The landing point is right to half a percent, but the rotation is wrong. The slab leaves the
     edge with 1.1 to 1.6 times the angular velocity of a rigid slab, on fine grids, too. The panel's
     nodes stop the snow along the panel's normal, not along that of the slab's tipped face. A gap
     between panel and face that is much thinner than a cell still counts as contact. For the method,

@@ -85,8 +85,8 @@ class RigidSlab:
         start, position, velocity, spin, departure_time = self._departure()
         x, z = self._to_horizontal(position)
         along, up = self._to_horizontal(velocity)
-        falls = (up + math.sqrt(up**2 + 2 * self.gravity * (z + drop))) / self.gravity
-        return Landing(x + along * falls, start + departure_time + falls, spin)
+        fall_time = (up + math.sqrt(up**2 + 2 * self.gravity * (z + drop))) / self.gravity
+        return Landing(x + along * fall_time, start + departure_time + fall_time, spin)
 
     @property
     def acceleration(self) -> float:
@@ -159,8 +159,8 @@ class RigidSlab:
         across = np.array([math.sin(angle), math.cos(angle)])
         position = past * face + half * across
         velocity = (speed_now + half * turn) * face - past * turn * across
-        began = speed / self.acceleration
-        return _Departure(began, position, velocity, float(turn), float(solution.t[-1]))
+        tip_start = speed / self.acceleration
+        return _Departure(tip_start, position, velocity, float(turn), float(solution.t[-1]))
 
 
 class _Departure(NamedTuple):

@@ -18,7 +18,8 @@ from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import TimedEventDriver, apply_settings, relative
 from validation.material_paths.rate_equations import RateEquations
 
-HEIGHT, WIDTH_CELLS = 0.4, 8  # m; width in cells, the same at any resolution
+HEIGHT = 0.4  # m
+WIDTH_CELLS = 8  # cells, at any resolution
 DENSITY, GRAVITY = 210.0, 9.81  # kg/m3, m/s2
 #: Soft snow, so that the column settles visibly: by 1.5 % if elastic, by 3 % if it yields.
 YOUNGS_MODULUS, POISSONS_RATIO = 2e4, 0.3

@@ -17,8 +17,8 @@ FRICTION, TURBULENCE, THICKNESS = 0.325, 300.0, 0.5  # 1, m/s2, m
 HALF = 15.0  # m, half the block's edge on the map
 MIDDLE = 3.0  # m; particles within this distance of the block's middle are measured
 SLIDING_TIME = 3.0  # s; the edges affect the middle only later
-#: Friction that stops a block, and the speed at which it starts down the slope, m/s.
-STOPPING, THROWN = 1.1, 4.0
+STOPPING = 1.1  # friction that stops a block
+THROWN = 4.0  # m/s, at which this block starts down the slope
 CASE_SETTINGS = frozenset({"law"})
 
 DEFAULTS: CaseSettings = {"cell": 2.0, "layer_thickness": 0.06, "time_step": 0.01}

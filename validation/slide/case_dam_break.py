@@ -15,7 +15,8 @@ from validation.slide.site import Plane, Site, maps_of, rectangle, slide_drive, 
 PLANE = Plane(30.0)
 FRICTION = math.tan(math.radians(20.0))
 THICKNESS, DURATION = 1.0, 3.0  # m, s
-LENGTH, HALF_WIDTH = 40.0, 14.0  # m, along the slope; on the map
+LENGTH = 40.0  # m, along the slope
+HALF_WIDTH = 14.0  # m, on the map
 STRIP_HALF_WIDTH = 3.0  # m, half the width of the compared strip, which the sides do not affect
 FRONT_THICKNESS = 0.05  # share of the dam's height; the front is the end of snow thicker than this
 

@@ -14,7 +14,8 @@ from validation.framework.drive import TimedEventDriver, relative
 from validation.slide.site import Plane, Site, maps_of, node_axes, rectangle, slide_drive
 
 PLANE = Plane(30.0)
-THICKNESS, RADIUS = 1.0, 10.0  # m, in the middle; half the length along the ground
+THICKNESS = 1.0  # m, in the middle
+RADIUS = 10.0  # m, half the length along the ground
 DURATION = 3.0  # s
 HALF_WIDTH = 14.0  # m, of a ridge
 STRIP_HALF_WIDTH = 3.0  # m, half the width of the strip of a ridge that is compared

@@ -17,7 +17,8 @@ from validation.slide.site import Site, maps_of, node_axes, slide_drive
 
 HALF = 70.0  # m, half the edge of the terrain
 STEEP = math.tan(math.radians(35.0))
-BEND, LEVEL = 0.0, 30.0  # m, positions where the run-out begins and the ground becomes level
+BEND = 0.0  # m, where the run-out begins
+LEVEL = 30.0  # m, where the ground becomes level
 CORNERS = ((-52.0, -9.0), (-36.0, -12.0), (-34.0, 3.0), (-38.0, 12.0), (-54.0, 8.0))
 THICKNESS = 1.0  # m
 REST_TIME = 12.0  # s, after which nearly all snow is at rest

@@ -9,25 +9,25 @@
 
 namespace py = pybind11;
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 namespace {
 
 /// The solver as grains; throws InputError if the scene's method is another.
-const Solver& grains_of(const Simulation& sim) {
+const Solver& grains_of(const run::Simulation& sim) {
   const auto* grains = dynamic_cast<const Solver*>(&sim.method());
   if (!grains) throw InputError("/method", "is not \"grains\", and loads no sample");
   return *grains;
 }
 
 /// The rows of the curve so far, as columns by name.
-py::dict curve(const Simulation& sim) {
+py::dict curve(const run::Simulation& sim) {
   grains_of(sim);  // throws for other methods
   return columns_of(sim.curve()->columns(), sim.curve()->values());
 }
 
 /// The contacts between grains: the numbers of both grains (n, 2), the position (m), the force on
 /// the first grain (N), and whether the grains are bonded.
-py::tuple contacts(const Simulation& sim) {
+py::tuple contacts(const run::Simulation& sim) {
   const std::vector<GrainContact> contacts = grains_of(sim).grain_contacts();
   py::array_t<std::int64_t> grains({py::ssize_t(contacts.size()), py::ssize_t(2)});
   auto pairs = grains.mutable_unchecked<2>();
@@ -44,7 +44,7 @@ py::tuple contacts(const Simulation& sim) {
 }
 
 /// Centres of the spheres (n, 3), m, and the number of the grain of each.
-py::tuple spheres(const Simulation& sim) {
+py::tuple spheres(const run::Simulation& sim) {
   return py::make_tuple(rows(grains_of(sim).sphere_positions()),
                         column<std::int64_t>(grains_of(sim).sphere_grains()));
 }
@@ -94,4 +94,4 @@ const AddedBindings added{{&bind_labels, [](SimulationClass& c) {
                            }}};
 
 }  // namespace
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -4,21 +4,22 @@
 #include "array_copies.hpp"
 #include "method_bindings.hpp"
 #include "snowshed/core/errors.hpp"
+#include "snowshed/methods/slide/cliffs.hpp"
 #include "snowshed/methods/slide/solver.hpp"
 
 namespace py = pybind11;
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 namespace {
 
 /// The solver as a slide; throws InputError if the scene's method is another.
-const Solver& slide_of(const Simulation& sim) {
+const Solver& slide_of(const run::Simulation& sim) {
   const auto* slide = dynamic_cast<const Solver*>(&sim.method());
   if (!slide) throw InputError("/method", "is not \"slide\", and has no maps");
   return *slide;
 }
 
-py::dict slide_maps(const Simulation& sim) {
+py::dict slide_maps(const run::Simulation& sim) {
   const Solver& slide = slide_of(sim);
   const Terrain& t = slide.terrain();
   const auto map = [&](const std::vector<double>& values) {
@@ -39,7 +40,7 @@ py::dict slide_maps(const Simulation& sim) {
   return d;
 }
 
-py::dict slide_facts(const Simulation& sim) {
+py::dict slide_facts(const run::Simulation& sim) {
   const Solver& slide = slide_of(sim);
   const MassBalance& m = slide.mass_balance();
   py::dict d;
@@ -53,10 +54,10 @@ py::dict slide_facts(const Simulation& sim) {
 }
 
 /// The intact bonds: ids of their particles (n, 2), and rest lengths (n), m.
-py::tuple slide_bonds(const Simulation& sim) {
+py::tuple slide_bonds(const run::Simulation& sim) {
   const Solver& slide = slide_of(sim);
   const Bonds& bonds = slide.bonds();
-  const FieldView ids = slide.field("id");
+  const particles::FieldView ids = slide.field("id");
   py::array_t<std::int64_t> pairs({py::ssize_t(bonds.size()), py::ssize_t(2)});
   auto out = pairs.mutable_unchecked<2>();
   for (std::size_t b = 0; b < bonds.size(); ++b) {
@@ -66,12 +67,30 @@ py::tuple slide_bonds(const Simulation& sim) {
   return py::make_tuple(pairs, column<double>(bonds.rest_length));
 }
 
-const AddedBindings added{{[](py::module_&) {},
-                           [](SimulationClass& c) {
+std::string cliff(const py::array_t<double, py::array::c_style | py::array::forcecast>& heights,
+                  double west, double south, double cell, double max_slope) {
+  geometry::HeightField f;
+  f.rows = int(heights.shape(0));
+  f.columns = int(heights.shape(1));
+  f.west = west;
+  f.south = south;
+  f.cell = cell;
+  f.heights.assign(heights.data(), heights.data() + heights.size());
+  return impossible_cliff(f, max_slope);
+}
+
+void bind_terrain(py::module_& m) {
+  using namespace py::literals;
+  m.def("impossible_cliff", &cliff, "heights"_a, "west"_a, "south"_a, "cell"_a, "max_slope"_a,
+        "Describes the first step between neighbouring nodes that is impossible on ground; empty "
+        "if there is none.");
+}
+
+const AddedBindings added{{&bind_terrain, [](SimulationClass& c) {
                              c.reads("slide_maps", &slide_maps);
                              c.reads("slide_facts", &slide_facts);
                              c.reads("slide_bonds", &slide_bonds);
                            }}};
 
 }  // namespace
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

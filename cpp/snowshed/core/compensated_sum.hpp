@@ -6,7 +6,7 @@
 
 namespace snowshed {
 
-/// The sum of n numbers, whose rounding errors are summed apart (Neumaier 1974,
+/// The sum of n numbers, whose rounding errors are summed separately (Neumaier 1974,
 /// doi:10.1002/zamm.19740540106): the error does not grow with n.
 inline double compensated_sum(const double* values, std::size_t n) {
   double sum = 0, lost = 0;

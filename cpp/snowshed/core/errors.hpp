@@ -20,7 +20,7 @@ class InputError : public std::runtime_error {
   std::string where_;
 };
 
-/// The simulation itself cannot go on (non-finite state, time step underflow).
+/// The simulation itself cannot continue (non-finite state, time step underflow).
 class SimulationError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

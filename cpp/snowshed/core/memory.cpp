@@ -45,7 +45,7 @@ struct Allowance {
 
 void restrict_to(Allowance& allowance, Bytes limit, Bytes used, Bytes file_cache) {
   if (!limit) return;
-  // The cache of files counts as used but gives way on demand.
+  // The file cache counts as used, but is released on demand.
   const std::uint64_t in_use =
       used.value_or(0) - std::min(used.value_or(0), file_cache.value_or(0));
   allowance.limit = std::min(allowance.limit, *limit);
@@ -59,7 +59,7 @@ struct Hierarchy {
   const char *limit, *used, *file_cache;
 };
 
-/// Place of this process in the hierarchy, relative to its root.
+/// Path of this process in the hierarchy of groups, from its root.
 std::string control_group(const Hierarchy& hierarchy) {
   std::ifstream lines("/proc/self/cgroup");
   for (std::string line; std::getline(lines, line);) {

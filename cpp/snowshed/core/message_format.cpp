@@ -11,7 +11,7 @@ namespace snowshed {
 namespace {
 
 /// Levenshtein distance.
-std::size_t edits(const std::string& a, const std::string& b) {
+std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -133,7 +133,7 @@ std::string suggestion(const std::string& given, const std::vector<std::string>&
     // Only names of similar length can be near; this also keeps huge keys from costing anything.
     if (std::max(given.size(), name.size()) >= std::min(given.size(), name.size()) + fewest)
       continue;
-    const std::size_t distance = edits(given, name);
+    const std::size_t distance = edit_distance(given, name);
     if (distance < fewest) {
       fewest = distance;
       nearest = &name;

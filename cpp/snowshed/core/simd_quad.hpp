@@ -1,5 +1,4 @@
-// Four doubles at a time, and rows of four that are taken apart into columns: for data that lie in
-// memory as records of four values.
+// Vectors of four doubles, for data that are stored as records of four values.
 #pragma once
 
 #include <cstddef>
@@ -26,12 +25,13 @@ SNOWSHED_INLINE Quad load_row(const double* p) {
 }
 SNOWSHED_INLINE void store_row(double* p, const Quad& v) { std::memcpy(p, &v, sizeof v); }
 
-/// 1/sqrt(x) for 1e-37 < x < 1e37, with an error of one or two units in the last digit. It improves
-/// the processor's estimate y, because a root and a division would take several times as long. With
-/// e = 1 - x y^2, 1/sqrt(x)
-/// is y (1 - e)^(-1/2) = y (1 + e/2 + 3 e^2/8 + 5 e^3/16 + ...). The series is truncated where an
-/// estimate with a relative error below 2^-14 reaches 2^-53. A less accurate estimate first takes
-/// one Newton step (the first two terms).
+/// 1/sqrt(x) for 1e-37 < x < 1e37, with an error of one or two units in the last digit. A root and
+/// a division would take several times as long. With the processor's estimate y and e = 1 - x y^2,
+///
+///   1/sqrt(x) = y (1 - e)^(-1/2) = y (1 + e/2 + 3 e^2/8 + 5 e^3/16 + ...).
+///
+/// These four terms reach a relative error of 2^-53 if that of the estimate is below 2^-14. A less
+/// accurate estimate is first improved by a Newton step (the first two terms).
 template <class V>
 SNOWSHED_INLINE V inverse_sqrt(const V& x) {
   [[maybe_unused]] const auto improved = [&](const V& y) { return V(y * (1.5 - 0.5 * x * y * y)); };

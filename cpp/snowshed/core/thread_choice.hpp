@@ -28,7 +28,7 @@ class ThreadChoice {
     return step_ < trials ? 1 : max_threads;
   }
 
-  /// To be called after each step that `begin` was called for.
+  /// Ends a step for which `begin` was called.
   void end() {
     if (!trial_) return;
     const double spent = std::chrono::duration<double>(Clock::now() - begin_).count();

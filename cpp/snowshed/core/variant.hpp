@@ -14,12 +14,12 @@
   }                          \
   }
 
-// The same within the namespace of a method.
-#define SNOWSHED_METHOD_VARIANT_BEGIN(method) \
+// The same within the namespace of a module, such as `material` or `methods::mpm`.
+#define SNOWSHED_MODULE_VARIANT_BEGIN(module) \
   namespace snowshed {                        \
-  namespace method {                          \
+  namespace module {                          \
   inline namespace SNOWSHED_KERNEL_VARIANT {
-#define SNOWSHED_METHOD_VARIANT_END \
+#define SNOWSHED_MODULE_VARIANT_END \
   }                                 \
   }                                 \
   }

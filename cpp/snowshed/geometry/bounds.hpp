@@ -7,7 +7,7 @@
 
 #include "snowshed/geometry/level_set.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -56,4 +56,4 @@ inline bool is_finite(const Bounds& bounds, int dimension) {
   return true;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -5,7 +5,7 @@
 
 #include "snowshed/geometry/bounds.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 /// Returns the shape with the smallest distance, and that distance. `shapes` must not be empty.
@@ -156,4 +156,4 @@ Shape dilate(Shape shape, double offset) {
   return std::make_shared<Dilated>(std::move(shape), offset);
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -5,7 +5,7 @@
 
 #include "snowshed/geometry/level_set.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 /// Returns the union of the shapes, of which there must be at least one. Outside, the distance is
 /// exact; inside, it is a lower bound of the depth. The inradius is that of the largest operand,
@@ -22,4 +22,4 @@ Shape transform(Shape shape, const Mat3& rotation, const Vec3& translation);
 /// Returns all points within `offset` >= 0 metres of `shape`.
 Shape dilate(Shape shape, double offset);
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -8,7 +8,7 @@
 
 #include "snowshed/core/angles.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 /// Sets of numbers that are merged pair by pair.
@@ -170,4 +170,4 @@ std::vector<TriangleMesh> connected_shells(const TriangleMesh& mesh) {
   return shells;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -5,7 +5,7 @@
 
 #include "snowshed/geometry/triangle_mesh.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 /// Returns the shells of a mesh that satisfies require_closed, each with vertices of its own, in
 /// the order of their first triangles. Every edge of a shell is shared by exactly two of its
@@ -13,4 +13,4 @@ namespace snowshed {
 /// between them.
 std::vector<TriangleMesh> connected_shells(const TriangleMesh& mesh);
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

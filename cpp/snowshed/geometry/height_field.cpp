@@ -6,7 +6,7 @@
 
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 /// Weights of four equidistant values for a point between the second and the third: the cubic
@@ -77,4 +77,4 @@ HeightField resampled(const HeightField& field, double cell) {
   return fine;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 /// Elevations at nodes; columns run east, rows north, both from the south-west node.
 struct HeightField {
@@ -49,4 +49,4 @@ inline CellPosition find_cell(double x, double y, int columns, int rows) {
 /// grid does not reach beyond the field. Throws InputError if it would have more than 2^31 nodes.
 HeightField resampled(const HeightField& field, double cell);
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

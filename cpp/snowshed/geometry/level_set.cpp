@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 template <class Difference>
@@ -27,4 +27,4 @@ Vec3 LevelSet::normal(const Vec3& x) const {
   return result.normalized();
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -6,7 +6,7 @@
 
 #include "snowshed/core/vec.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 /// Axis-aligned bounds; infinite if a shape is unbounded.
 struct Bounds {
@@ -59,4 +59,4 @@ class LevelSet {
 
 using Shape = std::shared_ptr<const LevelSet>;
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -7,7 +7,7 @@
 #include "snowshed/geometry/pseudo_normals.hpp"
 #include "snowshed/geometry/triangle_hierarchy.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 class Mesh final : public LevelSet {
@@ -113,4 +113,4 @@ class Mesh final : public LevelSet {
 
 Shape make_mesh(TriangleMesh mesh) { return std::make_shared<Mesh>(std::move(mesh)); }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -4,7 +4,7 @@
 #include "snowshed/geometry/level_set.hpp"
 #include "snowshed/geometry/triangle_mesh.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 /// Returns the solid inside `mesh`, which must be closed and face outward (solid_of_shells),
 /// or be swept by an outline (sections_at_y0). A bounding volume hierarchy
@@ -16,4 +16,4 @@ namespace snowshed {
 /// 200 triangles. The largest of them is moved to where the depth has a local maximum.
 Shape make_mesh(TriangleMesh mesh);
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

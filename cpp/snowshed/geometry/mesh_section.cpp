@@ -10,7 +10,7 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/geometry/bounds.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 /// Sides of the section's outline, with the solid on the left as seen along y.
@@ -143,4 +143,4 @@ std::vector<TriangleMesh> sections_at_y0(const std::vector<TriangleMesh>& meshes
   return surfaces;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

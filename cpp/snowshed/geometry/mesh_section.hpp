@@ -6,7 +6,7 @@
 
 #include "snowshed/geometry/triangle_mesh.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 /// Returns, for each mesh of a solid, the surface that its cross-section sweeps along y, far beyond
 /// the mesh. On the plane y = 0 the distance to it is the distance to the outline of the section.
@@ -21,4 +21,4 @@ namespace snowshed {
 std::vector<TriangleMesh> sections_at_y0(const std::vector<TriangleMesh>& meshes,
                                          const std::string& where);
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

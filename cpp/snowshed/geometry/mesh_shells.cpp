@@ -12,7 +12,7 @@
 #include "snowshed/geometry/connected_shells.hpp"
 #include "snowshed/geometry/mesh_level_set.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 constexpr std::size_t max_shells = 10'000;
@@ -237,4 +237,4 @@ TriangleMesh merged_layers(const ShellSolid& solid) {
   return mesh;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

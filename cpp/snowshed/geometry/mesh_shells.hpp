@@ -6,7 +6,7 @@
 
 #include "snowshed/geometry/triangle_mesh.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 /// A solid as the union of meshes, whose triangles face outward.
 struct ShellSolid {
@@ -34,4 +34,4 @@ ShellSolid solid_of_shells(const TriangleMesh& mesh, const std::string& where);
 /// Returns all triangles of a solid's layers as one mesh.
 TriangleMesh merged_layers(const ShellSolid& solid);
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -7,7 +7,7 @@
 #include "snowshed/geometry/mesh_section.hpp"
 #include "snowshed/geometry/readers/mesh_io.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 Shape make_mesh_solid(const std::filesystem::path& file, double scale, int dimension,
                       std::vector<std::string>* notes) {
@@ -20,4 +20,4 @@ Shape make_mesh_solid(const std::filesystem::path& file, double scale, int dimen
   return shapes.size() == 1 ? shapes.front() : unite(std::move(shapes));
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

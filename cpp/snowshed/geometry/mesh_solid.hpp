@@ -7,7 +7,7 @@
 
 #include "snowshed/geometry/level_set.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 /// Returns the solid that a mesh file bounds, or in two dimensions its cross-section with the plane
 /// y = 0; coordinates are multiplied by `scale`. Changes are added to `notes`, if given. Throws
@@ -15,4 +15,4 @@ namespace snowshed {
 Shape make_mesh_solid(const std::filesystem::path& file, double scale, int dimension,
                       std::vector<std::string>* notes = nullptr);
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

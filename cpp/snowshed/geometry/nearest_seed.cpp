@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 NearestSeed::NearestSeed(const Vec3& origin, double spacing,
                          const std::array<std::size_t, 3>& counts)
@@ -60,4 +60,4 @@ std::vector<Vec3> zero_crossings(const NearestSeed& grid, const std::vector<floa
   return crossings;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

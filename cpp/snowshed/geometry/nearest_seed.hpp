@@ -9,7 +9,7 @@
 
 #include "snowshed/geometry/level_set.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 /// A grid that stores the nearest seed point at each node. Sweeps in all directions pass the seeds
 /// on from node to node (Danielsson 1980, "Euclidean distance mapping").
@@ -86,4 +86,4 @@ class NearestSeed {
 /// Returns the points on the grid's edges where `values` changes sign, by linear interpolation.
 std::vector<Vec3> zero_crossings(const NearestSeed& grid, const std::vector<float>& values);
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

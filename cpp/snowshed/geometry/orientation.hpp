@@ -6,7 +6,7 @@
 
 #include "snowshed/geometry/point2.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 /// Returns a number whose sign is the sense in which a, b, c turn: positive counter-clockwise,
 /// negative clockwise, 0 where they lie on one line. The sign is exact; the magnitude is about
@@ -45,4 +45,4 @@ inline double orientation(const Point2& a, const Point2& b, const Point2& c) {
   return 0;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -3,8 +3,8 @@
 
 #include <array>
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 using Point2 = std::array<double, 2>;  // on the map: m, east and north
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 double cross(const Point2& o, const Point2& a, const Point2& b) {
@@ -21,7 +21,7 @@ Point2 offset_vector(const Point2& from, const Point2& to, double distance) {
 
 Point2 plus(const Point2& a, const Point2& b) { return {a[0] + b[0], a[1] + b[1]}; }
 
-/// The point at the given part of the way from a to b.
+/// The point a + part (b - a).
 Point2 between(const Point2& a, const Point2& b, double part) {
   return {a[0] + (b[0] - a[0]) * part, a[1] + (b[1] - a[1]) * part};
 }
@@ -161,4 +161,4 @@ double area_within(const Polygon& polygon, const Point2& low, const Point2& high
   return std::max(area, 0.0);
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -5,7 +5,7 @@
 
 #include "snowshed/geometry/point2.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 using Ring = std::vector<Point2>;  // without a repeated last point
 
@@ -40,4 +40,4 @@ Ring offset_ring(const Ring& ring, double distance);
 /// Whether two edges of a ring cross or touch anywhere except at a corner that they share.
 bool crosses_itself(const Ring& ring);
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

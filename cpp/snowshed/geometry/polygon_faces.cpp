@@ -7,7 +7,7 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/geometry/orientation.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 /// Comparisons of a corner with an ear, over all faces of a file; they take some seconds.
@@ -192,4 +192,4 @@ void FaceCutter::append(const Face& given, TriangleMesh& mesh) {
   if (!is_simple) refuse(where_, mesh, face, "has an outline that crosses itself");
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

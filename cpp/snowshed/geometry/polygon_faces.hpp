@@ -9,7 +9,7 @@
 
 #include "snowshed/geometry/triangle_mesh.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 /// A polygonal face by its corners, indices of vertices.
 using Face = std::vector<std::uint32_t>;
@@ -35,4 +35,4 @@ class FaceCutter {
   std::size_t comparisons_ = 0;  // comparisons of corners with ears
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

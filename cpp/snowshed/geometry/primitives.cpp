@@ -5,7 +5,7 @@
 
 #include "snowshed/geometry/bounds.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 Vec3 any_perpendicular(const Vec3& axis) { return axis.unitOrthogonal(); }
@@ -200,4 +200,4 @@ Shape make_plate(const Vec3& center, const Vec3& normal, double length, double w
   return std::make_shared<Plate>(box);
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

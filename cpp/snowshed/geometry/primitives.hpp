@@ -5,7 +5,7 @@
 
 #include "snowshed/geometry/level_set.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 /// Returns the half-space below the plane through `point` with outward normal `normal`.
 Shape make_plane(const Vec3& point, const Vec3& normal);
@@ -37,4 +37,4 @@ Shape make_capsule(const Vec3& from, const Vec3& to, double radius);
 Shape make_plate(const Vec3& center, const Vec3& normal, double length, double width,
                  double thickness);
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -10,7 +10,7 @@
 #include "snowshed/geometry/triangle_hierarchy.hpp"
 #include "snowshed/geometry/triangle_mesh.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 /// Face normals, and the angle-weighted pseudo-normals of vertices and edges.
 class PseudoNormals {
@@ -67,4 +67,4 @@ class PseudoNormals {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> edges_;  // sorted; two of each key
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

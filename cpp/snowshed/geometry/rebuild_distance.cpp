@@ -7,7 +7,7 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/geometry/nearest_seed.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 using Index = NearestSeed::Index;
@@ -61,4 +61,4 @@ void rebuild_distance(GridSamples& samples, Band band, const std::string& where)
   if (band.outside > 0) limit_slope(samples, grid, band);
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

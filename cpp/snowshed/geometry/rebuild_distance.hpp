@@ -6,7 +6,7 @@
 
 #include "snowshed/geometry/sampled_grid.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 /// Magnitudes beyond which values are no distances, metres.
 struct Band {
@@ -18,8 +18,8 @@ struct Band {
 /// if the values change sign more steeply than a distance can.
 ///
 /// Only the crossings of the surface with the edges of the grid are known. Rebuilt distances are
-/// therefore too large: by at most a third of the spacing, and by at most a fifth from three
-/// spacings away on.
+/// therefore too large: by at most a third of the spacing, and by at most a fifth at three
+/// spacings and beyond.
 ///
 /// Throws InputError at `where` if the values do not change sign.
 void rebuild_distance(GridSamples& samples, Band band, const std::string& where);
@@ -27,4 +27,4 @@ inline void rebuild_distance(GridSamples& samples, double band, const std::strin
   rebuild_distance(samples, Band{band, band}, where);
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -5,7 +5,7 @@
 
 #include "snowshed/core/vec.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 /// Prescribed rigid motion of an obstacle between `start` and `end`.
 struct MotionSpec {
@@ -68,4 +68,4 @@ class RigidMotion {
   MotionSpec spec_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

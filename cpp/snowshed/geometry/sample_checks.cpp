@@ -10,7 +10,7 @@
 #include "snowshed/geometry/bounds.hpp"
 #include "snowshed/geometry/rebuild_distance.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 /// Neighbouring samples of an exact distance differ by at most the spacing; those of approximate
@@ -118,8 +118,8 @@ double mean_slope_at_surface(const GridSamples& s) {
   return count > 0 ? sum / double(count) : 1.0;
 }
 
-/// The magnitudes of the largest and the smallest value if values were cut off there, or infinity.
-Band cut_off(const GridSamples& s) {
+/// The distances outside and inside at which the samples were clipped; infinity if they were not.
+Band clipping_band(const GridSamples& s) {
   // Distances in other norms have some samples in corners that equal all their neighbours.
   constexpr std::size_t min_level_samples = 4;
   const auto [low, high] = std::minmax_element(s.values.begin(), s.values.end());
@@ -138,7 +138,7 @@ Band cut_off(const GridSamples& s) {
 }
 
 std::string note_on(const Band& band) {
-  std::string text = "the distances were cut off at ";
+  std::string text = "the distances were clipped at ";
   if (std::isfinite(band.outside)) text += show_rounded(band.outside) + " m outside";
   if (std::isfinite(band.outside) && std::isfinite(band.inside)) text += " and ";
   if (std::isfinite(band.inside)) text += show_rounded(band.inside) + " m inside";
@@ -180,12 +180,11 @@ void repair_distances(GridSamples& samples, const std::string& where,
   if (slope < min_slope) {
     rebuild_distance(samples, Band{0, 0}, where);
     std::ostringstream text;
-    text << "at the surface the values change by " << slope
-         << " over a distance of 1, as those of another unit do: the distances were rebuilt from "
-            "the surface";
+    text << "the gradient at the surface is " << slope
+         << " instead of 1 (is the unit wrong?); the distances were rebuilt from the surface";
     return tell(text.str());
   }
-  const Band band = cut_off(samples);
+  const Band band = clipping_band(samples);
   if (!std::isfinite(band.outside) && !std::isfinite(band.inside)) return;
   rebuild_distance(samples, band, where);
   tell(note_on(band));
@@ -219,4 +218,4 @@ GridSamples samples_at_y0(const GridSamples& s, const std::string& where) {
   return section;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

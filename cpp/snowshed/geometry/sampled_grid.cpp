@@ -7,7 +7,7 @@
 #include "snowshed/geometry/bounds.hpp"
 #include "snowshed/geometry/sample_checks.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 class SampledGrid final : public LevelSet {
@@ -127,4 +127,4 @@ Shape make_sampled_grid(GridSamples samples, const std::string& where) {
   return std::make_shared<SampledGrid>(std::move(samples));
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -8,7 +8,7 @@
 
 #include "snowshed/geometry/level_set.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 /// Signed distances in metres at origin + spacing * (i, j, k), stored with k running fastest.
 /// A count of 1 along y means that the solid is constant in y.
@@ -39,4 +39,4 @@ struct GridSamples {
 /// Throws InputError at `where` as require_counts and require_distances do.
 Shape make_sampled_grid(GridSamples samples, const std::string& where);
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -8,7 +8,7 @@
 #include "snowshed/geometry/combine.hpp"
 #include "snowshed/geometry/triangle_hierarchy.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 constexpr double rounding = 1e-9;  // share of the half thickness
@@ -107,4 +107,4 @@ ThickSolid thickened(Shape shape, double half, int dimension) {
   return {std::make_shared<Thickened>(std::move(shape), parts, half), thickening};
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -7,7 +7,7 @@
 #include "snowshed/geometry/level_set.hpp"
 #include "snowshed/geometry/thin_parts.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 /// Parts that were made thicker.
 struct Thickening {
@@ -24,10 +24,10 @@ struct ThickSolid {
 };
 
 /// Returns a solid that is nowhere thinner than `2 half` metres, and equals the given one where
-/// that is thicker. Convex solids are dilated until they are thick enough. In other solids the
-/// parts that find_thin_parts finds grow: all points within `half` of their middle are added. (A
+/// that is thicker. Convex solids are dilated until they are thick enough. In other solids only
+/// the thin parts (find_thin_parts) grow: all points within `half` of their middle are added. (A
 /// plate is dilated by this, too.) Solids that are thick enough are returned unchanged, so a second
 /// call changes nothing.
 ThickSolid thickened(Shape shape, double half, int dimension);
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -8,7 +8,7 @@
 
 #include "snowshed/geometry/bounds.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 constexpr std::size_t max_cells = 400'000;
@@ -131,7 +131,8 @@ class ThinPartSearch {
     if (!touch) return std::nullopt;
     const Vec3 n = normal(*touch);
     if (depth(*touch - half_ * n) >= 0.98 * half_) return std::nullopt;  // a ball fits in
-    // The surface of one operand of a union may lie within another: the chord then goes on outward.
+    // The surface of one operand of a union may lie within another: the chord then continues
+    // outward.
     const double out = is_inside(*touch + min_step * half_ * n) ? distance_out(*touch, n) : 0.0;
     const double in = distance_out(*touch, -n);
     if (in + out >= min_thickness * 2 * half_) return std::nullopt;
@@ -253,4 +254,4 @@ std::optional<ThinPart> find_thin_plate(const LevelSet& shape, double half, int 
   return ThinPartSearch(shape, half, dimension).run_at_origin();
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

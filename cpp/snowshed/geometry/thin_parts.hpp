@@ -6,7 +6,7 @@
 
 #include "snowshed/geometry/level_set.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 /// A piece of the middle of a thin part: a rectangle between both of its faces. Its edges lie half
 /// the thickness inside the edges of the part. The rectangle of a thin rod is a line, and that of a
@@ -35,4 +35,4 @@ std::vector<ThinPart> find_thin_parts(const LevelSet& shape, double half, int di
 /// Returns a thin part of a solid that only planes bound, if two of them are nearer than `2 half`.
 std::optional<ThinPart> find_thin_plate(const LevelSet& shape, double half, int dimension);
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

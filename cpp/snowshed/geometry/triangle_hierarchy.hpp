@@ -10,7 +10,7 @@
 #include "snowshed/geometry/bounds.hpp"
 #include "snowshed/geometry/triangle_mesh.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 /// The feature of a triangle that is nearest to a point: a vertex, the edge from vertex i to i + 1,
 /// or the face.
@@ -141,4 +141,4 @@ class TriangleHierarchy {
   std::vector<Node> nodes_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

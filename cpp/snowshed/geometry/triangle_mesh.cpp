@@ -8,7 +8,7 @@
 
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 // Beyond this, products of coordinates lose their precision.
@@ -149,4 +149,4 @@ void require_closed(const TriangleMesh& mesh, const std::string& where) {
   check_closed(mesh, where);
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

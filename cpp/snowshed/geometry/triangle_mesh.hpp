@@ -8,7 +8,7 @@
 
 #include "snowshed/geometry/level_set.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
@@ -37,4 +37,4 @@ double enclosed_volume(const TriangleMesh& mesh);
 /// triangles run through every edge as often in one direction as in the other.
 void require_closed(const TriangleMesh& mesh, const std::string& where);
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

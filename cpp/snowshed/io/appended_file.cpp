@@ -11,23 +11,23 @@
 
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed {
+namespace snowshed::io {
 namespace {
 
 constexpr std::size_t max_append = std::size_t{1} << 30;  // Linux transfers no more than 2 GiB
 
-class Descriptor {
+class FileDescriptor {
  public:
-  explicit Descriptor(const std::filesystem::path& path) {
+  explicit FileDescriptor(const std::filesystem::path& path) {
     do {
       number_ = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
     } while (number_ < 0 && errno == EINTR);
   }
-  ~Descriptor() {
+  ~FileDescriptor() {
     if (number_ >= 0) ::close(number_);
   }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
+  FileDescriptor(const FileDescriptor&) = delete;
+  FileDescriptor& operator=(const FileDescriptor&) = delete;
   int number() const { return number_; }
 
  private:
@@ -42,7 +42,7 @@ class Descriptor {
 }  // namespace
 
 void append_to_file(const std::filesystem::path& path, const void* data, std::size_t bytes) {
-  const Descriptor file(path);
+  const FileDescriptor file(path);
   struct stat status;
   if (file.number() < 0 || ::fstat(file.number(), &status) != 0)
     fail_at(path, "cannot open the file", errno);
@@ -68,4 +68,4 @@ void truncate_file(const std::filesystem::path& path, std::size_t bytes) {
   if (error) fail_at(path, "cannot cut the file", error.value());
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::io

@@ -14,7 +14,7 @@
 
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed {
+namespace snowshed::io {
 namespace {
 
 constexpr std::size_t buffer_bytes = std::size_t{1} << 16;
@@ -168,4 +168,4 @@ void write_atomic(const std::filesystem::path& path, std::string_view content) {
   file.commit();
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::io

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace snowshed {
+namespace snowshed::io {
 
 /// A file that appears at `path` complete or not at all. Bytes go to a temporary file in the same
 /// folder; `commit` renames it to `path`. Without a commit, or after an error, the temporary is
@@ -55,4 +55,4 @@ void remove_leftovers(const std::filesystem::path& folder);
 /// Writes the whole content of a file atomically.
 void write_atomic(const std::filesystem::path& path, std::string_view content);
 
-}  // namespace snowshed
+}  // namespace snowshed::io

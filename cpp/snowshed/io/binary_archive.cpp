@@ -18,7 +18,7 @@
 #error "archives are written in the byte order of the machine, which must be little-endian"
 #endif
 
-namespace snowshed {
+namespace snowshed::io {
 
 /// The beginning of an archive.
 struct ArchiveHeader {
@@ -305,4 +305,4 @@ void BinaryReader::fail(std::size_t byte, const std::string& what) const {
   throw InputError(path_.string(), "byte " + std::to_string(byte) + ": " + what);
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::io

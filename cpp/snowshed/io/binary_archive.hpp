@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-namespace snowshed {
+namespace snowshed::io {
 
 /// Element types. Their numbers are part of the file format.
 enum class ElementType : std::uint32_t {
@@ -207,4 +207,4 @@ class BinaryReader {
   std::vector<Section> sections_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::io

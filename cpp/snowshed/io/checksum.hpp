@@ -8,7 +8,7 @@
 #include <cstring>
 #include <string>
 
-namespace snowshed {
+namespace snowshed::io {
 
 /// A checksum of 64-bit words. Each step is a bijection of the state for a given word, and of the
 /// word for a given state. Damage within one word is therefore always found.
@@ -67,4 +67,4 @@ inline std::string hexadecimal(std::uint32_t sum) {
   return text;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::io

@@ -5,7 +5,7 @@
 
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed {
+namespace snowshed::io {
 
 std::uintmax_t check_readable(const std::filesystem::path& path) {
   constexpr std::uintmax_t max_bytes = std::uintmax_t(1) << 30;
@@ -34,4 +34,4 @@ std::string at_byte(const std::filesystem::path& path, std::size_t offset) {
   return path.string() + ": byte " + std::to_string(offset);
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::io

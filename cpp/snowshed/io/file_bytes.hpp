@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-namespace snowshed {
+namespace snowshed::io {
 
 /// Returns the content of a regular file of at most 1 GiB. Throws InputError for anything else: a
 /// pipe or a device could block or never end.
@@ -17,4 +17,4 @@ std::uintmax_t check_readable(const std::filesystem::path& path);
 /// Returns "path: byte n", a location for an InputError.
 std::string at_byte(const std::filesystem::path& path, std::size_t offset);
 
-}  // namespace snowshed
+}  // namespace snowshed::io

@@ -7,7 +7,7 @@
 
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed {
+namespace snowshed::io {
 namespace {
 
 std::uint32_t zigzag(std::int32_t n) { return (std::uint32_t(n) << 1) ^ std::uint32_t(n >> 31); }
@@ -21,7 +21,7 @@ std::int32_t minus(std::int32_t a, std::int32_t b) {
   return std::int32_t(std::uint32_t(a) - std::uint32_t(b));
 }
 
-/// Appends numbers, seven bits to a byte, the lowest first.
+/// Appends numbers as LEB128: seven bits per byte, the lowest first.
 class NumberWriter {
  public:
   static constexpr bool reads = false;
@@ -70,7 +70,7 @@ class NumberReader {
   const std::string& where_;
 };
 
-/// Numbers, each predicted to be equal to the one before.
+/// Numbers, each predicted to equal the previous number.
 template <class Stream, class T>
 void transfer_list(Stream& stream, std::vector<T>& values) {
   std::int32_t before = 0;
@@ -227,4 +227,4 @@ std::uint32_t crc32_of(const void* data, std::size_t bytes, std::uint32_t before
   return std::uint32_t(crc32_z(before, static_cast<const Bytef*>(data), bytes));
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::io

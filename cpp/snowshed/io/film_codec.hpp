@@ -9,7 +9,7 @@
 
 #include "snowshed/io/film_frame.hpp"
 
-namespace snowshed {
+namespace snowshed::io {
 
 /// Turns frames into bytes and back, one after the other: both sides must have seen the same frames
 /// before. A position is predicted from the two before it, a value from the one before.
@@ -57,4 +57,4 @@ std::vector<std::uint8_t> inflated(const std::uint8_t* packed, std::size_t packe
 /// CRC-32 (RFC 1952) of bytes; `before` is the checksum of the bytes that precede them.
 std::uint32_t crc32_of(const void* data, std::size_t bytes, std::uint32_t before = 0);
 
-}  // namespace snowshed
+}  // namespace snowshed::io

@@ -11,7 +11,7 @@
 #include "snowshed/io/atomic_file.hpp"
 #include "snowshed/io/file_bytes.hpp"
 
-namespace snowshed {
+namespace snowshed::io {
 namespace {
 
 constexpr char film_magic[8] = {'S', 'N', 'O', 'W', 'F', 'I', 'L', 'M'};
@@ -352,4 +352,4 @@ void FilmWriter::close() {
   closed_ = more_follows_ = true;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::io

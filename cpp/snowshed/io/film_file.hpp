@@ -12,7 +12,7 @@
 #include "snowshed/io/film_codec.hpp"
 #include "snowshed/io/film_frame.hpp"
 
-namespace snowshed {
+namespace snowshed::io {
 
 inline constexpr std::uint32_t film_version = 2;  // written; version 1 is read, too
 
@@ -127,4 +127,4 @@ class FilmWriter {
   bool closed_ = false;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::io

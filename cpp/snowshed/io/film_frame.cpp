@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace snowshed {
+namespace snowshed::io {
 
 std::int32_t FilmQuantity::code(double value) const {
   const double scale = linear_steps * step;
@@ -15,4 +15,4 @@ double FilmQuantity::value(std::int32_t code) const {
   return linear_steps * step * std::sinh(double(code) / linear_steps);
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::io

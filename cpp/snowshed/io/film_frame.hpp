@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace snowshed {
+namespace snowshed::io {
 
 /// A quantity of particles in a film. A value v is stored as round(64 asinh(v / (64 step))):
 /// the resolution is `step` for small values, and 1.6 % for large ones.
@@ -23,7 +23,7 @@ struct FilmQuantity {
 struct FilmHeader {
   int axes = 3;         // 2: x and z; 3: x, y and z
   double quantum = 0;   // m, of positions
-  double interval = 0;  // s, between frames; longer in events that last
+  double interval = 0;  // s, between frames; longer in long events
   double share = 1;     // share of the particles that is recorded, chosen by id
   bool has_radius = false;
   std::vector<FilmQuantity> quantities;
@@ -46,4 +46,4 @@ struct FilmFrame {
   std::vector<std::vector<std::int32_t>> values;     // codes, one list per quantity
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::io

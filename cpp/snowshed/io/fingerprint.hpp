@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace snowshed {
+namespace snowshed::io {
 
 /// A hash (FNV-1a, 64 bits): different bytes give different numbers, barring rare collisions.
 class Fingerprint {
@@ -21,4 +21,4 @@ class Fingerprint {
   std::uint64_t value_ = 14695981039346656037ull;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::io

@@ -10,7 +10,7 @@
 
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed {
+namespace snowshed::io {
 
 FolderLock::FolderLock(const std::filesystem::path& folder)
     : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
@@ -35,4 +35,4 @@ FolderLock& FolderLock::operator=(FolderLock&& other) noexcept {
   return *this;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::io

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-namespace snowshed {
+namespace snowshed::io {
 
 /// Locks a folder during its lifetime; the system also releases the lock when the process dies.
 /// Throws InputError if another process holds the lock. On a file system without locks it does
@@ -22,4 +22,4 @@ class FolderLock {
   int descriptor_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::io

@@ -13,7 +13,7 @@
 #include "snowshed/io/file_bytes.hpp"
 #include "snowshed/io/xml_text.hpp"
 
-namespace snowshed {
+namespace snowshed::io {
 namespace {
 
 // A host program may have set a locale with decimal commas; files always have decimal points.
@@ -114,4 +114,4 @@ void PvdSeries::save() const {
   write_atomic(path_, xml + comment_of(xml));
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::io

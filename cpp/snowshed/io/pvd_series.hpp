@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace snowshed {
+namespace snowshed::io {
 
 /// The list of snapshots of a run. The file is complete after every `append`.
 class PvdSeries {
@@ -39,4 +39,4 @@ class PvdSeries {
   std::vector<Entry> entries_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::io

@@ -12,7 +12,7 @@
 #include "snowshed/io/checksum.hpp"
 #include "snowshed/io/xml_text.hpp"
 
-namespace snowshed {
+namespace snowshed::io {
 namespace {
 
 template <class T>
@@ -169,4 +169,4 @@ void write_vtp(const std::filesystem::path& path, const std::vector<std::array<d
   write_with_smallest_index(path, points, arrays);
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::io

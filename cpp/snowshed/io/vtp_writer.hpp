@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-namespace snowshed {
+namespace snowshed::io {
 
 /// A quantity with `components` consecutive values at each point.
 struct PointArray {
@@ -29,4 +29,4 @@ void write_vtp(const std::filesystem::path& path, const std::vector<std::array<f
 void write_vtp(const std::filesystem::path& path, const std::vector<std::array<double, 3>>& points,
                const std::vector<PointArray>& arrays);
 
-}  // namespace snowshed
+}  // namespace snowshed::io

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace snowshed {
+namespace snowshed::io {
 namespace {
 
 constexpr std::pair<char, std::string_view> entities[] = {
@@ -37,4 +37,4 @@ std::string xml_unescape(std::string_view text) {
   return plain;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::io

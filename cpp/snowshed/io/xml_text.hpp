@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace snowshed {
+namespace snowshed::io {
 
 /// Returns `text` with the five reserved characters replaced by entities.
 std::string xml_escape(std::string_view text);
@@ -13,4 +13,4 @@ std::string xml_escape(std::string_view text);
 /// stay.
 std::string xml_unescape(std::string_view text);
 
-}  // namespace snowshed
+}  // namespace snowshed::io

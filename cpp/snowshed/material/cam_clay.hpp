@@ -20,7 +20,7 @@
 #include "snowshed/core/simd_math.hpp"
 #include "snowshed/material/elasticity.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_MODULE_VARIANT_BEGIN(material)
 
 /// Pressure and Mises stress in the Kirchhoff measure, Pa.
 template <class V>
@@ -278,10 +278,10 @@ struct CamClayLaw {
       const V q_slope = trial.q * c * (n - d * n_slope) * per_flow * per_flow;
       const V shear = (T(1) + T(2) * beta) / m2 * q * q;
       const V y = shear + (p + beta * p0) * (p - p0);
-      const auto before_centre = n * n_trial > T(0);
+      const auto before_center = n * n_trial > T(0);
       // The root is found where y is zero to rounding. The comparison fails where y overflows.
       const V size = shear + (abs(p) + beta * p0) * (abs(p) + p0);
-      const auto solved = before_centre & (abs(y) < tolerance * size);
+      const auto solved = before_center & (abs(y) < tolerance * size);
       const V y_slope = T(2) * (T(1) + T(2) * beta) / m2 * q * q_slope +
                         (elastic.bulk + beta * p0_slope) * (p - p0) +
                         (p + beta * p0) * (elastic.bulk - p0_slope);
@@ -298,7 +298,7 @@ struct CamClayLaw {
       const V correction = clamp(V(newton * y_curve * per_slope), V(T(-0.5) * one), one);
       const V stepped = d - newton * (T(1) + correction);
       const V lo = min(near, end), hi = max(near, end);
-      const auto usable = (stepped > lo) & (stepped < hi) & before_centre;
+      const auto usable = (stepped > lo) & (stepped < hi) & before_center;
       const V next = select(usable, stepped, V(T(0.5) * (near + end)));
       const V change = abs(V(next - d));
       const V change_of_p = change * (elastic.bulk - p0_slope);
@@ -321,4 +321,4 @@ using CamClay = CamClayLaw<C, false>;
 template <class C>
 using RegularisedCamClay = CamClayLaw<C, true>;
 
-SNOWSHED_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

@@ -4,7 +4,7 @@
 
 #include "snowshed/material/elasticity.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_MODULE_VARIANT_BEGIN(material)
 
 template <class T>
 struct Elastic {
@@ -12,4 +12,4 @@ struct Elastic {
   static constexpr bool plastic = false;
 };
 
-SNOWSHED_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

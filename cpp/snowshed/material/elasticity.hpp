@@ -5,7 +5,7 @@
 
 #include "snowshed/core/variant.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_MODULE_VARIANT_BEGIN(material)
 
 /// Elastic constants in d dimensions. Two dimensions are plane strain with all invariants taken in
 /// the plane, as in the thesis: p = -tr(tau)/d. T is a scalar, or a SIMD pack if each particle has
@@ -26,4 +26,4 @@ struct Elasticity {
   }
 };
 
-SNOWSHED_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

@@ -1,7 +1,7 @@
 // The parameters of snow and its constitutive laws.
 #pragma once
 
-namespace snowshed {
+namespace snowshed::material {
 
 enum class SnowModel { cam_clay, elastic };
 
@@ -21,4 +21,4 @@ struct Snow {
   double hardening_factor = 0.1;             // xi, -
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::material

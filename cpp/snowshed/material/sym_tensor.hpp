@@ -5,7 +5,7 @@
 
 #include "snowshed/core/simd_math.hpp"
 
-SNOWSHED_VARIANT_BEGIN
+SNOWSHED_MODULE_VARIANT_BEGIN(material)
 
 /// A symmetric tensor. Its components are xx, zz, xz (D = 2) or xx, yy, zz, xy, xz, yz (D = 3).
 template <class V, int D>
@@ -198,4 +198,4 @@ SNOWSHED_INLINE Sym<V, D> cauchy_green_minus_identity(const Sym<V, D>& e) {
   return detail::spectral(e, [](const V& x) { return expm1(V(x + x)); });
 }
 
-SNOWSHED_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

@@ -3,7 +3,7 @@
 
 #include "snowshed/methods/range.hpp"
 
-namespace snowshed {
+namespace snowshed::methods {
 
 // Limits far beyond any structure or snow; they keep arithmetic on untrusted input finite.
 namespace allowed {
@@ -18,4 +18,4 @@ inline constexpr Range duration = positive.up_to(1e9);          // s
 inline constexpr Range coefficient = non_negative.up_to(100.0);
 }  // namespace allowed
 
-}  // namespace snowshed
+}  // namespace snowshed::methods

@@ -24,7 +24,7 @@
 #include "snowshed/core/vec.hpp"
 #include "snowshed/io/binary_archive.hpp"
 
-namespace snowshed {
+namespace snowshed::methods {
 
 /// Type in which an element of an array is stored, and number of values per element.
 template <class T, class = void>
@@ -63,7 +63,7 @@ class StateWriter {
  public:
   static constexpr bool reads = false;
 
-  explicit StateWriter(BinaryWriter& out) : out_(out) {}
+  explicit StateWriter(io::BinaryWriter& out) : out_(out) {}
 
   template <class Array>
   std::size_t size(const std::string&, const Array& values) const {
@@ -115,7 +115,7 @@ class StateWriter {
     out_.add(column.name, std::move(values));
   }
 
-  BinaryWriter& out_;
+  io::BinaryWriter& out_;
 };
 
 /// Throws InputError if a section is missing, of another type or size, or holds values that no
@@ -124,7 +124,7 @@ class StateReader {
  public:
   static constexpr bool reads = true;
 
-  explicit StateReader(const BinaryReader& in) : in_(in) {}
+  explicit StateReader(const io::BinaryReader& in) : in_(in) {}
 
   [[noreturn]] void refuse(const std::string& why) const {
     throw InputError(in_.path().string(), why);
@@ -217,7 +217,7 @@ class StateReader {
     }
   }
 
-  const BinaryReader& in_;
+  const io::BinaryReader& in_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::methods

@@ -13,7 +13,7 @@
 #include "snowshed/methods/energy_balance.hpp"
 #include "snowshed/methods/method.hpp"
 
-namespace snowshed {
+namespace snowshed::methods {
 
 /// The method's capability, or null if it does not have it.
 template <class Capability, class SomeMethod>
@@ -82,9 +82,9 @@ class Curve {
   virtual void record(const Method&) = 0;
   virtual const std::vector<std::string>& columns() const = 0;
   virtual const std::vector<double>& values() const = 0;  ///< row by row
-  virtual void save(BinaryWriter&) const = 0;
+  virtual void save(io::BinaryWriter&) const = 0;
   /// Throws InputError if the rows are not those of such a curve.
-  virtual void load(const BinaryReader&) = 0;
+  virtual void load(const io::BinaryReader&) = 0;
 };
 
 /// A method that is measured after each step. If it keeps energies, its curve has them, too.
@@ -109,4 +109,4 @@ class ReportsRun {
   ~ReportsRun() = default;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::methods

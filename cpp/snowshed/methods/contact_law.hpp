@@ -1,7 +1,7 @@
 // Behaviour of snow at the surface of an obstacle.
 #pragma once
 
-namespace snowshed {
+namespace snowshed::methods {
 
 /// Conditions on the velocity relative to the obstacle at a collision. `sticky` and `slip` are
 /// those of the thesis (1.2.3); `separate` is its SEPARATE with a short memory (see
@@ -17,4 +17,4 @@ struct ContactLaw {
   double friction;  // Coulomb coefficient
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::methods

@@ -9,7 +9,7 @@
 #include "snowshed/methods/scene_view.hpp"
 #include "snowshed/methods/surroundings.hpp"
 
-namespace snowshed {
+namespace snowshed::methods {
 
 /// Distance and duration of the motion of an event's snow: a slab slides off the panel and falls,
 /// bodies fall, and the snow settles.
@@ -25,7 +25,7 @@ struct SnowMotion {
 
 /// Totals of a scene's solids and snow, computed without building them.
 struct SceneOutline {
-  std::vector<Snow> snows;                   // indexed by material_id
+  std::vector<material::Snow> snows;         // indexed by material_id
   std::vector<std::vector<double>> volumes;  // m3 (2D: m2) of the bodies of each event
   double particles_per_voxel = 0;
   double height = 0;             // m, of the snow of the first event above z = 0, or of itself
@@ -45,7 +45,7 @@ struct CostEstimate {
   double event_time = 0.0;        // s, of an event; at most events.max_time
   double steps = 0.0;             // all events
   double updates = 0.0;           // updates of awake particles, all events
-  double scattering = 1.0;        // work of an update where snow flies apart, over that at first
+  double scattering = 1.0;        // work of an update in scattered snow, relative to a slab
   double bytes = 0.0;             // peak memory, particles and grid
   // Named parts of the particle count, if there are any.
   std::vector<std::pair<std::string, double>> parts;
@@ -57,4 +57,4 @@ struct Feature {
   bool used;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::methods

@@ -19,7 +19,7 @@
 #include "snowshed/methods/settings_visitor.hpp"
 #include "snowshed/methods/surroundings.hpp"
 
-namespace snowshed {
+namespace snowshed::methods {
 
 /// The parts of a scene that only some methods take. `sample` includes its loading and its cone.
 enum class Part { panel, slab, ground, obstacles, bodies, domain, terrain, sample, snow, seeding };
@@ -61,12 +61,13 @@ class MethodDescriptor {
 
   /// Shows a visitor each setting in turn.
   virtual void describe(SettingsVisitor&) = 0;
-  /// The size of the smallest thing that the method resolves, m; 0 if a file decides it.
+  /// The smallest length that the method resolves, m; 0 if a file determines it.
   virtual double resolution() const = 0;
   /// The threads that the method shall use; 0: all.
   virtual int threads() const = 0;
   virtual void set_threads(int) = 0;
-  /// Multiplies the resolution, if it is a setting, so that a small copy of a scene runs fast.
+  /// Multiplies the cell size (or spacing) by `factor`, if it is a setting, for quick coarse copies
+  /// of a scene.
   virtual void coarsen(double /*factor*/) {}
   /// The setting from which the length of a step follows, by its key.
   virtual std::string step_setting() const = 0;
@@ -84,7 +85,7 @@ class MethodDescriptor {
   /// checked the range of each value, and that the method takes all parts of the scene.
   virtual void validate(const SceneView&) const {}
   /// Returns the solid with thin parts thickened to the method's resolution.
-  virtual ThickSolid thickened(const Shape& shape, int /*dimension*/) const {
+  virtual geometry::ThickSolid thickened(const geometry::Shape& shape, int /*dimension*/) const {
     return {shape, std::nullopt};
   }
   /// Reads the files that only this method takes; relative names are looked for in `base_dir`.
@@ -99,10 +100,10 @@ class MethodDescriptor {
   // --- filling of bodies, for methods with their own seeding -------------------------------------
 
   /// The number of particles that `fill` will place. Throws as `fill`.
-  virtual std::size_t count_particles(const LevelSet&, int dimension) const;
+  virtual std::size_t count_particles(const geometry::LevelSet&, int dimension) const;
   /// Fills a solid with particles; adds a note if they do not resolve the solid. Throws InputError
   /// if the solid cannot be filled, and Stopped on request.
-  virtual void fill(const LevelSet&, int dimension, const StopRequest&, ParticleBatch&,
+  virtual void fill(const geometry::LevelSet&, int dimension, const StopRequest&, ParticleBatch&,
                     std::vector<std::string>& notes) const;
 
   // --- cost ------------------------------------------------------------------------------------
@@ -157,4 +158,4 @@ class DescriptorBase : public WithSettings<Settings> {
   using WithSettings<Settings>::settings_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::methods

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace snowshed {
+namespace snowshed::methods {
 
 /// The energy balance, J (per metre of width in 2D). The first three are the energies stored now,
 /// and `added` is the energy of added snow. The others are sums over all steps of the energy that
@@ -44,4 +44,4 @@ inline NamedEnergies named_energies(const EnergyBalance& e) {
           {"added_j", e.added},       {"residual_j", e.residual()}};
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::methods

@@ -5,7 +5,7 @@
 #include "snowshed/methods/contact_law.hpp"
 #include "snowshed/methods/scene_parts.hpp"
 
-namespace snowshed {
+namespace snowshed::methods {
 
 template <class E>
 struct Named {
@@ -18,9 +18,9 @@ template <class E>
 struct EnumNames;
 
 template <>
-struct EnumNames<SnowModel> {
-  static constexpr Named<SnowModel> list[] = {{SnowModel::cam_clay, "cam_clay"},
-                                              {SnowModel::elastic, "elastic"}};
+struct EnumNames<material::SnowModel> {
+  static constexpr Named<material::SnowModel> list[] = {{material::SnowModel::cam_clay, "cam_clay"},
+                                                        {material::SnowModel::elastic, "elastic"}};
 };
 
 template <>
@@ -30,10 +30,11 @@ struct EnumNames<Condition> {
 };
 
 template <>
-struct EnumNames<SeedPattern> {
-  static constexpr Named<SeedPattern> list[] = {{SeedPattern::regular, "regular"},
-                                                {SeedPattern::jittered, "jittered"},
-                                                {SeedPattern::poisson, "poisson"}};
+struct EnumNames<sampling::SeedPattern> {
+  static constexpr Named<sampling::SeedPattern> list[] = {
+      {sampling::SeedPattern::regular, "regular"},
+      {sampling::SeedPattern::jittered, "jittered"},
+      {sampling::SeedPattern::poisson, "poisson"}};
 };
 
 template <>
@@ -61,4 +62,4 @@ constexpr const char* name_of(E value) {
   return nullptr;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::methods

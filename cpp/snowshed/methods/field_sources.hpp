@@ -14,20 +14,20 @@
 #include "snowshed/methods/quantities.hpp"
 #include "snowshed/particles/field_view.hpp"
 
-namespace snowshed {
+namespace snowshed::methods {
 
-inline FieldInfo field_of(const Quantity& q, FieldType type, bool stored) {
+inline particles::FieldInfo field_of(const Quantity& q, particles::FieldType type, bool stored) {
   return {q.name, q.unit, q.meaning, q.components, type, stored};
 }
 
 template <class T>
-FieldView stored_view(const FieldInfo& info, const AlignedVector<T>& array) {
+particles::FieldView stored_view(const particles::FieldInfo& info, const AlignedVector<T>& array) {
   return {info, array.size(), sizeof(T), share(array)};
 }
 
 /// A view of values computed for it: `info.components` of each particle.
 template <class T>
-FieldView computed_view(const FieldInfo& info, std::vector<T> values) {
+particles::FieldView computed_view(const particles::FieldInfo& info, std::vector<T> values) {
   const auto owner = std::make_shared<const std::vector<T>>(std::move(values));
   return {info, owner->size() / std::size_t(info.components),
           std::ptrdiff_t(sizeof(T)) * info.components,
@@ -63,19 +63,20 @@ class FieldSources {
       : visit_(visit), particles_(particles), threads_(threads) {}
 
   template <class T>
-  void stored(const FieldInfo& info, const AlignedVector<T>& array) const {
+  void stored(const particles::FieldInfo& info, const AlignedVector<T>& array) const {
     visit_(info, [&] { return stored_view(info, array); });
   }
   /// An array that holds the quantity of this name.
   template <class T>
   void column(const char* name, const AlignedVector<T>& array) const {
-    stored(field_of(quantity(name), field_type<T>(), true), array);
+    stored(field_of(quantity(name), particles::field_type<T>(), true), array);
   }
   /// The quantity of this name from values(), a vector.
   template <class Values>
   void computed(const char* name, Values values) const {
     using Value = typename std::decay_t<decltype(values())>::value_type;
-    const FieldInfo info = field_of(quantity(name), field_type<Value>(), false);
+    const particles::FieldInfo info =
+        field_of(quantity(name), particles::field_type<Value>(), false);
     visit_(info, [&] { return computed_view(info, std::vector<Value>(values())); });
   }
   /// The quantity of this name from value(particle): a number, vector or matrix.
@@ -93,18 +94,18 @@ class FieldSources {
 /// The fields that `visit_fields` shows: it calls its argument with (info, view) for each of them,
 /// where view() returns the view.
 template <class VisitFields>
-std::vector<FieldInfo> list_fields(const VisitFields& visit_fields) {
-  std::vector<FieldInfo> all;
-  visit_fields([&all](const FieldInfo& info, const auto&) { all.push_back(info); });
+std::vector<particles::FieldInfo> list_fields(const VisitFields& visit_fields) {
+  std::vector<particles::FieldInfo> all;
+  visit_fields([&all](const particles::FieldInfo& info, const auto&) { all.push_back(info); });
   return all;
 }
 
 /// The view of the field of this name; throws InputError if there is none.
 template <class VisitFields>
-FieldView find_field(const std::string& name, const VisitFields& visit_fields) {
-  std::optional<FieldView> match;
+particles::FieldView find_field(const std::string& name, const VisitFields& visit_fields) {
+  std::optional<particles::FieldView> match;
   std::string names;
-  visit_fields([&](const FieldInfo& info, const auto& view) {
+  visit_fields([&](const particles::FieldInfo& info, const auto& view) {
     if (info.name == name) match = view();
     names += (names.empty() ? "" : ", ") + info.name;
   });
@@ -112,4 +113,4 @@ FieldView find_field(const std::string& name, const VisitFields& visit_fields) {
   return *match;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::methods

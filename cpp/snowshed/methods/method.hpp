@@ -4,14 +4,14 @@
 //
 // Promises of every method:
 // - A call that throws leaves the snow, the time, the counters and the energies as they were, so
-//   that the same call may be made again or another instead. Data read by id are the same; only
-//   the order of the particles in memory may differ. This holds for lack of memory, too.
+//   that the caller may repeat it or make another call. Data read by id are the same; only the
+//   order of the particles in memory may differ. This holds for lack of memory, too.
 // - One exception: `step` can find only afterwards that a particle is no longer sound. Then the
 //   step has been taken and the method has *failed*: it can still be read, but every call that
 //   would alter, advance or save it throws SimulationError, so that a broken state never
 //   overwrites a good checkpoint. `load` repairs it.
 // - Errors: InputError for arguments that are not allowed, SimulationError if the simulation
-//   cannot go on, std::bad_alloc for lack of memory.
+//   cannot continue, std::bad_alloc for lack of memory.
 // - The results do not depend on the number of threads, to the last bit.
 //
 // Particles have ids, in the order in which they were added. For callers they are ordered by id;
@@ -30,24 +30,22 @@
 #include "snowshed/methods/point_cloud.hpp"
 #include "snowshed/particles/field_view.hpp"
 
-namespace snowshed {
-
+namespace snowshed::io {
 class BinaryWriter;
 class BinaryReader;
+}  // namespace snowshed::io
 
-/// A copy of the particles for the outside, in double, ordered by id. Fields that a method does not
-/// have are empty.
+namespace snowshed::methods {
+
+/// A copy of the particles in double precision, ordered by id: the quantities that every method
+/// has. `values_by_id` (fields_by_id.hpp) returns any other.
 struct ParticleState {
   std::vector<Vec3> positions, velocities;  // m, m/s
   std::vector<double> masses;               // kg
   std::vector<double> densities;            // kg/m3, current
-  std::vector<double> pressures;            // Kirchhoff, Pa, compression positive
-  std::vector<double> volume_ratios;        // current over initial volume
-  std::vector<double> plastic_strains;      // volumetric, compaction negative
-  std::vector<Mat3> affine;                 // C of APIC, 1/s
   std::vector<std::uint32_t> ids;
   std::vector<std::uint16_t> events;
-  std::vector<std::uint8_t> material_ids;  // snow of each particle, if there are several
+  std::vector<std::uint8_t> material_ids;  // snow of each particle; empty if there is only one
 };
 
 /// Motion of the snow as a whole.
@@ -59,7 +57,7 @@ struct MotionSummary {
 
 /// Counters since the method was made.
 struct StepCounters {
-  std::int64_t steps = 0, rejected = 0, sorts = 0;
+  std::int64_t steps = 0, rejected = 0;
   std::int64_t particle_updates = 0;  // particles that took part, summed over the steps
   double smallest_dt = 0;             // s
 };
@@ -114,10 +112,10 @@ class Method {
   virtual const StepCounters& counters() const = 0;
 
   /// The readable quantities of the particles, and whether each is stored.
-  virtual std::vector<FieldInfo> fields() const = 0;
+  virtual std::vector<particles::FieldInfo> fields() const = 0;
   /// The quantity of this name, in the order of storage: a view of memory if it is stored,
   /// otherwise a copy computed now. Throws InputError if there is no such field.
-  virtual FieldView field(const std::string& name) const = 0;
+  virtual particles::FieldView field(const std::string& name) const = 0;
   /// The storage index of each particle, ordered by id.
   virtual const std::vector<std::uint32_t>& order_by_id() const = 0;
 
@@ -129,21 +127,22 @@ class Method {
   /// Memory of the particles and of the largest arrays that the steps need.
   virtual std::size_t bytes() const = 0;
 
-  /// Contents of a file of particles: by default the quantities of `state`, ordered by id.
+  /// Contents of a file of particles, ordered by id: by default the quantities of `state`, and the
+  /// stresses and strains among the fields.
   virtual PointCloud snapshot() const;
 
   // --- checkpoints -----------------------------------------------------------------------------
 
   /// Adds the state to an archive, whose sections may refer to the method's memory until it is
   /// written: no other call is allowed until then. Throws SimulationError if the method has failed.
-  virtual void save(BinaryWriter&) const = 0;
+  virtual void save(io::BinaryWriter&) const = 0;
 
-  /// Takes over the state from an archive. A method of the same scene has saved it, or of a scene
-  /// with only the first of these snows. Throws InputError if the archive is not sound.
-  virtual void load(const BinaryReader&) = 0;
+  /// Replaces the state by that of an archive. The archive must come from the same scene, or from
+  /// one that had only the first of its snows. Throws InputError if the archive is not sound.
+  virtual void load(const io::BinaryReader&) = 0;
 
   /// Makes the checks of `load` and throws as `load`, but changes nothing and needs less memory.
-  virtual void check(const BinaryReader&) const = 0;
+  virtual void check(const io::BinaryReader&) const = 0;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::methods

@@ -7,7 +7,7 @@
 
 #include "snowshed/methods/registry.hpp"
 
-namespace snowshed {
+namespace snowshed::methods {
 
 class MethodChoice {
  public:
@@ -64,4 +64,4 @@ class MethodChoice {
   std::unique_ptr<MethodDescriptor> descriptor_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::methods

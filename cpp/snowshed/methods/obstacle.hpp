@@ -8,13 +8,13 @@
 #include "snowshed/geometry/rigid_motion.hpp"
 #include "snowshed/methods/contact_law.hpp"
 
-namespace snowshed {
+namespace snowshed::methods {
 
 struct Obstacle {
   std::string name;
-  Shape shape;
+  geometry::Shape shape;
   ContactLaw law;
-  std::optional<RigidMotion> motion;
+  std::optional<geometry::RigidMotion> motion;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::methods

@@ -7,7 +7,7 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/vec.hpp"
 
-namespace snowshed {
+namespace snowshed::methods {
 
 /// Particles of one velocity and one kind of snow, of equal masses or each with its own.
 struct ParticleBatch {
@@ -43,4 +43,4 @@ inline void check_batch(const ParticleBatch& batch, std::size_t materials) {
   if (!batch.velocity.allFinite()) throw InputError("velocity", "not finite");
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::methods

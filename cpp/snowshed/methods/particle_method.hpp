@@ -13,7 +13,7 @@
 #include "snowshed/methods/method.hpp"
 #include "snowshed/particles/id_order.hpp"
 
-namespace snowshed {
+namespace snowshed::methods {
 
 /// Whether the last step left particles that are not sound; the method can then only be read.
 class Soundness {
@@ -47,7 +47,7 @@ class IdOrder {
   template <class Ids>
   const std::vector<std::uint32_t>& of(const Ids& ids) const {
     if (!known_) {
-      order_ = order_by_id(ids.data(), ids.size());
+      order_ = particles::order_by_id(ids.data(), ids.size());
       known_ = true;
     }
     return order_;
@@ -95,4 +95,4 @@ std::size_t bytes_of(const Arrays&... arrays) {
   return (std::size_t(0) + ... + (arrays.capacity() * sizeof(arrays[0])));
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::methods

@@ -2,16 +2,18 @@
 #pragma once
 
 #include <array>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "snowshed/io/vtp_writer.hpp"
 
-namespace snowshed {
+namespace snowshed::methods {
 
 struct PointCloud {
   std::vector<std::array<float, 3>> points;  // m
-  std::vector<PointArray> arrays;
-  PointPairs lines;
+  std::vector<io::PointArray> arrays;
+  io::PointPairs lines;
 
   /// A cloud with a velocity at each point.
   template <class Vectors>
@@ -34,6 +36,13 @@ struct PointCloud {
   void add(const char* name, const std::vector<From>& values) {
     arrays.push_back({name, 1, std::vector<To>(values.begin(), values.end())});
   }
+
+  /// Replaces the values of an array.
+  template <class To>
+  void replace(const std::string& name, std::vector<To> values) {
+    for (io::PointArray& array : arrays)
+      if (array.name == name) array.values = std::move(values);
+  }
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::methods

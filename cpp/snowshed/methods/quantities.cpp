@@ -4,7 +4,7 @@
 
 #include "snowshed/methods/registry.hpp"
 
-namespace snowshed {
+namespace snowshed::methods {
 namespace {
 
 const std::vector<Quantity>& shared_quantities() {
@@ -47,4 +47,4 @@ const Quantity& quantity(const std::string& name) {
   return *match;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::methods

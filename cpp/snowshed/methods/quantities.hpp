@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace snowshed {
+namespace snowshed::methods {
 
 struct Quantity {
   std::string name, unit, meaning;
@@ -18,4 +18,4 @@ std::vector<Quantity> quantities();
 /// The quantity of this name; throws std::out_of_range if there is none.
 const Quantity& quantity(const std::string& name);
 
-}  // namespace snowshed
+}  // namespace snowshed::methods

@@ -4,7 +4,7 @@
 
 #include "snowshed/core/message_format.hpp"
 
-namespace snowshed {
+namespace snowshed::methods {
 
 bool Range::contains(double value) const {
   if (!std::isfinite(value)) return false;
@@ -20,4 +20,4 @@ std::string Range::text(const std::string& unit) const {
   return unit.empty() ? text : text + " " + unit;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::methods

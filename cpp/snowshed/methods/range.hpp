@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-namespace snowshed {
+namespace snowshed::methods {
 
 /// Whether a field must be given.
 enum class Need { optional, required, required_in_3d };
@@ -47,4 +47,4 @@ inline constexpr Range fraction = non_negative.up_to(1.0);
 constexpr Range between(double min, double max) { return {min, max, false, false, Need::optional}; }
 constexpr Range exactly(double value) { return between(value, value); }
 
-}  // namespace snowshed
+}  // namespace snowshed::methods

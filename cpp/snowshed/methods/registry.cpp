@@ -14,7 +14,7 @@
   add(mps)
 // clang-format on
 
-namespace snowshed {
+namespace snowshed::methods {
 
 #define SNOWSHED_DECLARE(name)          \
   namespace name {                      \
@@ -54,7 +54,7 @@ bool MethodChoice::is_default() const {
   return descriptor_->info().name == all_methods().front()->info().name;
 }
 
-std::size_t MethodDescriptor::count_particles(const LevelSet&, int) const {
+std::size_t MethodDescriptor::count_particles(const geometry::LevelSet&, int) const {
   throw std::logic_error("the method does not fill solids itself");
 }
 
@@ -68,9 +68,9 @@ CostEstimate MethodDescriptor::cost_of_method(const SceneView&, const Surroundin
   throw std::logic_error("the cost of a method that takes bodies needs no built simulation");
 }
 
-void MethodDescriptor::fill(const LevelSet&, int, const StopRequest&, ParticleBatch&,
+void MethodDescriptor::fill(const geometry::LevelSet&, int, const StopRequest&, ParticleBatch&,
                             std::vector<std::string>&) const {
   throw std::logic_error("the method does not fill solids itself");
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::methods

@@ -6,7 +6,7 @@
 
 #include "snowshed/methods/descriptor.hpp"
 
-namespace snowshed {
+namespace snowshed::methods {
 
 /// All methods, with their default settings. The first is the default of scenes.
 const std::vector<const MethodDescriptor*>& all_methods();
@@ -23,4 +23,4 @@ class RegisteredMethod {
   ~RegisteredMethod();
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::methods

@@ -8,17 +8,17 @@
 #include "snowshed/geometry/polygon.hpp"
 #include "snowshed/sampling/seeding.hpp"
 
-namespace snowshed {
+namespace snowshed::methods {
 
 /// A hole in an area.
 struct HoleSpec {
-  Ring outline;  // m, in the terrain's coordinates
+  geometry::Ring outline;  // m, in the terrain's coordinates
 };
 
 /// An area on the map.
 struct AreaSpec {
   std::string name;
-  Ring outline;  // m, in the terrain's coordinates
+  geometry::Ring outline;  // m, in the terrain's coordinates
   std::vector<HoleSpec> holes;
   double thickness = 0.0;  // m of snow, normal to the ground
 };
@@ -26,7 +26,7 @@ struct AreaSpec {
 /// An area that holds snow back.
 struct ResistanceSpec {
   std::string name;
-  Ring outline;
+  geometry::Ring outline;
   std::vector<HoleSpec> holes;
 };
 
@@ -82,7 +82,7 @@ struct Cone {
 /// Arrangement of the particles that fill snow.
 struct Seeding {
   double particles_per_voxel = 0.0;  // 0: 6 in 2D, 8 in 3D
-  SeedPattern pattern = SeedPattern::poisson;
+  sampling::SeedPattern pattern = sampling::SeedPattern::poisson;
   std::uint64_t seed = 1;
   bool allow_sparse = false;  // fewer than 4 (2D) or 6 (3D) per voxel
 };
@@ -107,4 +107,4 @@ struct Output {
   double checkpoint_interval = 60.0;  // s of wall time between checkpoints; 0: none
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::methods

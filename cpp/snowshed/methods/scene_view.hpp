@@ -6,7 +6,7 @@
 
 #include "snowshed/methods/scene_parts.hpp"
 
-namespace snowshed {
+namespace snowshed::methods {
 
 /// The parts of a scene that methods read; it refers to the scene.
 struct SceneView {
@@ -20,4 +20,4 @@ struct SceneView {
   const Output& output;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::methods

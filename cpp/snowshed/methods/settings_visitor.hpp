@@ -12,7 +12,7 @@
 #include "snowshed/methods/enum_names.hpp"
 #include "snowshed/methods/range.hpp"
 
-namespace snowshed {
+namespace snowshed::methods {
 
 /// A value of any enumeration with names (enum_names.hpp).
 class Choice {
@@ -58,4 +58,4 @@ class SettingsVisitor {
   virtual void accuracy(std::initializer_list<const char*> keys) = 0;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::methods

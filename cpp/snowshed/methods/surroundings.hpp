@@ -9,12 +9,12 @@
 #include "snowshed/material/snow.hpp"
 #include "snowshed/methods/obstacle.hpp"
 
-namespace snowshed {
+namespace snowshed::methods {
 
 /// A file that a scene names, and the fingerprint of its contents.
-struct FilePrint {
+struct FileFingerprint {
   std::string file;
-  std::int64_t print;
+  std::int64_t fingerprint;
 };
 
 /// Input that a method read from files of its own.
@@ -24,17 +24,17 @@ class MethodInput {
 
   /// The section of a checkpoint that holds the fingerprints of these files.
   virtual const char* section() const = 0;
-  virtual std::vector<FilePrint> files() const = 0;
-  /// A remark on the files, which the user reads before the run; empty if there is none.
-  virtual std::string remark() const { return ""; }
+  virtual std::vector<FileFingerprint> files() const = 0;
+  /// A note on the files, which the user reads before the run; empty if there is none.
+  virtual std::string note() const { return ""; }
 };
 
 struct Surroundings {
-  std::vector<Snow> snows;                   // indexed by material_id
+  std::vector<material::Snow> snows;         // indexed by material_id
   std::vector<Obstacle> obstacles;           // all of them, as they are given
   std::vector<Obstacle> resolved;            // the same, thickened to the method's resolution
   std::vector<std::string> notes;            // assumptions and changes, a sentence each
   std::shared_ptr<const MethodInput> input;  // null if the method reads no files
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::methods

@@ -8,12 +8,12 @@
 
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed {
+namespace snowshed::particles {
 namespace {
 
 /// Largest number of cells along an axis; the product over the axes fits into 64 bits.
 template <int D>
-constexpr double max_cells_of_axis = D == 2 ? 1e9 : 2e6;
+constexpr double max_cells_per_axis = D == 2 ? 1e9 : 2e6;
 
 }  // namespace
 
@@ -35,7 +35,7 @@ void CellOrder<D>::number_cells(const Points& points, double edge, double period
   }
   for (int d = 0; d < D; ++d) {
     const double cells = (high[d] - low[d]) * per_length[d];
-    if (!(cells < max_cells_of_axis<D>))
+    if (!(cells < max_cells_per_axis<D>))
       throw SimulationError("particles are " + std::to_string(high[d] - low[d]) +
                             " m apart, which is too far for cells of " + std::to_string(edge) +
                             " m");
@@ -160,4 +160,4 @@ std::size_t CellOrder<D>::bytes() const {
 template class CellOrder<2>;
 template class CellOrder<3>;
 
-}  // namespace snowshed
+}  // namespace snowshed::particles

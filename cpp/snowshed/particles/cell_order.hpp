@@ -8,7 +8,7 @@
 #include "snowshed/core/aligned_vector.hpp"
 #include "snowshed/core/vec.hpp"
 
-namespace snowshed {
+namespace snowshed::particles {
 
 /// Points in the plane or in space, sorted into square or cubic cells. Only cells that hold points
 /// exist, so the memory does not depend on how far the points are spread. Along x the cells of a
@@ -30,12 +30,12 @@ class CellOrder {
   bool is_sorted() const { return sorted_; }
 
   std::size_t cells() const { return coordinates_.size(); }
-  /// The points of a cell, as places in the order.
+  /// The points of a cell, as indices into the order.
   std::uint32_t begin(std::size_t cell) const { return begin_[cell]; }
   std::uint32_t end(std::size_t cell) const { return begin_[cell + 1]; }
   const Coordinates& coordinates(std::size_t cell) const { return coordinates_[cell]; }
 
-  /// Places [begin, end) in the order.
+  /// Indices [begin, end) into the order.
   struct Range {
     std::uint32_t begin, end;
   };
@@ -67,4 +67,4 @@ class CellOrder {
   std::vector<Coordinates> coordinates_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::particles

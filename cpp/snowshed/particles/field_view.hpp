@@ -8,7 +8,7 @@
 #include <string>
 #include <type_traits>
 
-namespace snowshed {
+namespace snowshed::particles {
 
 enum class FieldType { float32, float64, uint8, uint16, uint32 };
 
@@ -63,4 +63,4 @@ decltype(auto) with_field_type(FieldType type, F f) {
   return f(double());
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::particles

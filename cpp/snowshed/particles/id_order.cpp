@@ -3,7 +3,7 @@
 #include <array>
 #include <numeric>
 
-namespace snowshed {
+namespace snowshed::particles {
 namespace {
 
 constexpr int digit_bits = 11;  // three digits make an id, and the counts fit into the cache
@@ -31,4 +31,4 @@ std::vector<std::uint32_t> order_by_id(const std::uint32_t* ids, std::size_t cou
   return order;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::particles

@@ -8,7 +8,7 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/parallel.hpp"
 
-namespace snowshed {
+namespace snowshed::particles {
 namespace {
 
 constexpr std::size_t cells_in_part = 64;
@@ -121,4 +121,4 @@ std::size_t NeighbourLists<D>::bytes() const {
 template class NeighbourLists<2>;
 template class NeighbourLists<3>;
 
-}  // namespace snowshed
+}  // namespace snowshed::particles

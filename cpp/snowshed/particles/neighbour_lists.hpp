@@ -8,7 +8,7 @@
 #include "snowshed/particles/cell_order.hpp"
 #include "snowshed/particles/neighbour_search.hpp"
 
-namespace snowshed {
+namespace snowshed::particles {
 
 /// Lists of neighbours in one array (compressed rows), each pair in both of its lists, with the
 /// separation to the neighbour. Single precision suffices for separations, which are short.
@@ -28,7 +28,7 @@ class NeighbourLists {
   std::uint32_t end(std::size_t i) const { return first_[i + 1]; }
   std::uint32_t neighbour(std::size_t entry) const { return index_[entry]; }
 
-  /// Finds the place of (j, i) for each entry (i, j).
+  /// Finds the entry (j, i) for each entry (i, j).
   void find_mirrors(int threads);
   /// The entry of the same pair in the neighbour's list, as `find_mirrors` has found it.
   std::uint32_t mirror(std::size_t entry) const { return mirror_[entry]; }
@@ -48,7 +48,7 @@ class NeighbourLists {
   std::size_t bytes() const;
 
  private:
-  /// Neighbours of a part of the points, before their place in the whole is known.
+  /// Neighbours of some points, before their position in the common array is known.
   struct Part {
     std::vector<std::uint32_t> index;
     std::size_t size = 0;
@@ -66,4 +66,4 @@ class NeighbourLists {
   std::array<AlignedVector<double>, D> coordinate_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::particles

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace snowshed {
+namespace snowshed::particles {
 
 /// Points by axes, in the order of their cells, m. Kernels read and write several values at a time,
 /// so there is memory for `spare` more values behind the last point and behind the neighbours.
@@ -23,4 +23,4 @@ using NeighbourSearch = std::size_t (*)(const SearchedPoints<D>&, std::uint32_t 
                                         std::uint32_t begin, std::uint32_t end,
                                         std::uint32_t* neighbours);
 
-}  // namespace snowshed
+}  // namespace snowshed::particles

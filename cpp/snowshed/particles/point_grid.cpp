@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace snowshed {
+namespace snowshed::particles {
 
 PointGrid::PointGrid(const std::vector<Vec3>& points, double edge, const StopRequest& stop)
     : edge_(edge), y_reach_(0) {
@@ -44,4 +44,4 @@ PointGrid::Cell PointGrid::cell_of(const Vec3& x) const {
   return {index(x.x()), index(x.y()), index(x.z())};
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::particles

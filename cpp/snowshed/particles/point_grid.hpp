@@ -8,7 +8,7 @@
 #include "snowshed/core/stop_request.hpp"
 #include "snowshed/core/vec.hpp"
 
-namespace snowshed {
+namespace snowshed::particles {
 
 /// Points sorted into cubic cells of a given edge. A hash table finds the cells, so the memory
 /// depends on the number of points and not on the volume that they occupy.
@@ -69,4 +69,4 @@ class PointGrid {
   std::vector<Range> table_;  // open addressing; the size is a power of two
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::particles

@@ -10,22 +10,24 @@
 #include "snowshed/core/memory.hpp"
 #include "snowshed/core/message_format.hpp"
 #include "snowshed/run/snow_motion.hpp"
-#include "snowshed/scene/assemble.hpp"
+#include "snowshed/scene/distinct_snows.hpp"
+#include "snowshed/scene/event_bodies.hpp"
 #include "snowshed/scene/locator.hpp"
+#include "snowshed/scene/obstacle_specs.hpp"
 #include "snowshed/scene/scene_json.hpp"
 #include "snowshed/scene/shape_measure.hpp"
 
-namespace snowshed {
+namespace snowshed::run {
 namespace {
 
-/// Largest number of obstacles that overlap at a point. Boxes are counted at the middles of some
-/// obstacles.
-double max_overlap(const std::vector<ObstacleSpec>& obstacles) {
+/// Estimates the largest number of obstacles that overlap at a point: counts the bounding boxes
+/// that contain the centres of some boxes.
+double max_overlap(const std::vector<scene::ObstacleSpec>& obstacles) {
   constexpr std::size_t sampled_boxes = 200;
   std::vector<Eigen::AlignedBox3d> boxes;
   double everywhere = 0;
-  for (const ObstacleSpec& o : obstacles) {
-    const auto bounds = shape_bounds(o.shape);
+  for (const scene::ObstacleSpec& o : obstacles) {
+    const auto bounds = scene::shape_bounds(o.shape);
     if (bounds && bounds->sizes().allFinite())
       boxes.push_back(*bounds);
     else
@@ -41,11 +43,11 @@ double max_overlap(const std::vector<ObstacleSpec>& obstacles) {
   return everywhere + double(max_overlaps);
 }
 
-/// The height of the snow of the first event, from its lowest point or z = 0 if that is lower, m.
-double height_of(const Scene& scene) {
+/// Height of the first event's snow above its lowest point, or above z = 0 if that is lower, m.
+double height_of(const scene::Scene& scene) {
   double low = 0, high = 0;
-  for (const BodySpec& body : assemble_bodies(scene, 1))
-    if (const auto bounds = shape_bounds(body.shape)) {
+  for (const scene::BodySpec& body : scene::event_bodies(scene, 1))
+    if (const auto bounds = scene::shape_bounds(body.shape)) {
       low = std::min(low, bounds->min().z());
       high = std::max(high, bounds->max().z());
     }
@@ -55,7 +57,8 @@ double height_of(const Scene& scene) {
 std::string gigabytes(double bytes) { return show_briefly(bytes / 1e9) + " GB"; }
 
 /// Particles in the volumes of each event.
-std::vector<double> count_particles(const Scene& scene, const SceneOutline& outline) {
+std::vector<double> count_particles(const scene::Scene& scene,
+                                    const methods::SceneOutline& outline) {
   std::vector<double> counts;
   const double voxel = std::pow(scene.numerics->resolution(), scene.dimension);
   for (const std::vector<double>& volumes : outline.volumes) {
@@ -65,26 +68,26 @@ std::vector<double> count_particles(const Scene& scene, const SceneOutline& outl
   return counts;
 }
 
-CostEstimate estimate(const Scene& scene, const SceneOutline& outline,
-                      std::vector<double> particles) {
-  return scene.numerics->cost_of_bodies(view_of(scene), outline, std::move(particles));
+methods::CostEstimate estimate(const scene::Scene& scene, const methods::SceneOutline& outline,
+                               std::vector<double> particles) {
+  return scene.numerics->cost_of_bodies(scene::view_of(scene), outline, std::move(particles));
 }
 
 }  // namespace
 
-SceneOutline outline_of(const Scene& scene) {
-  SceneOutline outline;
-  outline.snows = assemble_snows(scene);
+methods::SceneOutline outline_of(const scene::Scene& scene) {
+  methods::SceneOutline outline;
+  outline.snows = scene::distinct_snows(scene);
   for (int event = 1; event <= scene.events.count; ++event) {
     std::vector<double>& volumes = outline.volumes.emplace_back();
-    for (const BodySpec& body : assemble_bodies(scene, event))
-      volumes.push_back(shape_volume(body.shape, scene.dimension).value_or(0.0));
+    for (const scene::BodySpec& body : scene::event_bodies(scene, event))
+      volumes.push_back(scene::shape_volume(body.shape, scene.dimension).value_or(0.0));
   }
   outline.particles_per_voxel = scene.seeding.particles_per_voxel;
   outline.height = height_of(scene);
-  const std::vector<ObstacleSpec> obstacles = assemble_obstacles(scene);
-  outline.conditions.resize(std::size(EnumNames<Condition>::list));
-  for (const ObstacleSpec& o : obstacles) {
+  const std::vector<scene::ObstacleSpec> obstacles = scene::obstacle_specs(scene);
+  outline.conditions.resize(std::size(methods::EnumNames<methods::Condition>::list));
+  for (const scene::ObstacleSpec& o : obstacles) {
     outline.conditions[std::size_t(o.condition)] = true;
     outline.has_moving_obstacle = outline.has_moving_obstacle || o.motion.has_value();
   }
@@ -95,14 +98,14 @@ SceneOutline outline_of(const Scene& scene) {
   return outline;
 }
 
-CostEstimate estimate_cost(const Scene& given) {
-  const Scene scene = resolve(given);
-  const SceneOutline outline = outline_of(scene);
+methods::CostEstimate estimate_cost(const scene::Scene& given) {
+  const scene::Scene scene = scene::resolve(given);
+  const methods::SceneOutline outline = outline_of(scene);
   return estimate(scene, outline, count_particles(scene, outline));
 }
 
-CostEstimate estimate_cost(const Scene& given, std::vector<double> particles) {
-  const Scene scene = resolve(given);
+methods::CostEstimate estimate_cost(const scene::Scene& given, std::vector<double> particles) {
+  const scene::Scene scene = scene::resolve(given);
   return estimate(scene, outline_of(scene), std::move(particles));
 }
 
@@ -112,7 +115,7 @@ void check_memory(double bytes, double available) {
                               gigabytes(available) + "; give fewer particles or a larger dx");
 }
 
-void check_duration(const Scene& scene, const CostEstimate& cost) {
+void check_duration(const scene::Scene& scene, const methods::CostEstimate& cost) {
   constexpr double max_steps = 1e12, max_records = 1e6;
   const double steps = cost.event_time / cost.time_step;
   if (!(steps <= max_steps))
@@ -123,9 +126,9 @@ void check_duration(const Scene& scene, const CostEstimate& cost) {
   const auto check_interval = [&](const double& interval) {
     const double records = cost.event_time * scene.events.count / interval;
     if (interval > 0 && !(records <= max_records))
-      throw InputError(path_of(scene, interval), show(interval) + " s makes " +
-                                                     show_rounded(records) +
-                                                     " records; at most 1e6 are allowed");
+      throw InputError(scene::path_of(scene, interval), show(interval) + " s makes " +
+                                                            show_rounded(records) +
+                                                            " records; at most 1e6 are allowed");
   };
   check_interval(scene.output.snapshot_interval);
   check_interval(scene.output.film_interval);
@@ -135,4 +138,4 @@ void check_memory(double bytes) {
   check_memory(bytes, static_cast<double>(physical_memory_bytes()));
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::run

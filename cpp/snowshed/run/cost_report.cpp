@@ -9,7 +9,7 @@
 #include "snowshed/run/simulation.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
-namespace snowshed {
+namespace snowshed::run {
 namespace {
 
 constexpr double measured_particles = 50000;
@@ -18,7 +18,7 @@ constexpr double measured_particles = 50000;
 /// factor, because its snow yields and spreads (2D 1.3, 3D 1.4).
 constexpr double broken_snow_factor = 1.35;
 
-double speed_of(const Scene& scene, const std::filesystem::path& base_dir) {
+double speed_of(const scene::Scene& scene, const std::filesystem::path& base_dir) {
   Simulation sim(scene, base_dir);
   sim.begin_event();
   const Stopwatch clock;
@@ -26,15 +26,15 @@ double speed_of(const Scene& scene, const std::filesystem::path& base_dir) {
   return double(sim.method().counters().particle_updates) / clock.seconds();
 }
 
-/// Particle updates per second on this machine. They are measured on the scene with fewer particles
-/// that are seeded fast, or on the scene itself if its bodies are too small for these.
-double measured_speed(const Scene& scene, const std::filesystem::path& base_dir,
-                      const CostEstimate& cost) {
+/// Particle updates per second on this machine, measured on a copy of the scene with fewer
+/// particles that are seeded fast, or on the scene itself if its bodies are too small for these.
+double measured_speed(const scene::Scene& scene, const std::filesystem::path& base_dir,
+                      const methods::CostEstimate& cost) {
   const double n = cost.particles.empty() ? 0.0 : cost.particles.front();
-  Scene faster = scene;
+  scene::Scene faster = scene;
   if (n > measured_particles)
     faster.numerics->coarsen(std::pow(n / measured_particles, 1.0 / scene.dimension));
-  faster.seeding.pattern = SeedPattern::jittered;
+  faster.seeding.pattern = sampling::SeedPattern::jittered;
   try {
     return speed_of(faster, base_dir);
   } catch (const InputError&) {
@@ -43,20 +43,21 @@ double measured_speed(const Scene& scene, const std::filesystem::path& base_dir,
 }
 
 /// Number of updates of unbroken snow that take as long as the updates of an event.
-double work_of(const CostEstimate& cost) {
+double work_of(const methods::CostEstimate& cost) {
   return std::max(broken_snow_factor, cost.scattering) * cost.updates;
 }
 
 }  // namespace
 
-double expected_work(const Scene& scene, const std::filesystem::path& base_dir) {
+double expected_work(const scene::Scene& scene, const std::filesystem::path& base_dir) {
   return work_of(Simulation(scene, base_dir).cost());
 }
 
-CostReport report_cost(const Scene& given, const std::filesystem::path& base_dir) {
-  const Scene scene = resolve(given);
+CostReport report_cost(const scene::Scene& given, const std::filesystem::path& base_dir) {
+  const scene::Scene scene = scene::resolve(given);
   CostReport report;
-  for (const Feature& feature : scene.numerics->features(view_of(scene), outline_of(scene)))
+  for (const methods::Feature& feature :
+       scene.numerics->features(scene::view_of(scene), outline_of(scene)))
     (feature.used ? report.used : report.left_out).push_back(feature.name);
   const Simulation sim(scene, base_dir);
   report.cost = sim.cost();
@@ -67,4 +68,4 @@ CostReport report_cost(const Scene& given, const std::filesystem::path& base_dir
   return report;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::run

@@ -7,11 +7,11 @@
 
 #include "snowshed/run/cost_estimate.hpp"
 
-namespace snowshed {
+namespace snowshed::run {
 
 struct CostReport {
   std::vector<std::string> used, left_out;  // names of features
-  CostEstimate cost;
+  methods::CostEstimate cost;
   double updates_per_s = 0;  // particle updates, measured here and now on a small copy
   double wall_time = 0;      // s, expected
   int threads = 0;
@@ -20,10 +20,10 @@ struct CostReport {
 
 /// Expected work of a run in particle updates of unbroken snow; updates of spread and yielding snow
 /// count more. Nothing is measured. Throws InputError as a run would.
-double expected_work(const Scene& scene, const std::filesystem::path& base_dir = ".");
+double expected_work(const scene::Scene& scene, const std::filesystem::path& base_dir = ".");
 
 /// Reports the cost; throws InputError as a run would. It takes a fraction of a second: the speed
 /// is measured on the scene itself, coarsened to at most 50 000 particles.
-CostReport report_cost(const Scene& scene, const std::filesystem::path& base_dir = ".");
+CostReport report_cost(const scene::Scene& scene, const std::filesystem::path& base_dir = ".");
 
-}  // namespace snowshed
+}  // namespace snowshed::run

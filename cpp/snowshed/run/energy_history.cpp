@@ -7,7 +7,7 @@
 #include "snowshed/methods/capabilities.hpp"
 #include "snowshed/run/record_times.hpp"
 
-namespace snowshed {
+namespace snowshed::run {
 namespace {
 
 constexpr double never = -std::numeric_limits<double>::infinity();
@@ -31,24 +31,24 @@ double EnergyHistory::next_time(int event) const {
   return next_record_time(time_of(first), last_time(event), rows() - first, interval_);
 }
 
-void EnergyHistory::record(const Method& method, int event) {
+void EnergyHistory::record(const methods::Method& method, int event) {
   if (method.time() >= next_time(event)) add_row(method, event);
 }
 
-void EnergyHistory::record_end(const Method& method, int event) {
+void EnergyHistory::record_end(const methods::Method& method, int event) {
   if (last_time(event) < method.time()) add_row(method, event);
 }
 
-void EnergyHistory::add_row(const Method& method, int event) {
+void EnergyHistory::add_row(const methods::Method& method, int event) {
   std::vector<double> row{double(event), method.time()};
-  for (const auto& energy : capability<KeepsEnergy>(method)->energies())
+  for (const auto& energy : methods::capability<methods::KeepsEnergy>(method)->energies())
     row.push_back(energy.second);
   values_.insert(values_.end(), row.begin(), row.end());
 }
 
-void EnergyHistory::save(BinaryWriter& out) const { out.add("energy_history", values_); }
+void EnergyHistory::save(io::BinaryWriter& out) const { out.add("energy_history", values_); }
 
-void EnergyHistory::load(const BinaryReader& in) {
+void EnergyHistory::load(const io::BinaryReader& in) {
   values_.clear();
   if (!in.has("energy_history")) return;
   const auto values = in.view<double>("energy_history");
@@ -57,4 +57,4 @@ void EnergyHistory::load(const BinaryReader& in) {
   values_.assign(values.begin(), values.end());
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::run

@@ -8,9 +8,9 @@
 
 namespace fs = std::filesystem;
 
-namespace snowshed {
+namespace snowshed::run {
 
-EventSequence EventSequence::create(const Scene& scene, const fs::path& base_dir,
+EventSequence EventSequence::create(const scene::Scene& scene, const fs::path& base_dir,
                                     const fs::path& folder, const StopRequest& stop) {
   ResultsFolder::require_empty(folder);
   auto sim = std::make_unique<Simulation>(scene, base_dir);
@@ -19,7 +19,7 @@ EventSequence EventSequence::create(const Scene& scene, const fs::path& base_dir
   return {std::move(sim), std::move(results), {}};
 }
 
-EventSequence EventSequence::resume(const Scene& scene, const fs::path& base_dir,
+EventSequence EventSequence::resume(const scene::Scene& scene, const fs::path& base_dir,
                                     const fs::path& folder) {
   ResultsFolder results = ResultsFolder::reopen(folder, scene);
   RunRecord record = RunRecord::read(results.record(), scene.numerics->info().energies);
@@ -38,14 +38,14 @@ EventSequence::EventSequence(std::unique_ptr<Simulation> sim, ResultsFolder fold
       steps_before_(0),
       wall_before_(0),
       earlier_wall_(record_.wall) {
-  for (const EventRecord& record : record_.finished) {
+  for (const EventRecord& record : record_.finished_events) {
     steps_before_ += record.steps;
     wall_before_ += record.wall;
   }
   const int finished_events = sim_->event() - int(sim_->event_running());
   // Folders of the previous version have no such record.
-  if (int(record_.finished.size()) < finished_events)
-    count_from(sim_->method().counters().steps, earlier_wall_);
+  if (int(record_.finished_events.size()) < finished_events)
+    set_finished_work(sim_->method().counters().steps, earlier_wall_);
 }
 
 bool EventSequence::is_done() const {
@@ -117,14 +117,15 @@ void EventSequence::end_event(EventObserver& observer, RunEnd end) {
   record.wall = std::max(wall() - wall_before_, 0.0);
   record.ended = end;
   record.laid_height = sim_->laid_height();
-  const Scene& scene = sim_->scene();
+  const scene::Scene& scene = sim_->scene();
   record.damping_rate = scene.numerics->damping_rate(record.steps, record.sim_time);
-  if (scene.output.energy) record.energy = capability<KeepsEnergy>(sim_->method())->energies();
+  if (scene.output.energy)
+    record.energy = methods::capability<methods::KeepsEnergy>(sim_->method())->energies();
   folder_.write_particles(*sim_);
   observer.event_ended(*sim_, record);
   steps_before_ += record.steps;
   wall_before_ += record.wall;
-  record_.finished.push_back(std::move(record));
+  record_.finished_events.push_back(std::move(record));
   checkpoint(observer, RunStatus::running);
 }
 
@@ -142,15 +143,6 @@ void EventSequence::write_record(RunStatus status, const std::string& error) {
   status_ = status;
 }
 
-void EventSequence::rewrite_record() {
-  if (status_) record_.write(folder_.record(), *sim_, *status_);
-}
-
-void EventSequence::give_up_files() {
-  record_.check_files(folder_.path());
-  if (!is_done()) record_.files.clear();
-}
-
 /// Between two events the last checkpoint has the same snow, before it aged.
 void EventSequence::record_failure(const std::string& error) {
   try {
@@ -160,4 +152,4 @@ void EventSequence::record_failure(const std::string& error) {
   write_record(RunStatus::failed, error);
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::run

@@ -12,7 +12,7 @@
 #include "snowshed/run/run_record.hpp"
 #include "snowshed/run/simulation.hpp"
 
-namespace snowshed {
+namespace snowshed::run {
 
 /// Observer of a sequence of events.
 class EventObserver {
@@ -23,13 +23,12 @@ class EventObserver {
   virtual void between_events(Simulation&) {}
   /// Called when an event has begun or resumes; `reseeding` is the change of the stack before it.
   virtual void event_begun(const Simulation&, const std::optional<Reseeding>& /*reseeding*/) {}
-  /// Called with a note, a sentence for readers of the results on the snow that was just laid;
-  /// run.json will contain it.
+  /// Called with a note on the snow that was just laid: a sentence that run.json will contain.
   virtual void noted(const std::string& /*note*/) {}
   virtual void progress(const Simulation&, const RunReport&) {}
   /// Called when an event has ended and its particles are in the folder, before its checkpoint.
   virtual void event_ended(const Simulation&, const EventRecord&) {}
-  /// Called before a checkpoint is written; records that must be as new as it are saved now.
+  /// Called before a checkpoint is written; records that must match it are saved now.
   virtual void before_checkpoint(const Simulation&) {}
   /// Called at every report, between events and while snow is seeded; true interrupts the sequence.
   virtual bool stop_requested() { return false; }
@@ -39,44 +38,41 @@ class EventSequence {
  public:
   /// Begins a run in a folder that is new or empty. The first snow is laid before anything is
   /// written. Throws InputError, and Stopped on request.
-  static EventSequence create(const Scene& scene, const std::filesystem::path& base_dir,
+  static EventSequence create(const scene::Scene& scene, const std::filesystem::path& base_dir,
                               const std::filesystem::path& folder, const StopRequest& stop = {});
 
-  /// Continues from the last checkpoint in the folder of an earlier run of the same scene, by any
-  /// program, or begins if there is no checkpoint yet. Throws InputError.
-  static EventSequence resume(const Scene& scene, const std::filesystem::path& base_dir,
+  /// Continues an earlier run of the same scene, by any program, from the last checkpoint in its
+  /// folder; without a checkpoint the run begins again. Throws InputError.
+  static EventSequence resume(const scene::Scene& scene, const std::filesystem::path& base_dir,
                               const std::filesystem::path& folder);
 
   /// Runs the remaining events, with a report every `report_interval` seconds of wall time.
   /// Checkpoints are written at the scene's output.checkpoint_interval and after each event.
-  /// Returns false if the observer stopped the run, which writes a checkpoint first, except during
+  /// Returns false if the observer stopped the run. A checkpoint is written first, except during
   /// seeding, because the last checkpoint has the same snow. Exceptions of the simulation or the
   /// observer pass through.
   bool run(EventObserver&, double report_interval);
 
-  /// Throws InputError if a file that Python wrote has been changed. Otherwise, unless all events
-  /// are done, removes these files from the record, for callers that do not update them.
-  void give_up_files();
-
-  /// Writes run.json again, with the present progress and all changes of `record`.
-  void rewrite_record();
-
-  /// Records in the folder that the run cannot go on, with a checkpoint of its last good state.
+  /// Records in run.json that the run cannot continue. During an event, a checkpoint keeps the last
+  /// sound state.
   void record_failure(const std::string& error);
 
-  /// Steps and wall time (s) of the finished events, if run.json does not have them.
-  void count_from(std::int64_t steps, double wall) { steps_before_ = steps, wall_before_ = wall; }
-
-  /// Releases the folder to another run; this one must not run any more.
+  /// Releases the folder to another run. This sequence must not run afterwards.
   void close() { folder_.unlock(); }
 
   Simulation& simulation() { return *sim_; }
   const RunRecord& record() const { return record_; }
-  RunRecord& record() { return record_; }
 
  private:
+  friend class ExternalRecord;
+
   EventSequence(std::unique_ptr<Simulation>, ResultsFolder, RunRecord);
 
+  /// Sets the steps and the wall time (s) of the finished events.
+  void set_finished_work(std::int64_t steps, double wall) {
+    steps_before_ = steps;
+    wall_before_ = wall;
+  }
   bool is_done() const;
   void begin_event(EventObserver&);
   void report_notes(EventObserver&);
@@ -96,4 +92,4 @@ class EventSequence {
   Stopwatch clock_, since_checkpoint_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::run

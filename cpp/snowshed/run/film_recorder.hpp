@@ -8,7 +8,7 @@
 #include "snowshed/methods/method.hpp"
 #include "snowshed/run/cost_estimate.hpp"
 
-namespace snowshed {
+namespace snowshed::run {
 
 /// Progress of a run.
 struct RunPosition {
@@ -20,7 +20,8 @@ struct RunPosition {
 /// Chooses the contents of a run's film. At most about `max_particles` particles are recorded,
 /// chosen by their ids, at the `record_interval`. Positions are accurate to a 16th of the
 /// resolution (with radii: to a 128th of the smallest radius), and at least to half a millimetre.
-FilmHeader film_header(const Scene&, const Method&, const CostEstimate&);
+io::FilmHeader film_header(const scene::Scene&, const methods::Method&,
+                           const methods::CostEstimate&);
 
 class FilmRecorder {
  public:
@@ -29,23 +30,23 @@ class FilmRecorder {
   /// Begins a film, or continues after the frames that a run had recorded up to `position`, so that
   /// a resumed run makes the same film. `mark` identifies the film at that time, if it is known.
   /// Throws InputError if the film is damaged.
-  FilmRecorder(const std::filesystem::path& file, const FilmHeader& header,
-               const RunPosition& position, const std::optional<FilmMark>& mark);
+  FilmRecorder(const std::filesystem::path& file, const io::FilmHeader& header,
+               const RunPosition& position, const std::optional<io::FilmMark>& mark);
 
   /// Whether the first frame of an event is missing, or the next one's time has come.
   bool due(const RunPosition&) const;
-  void record(const Method&, int event);
+  void record(const methods::Method&, int event);
   /// Records the last frame of an event, unless it has been recorded.
-  void record_end(const Method&, int event);
+  void record_end(const methods::Method&, int event);
   /// Marks the film as complete: no frame will follow.
   void close() { film_.close(); }
-  FilmMark mark() const { return film_.mark(); }
+  io::FilmMark mark() const { return film_.mark(); }
 
  private:
   bool begun(int event) const;
   double next_time() const;
 
-  FilmWriter film_;
+  io::FilmWriter film_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::run

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
-namespace snowshed {
+namespace snowshed::run {
 
-PanelRegion::PanelRegion(const Scene& scene)
+PanelRegion::PanelRegion(const scene::Scene& scene)
     : dimension_(scene.dimension), dx_(scene.numerics->resolution()) {
-  if (scene.panel) frame_ = panel_frame(scene);
+  if (scene.panel) frame_ = scene::panel_frame(scene);
 }
 
 bool PanelRegion::is_over(const Vec3& point) const {
@@ -40,7 +40,8 @@ double PanelRegion::height_of(const std::vector<Vec3>& positions) const {
   return std::max(0.0, high - low);
 }
 
-PanelRegion::Layer PanelRegion::snow_on(const ParticleState& particles, double laid_height) const {
+PanelRegion::Layer PanelRegion::snow_on(const methods::ParticleState& particles,
+                                        double laid_height) const {
   const std::vector<bool> over_panel = contains(particles.positions, laid_height);
   Layer layer;
   for (std::size_t i = 0; i < over_panel.size(); ++i) {
@@ -51,4 +52,4 @@ PanelRegion::Layer PanelRegion::snow_on(const ParticleState& particles, double l
   return layer;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::run

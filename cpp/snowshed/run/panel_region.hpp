@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "snowshed/methods/method.hpp"
-#include "snowshed/scene/assemble.hpp"
+#include "snowshed/scene/panel_frame.hpp"
 
-namespace snowshed {
+namespace snowshed::run {
 
 /// The region over the panel; it is empty if the scene has no panel.
 class PanelRegion {
  public:
-  explicit PanelRegion(const Scene& scene);
+  explicit PanelRegion(const scene::Scene& scene);
 
   /// Returns for each position whether snow there lies on the panel. `laid_height` (m) is the
   /// height that all snow laid so far would have there.
@@ -27,15 +27,15 @@ class PanelRegion {
     double mass = 0;  // kg
     double top = 0;   // m above the face
   };
-  Layer snow_on(const ParticleState& particles, double laid_height) const;
+  Layer snow_on(const methods::ParticleState& particles, double laid_height) const;
 
  private:
   double above(const Vec3& point) const { return frame_->normal.dot(point - frame_->center); }
   bool is_over(const Vec3& point) const;  ///< above or below the face, along its normal
 
-  std::optional<PanelFrame> frame_;
+  std::optional<scene::PanelFrame> frame_;
   int dimension_;
   double dx_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::run

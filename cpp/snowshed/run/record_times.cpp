@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace snowshed {
+namespace snowshed::run {
 namespace {
 
 constexpr double records_of_all_events = 400;
@@ -13,7 +13,7 @@ constexpr std::size_t records_before_longer = 240;
 
 }  // namespace
 
-double record_interval(const Scene& scene, const CostEstimate& cost) {
+double record_interval(const scene::Scene& scene, const methods::CostEstimate& cost) {
   if (scene.output.film_interval > 0) return scene.output.film_interval;
   const double records =
       std::clamp(records_of_all_events / scene.events.count, min_records, max_records);
@@ -26,4 +26,4 @@ double next_record_time(double first, double last, std::size_t count, double int
   return first + (std::floor(passed + 1e-9) + 1) * longer;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::run

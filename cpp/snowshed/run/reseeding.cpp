@@ -9,14 +9,15 @@
 #include "snowshed/particles/point_grid.hpp"
 #include "snowshed/sampling/particle_voxels.hpp"
 #include "snowshed/sampling/seeding.hpp"
+#include "snowshed/scene/distinct_snows.hpp"
 
-namespace snowshed {
+namespace snowshed::run {
 namespace {
 
 /// The particle nearest to each point; each point must be within `reach` of one.
 std::vector<std::size_t> nearest_particles(const std::vector<Vec3>& points,
                                            const std::vector<Vec3>& particles, double reach) {
-  const PointGrid grid(particles, reach);
+  const particles::PointGrid grid(particles, reach);
   std::vector<std::size_t> nearest_of;
   for (const Vec3& x : points) {
     std::size_t at = particles.size() - 1;
@@ -32,15 +33,15 @@ std::vector<std::size_t> nearest_particles(const std::vector<Vec3>& points,
   return nearest_of;
 }
 
-int material_id_of(const ParticleState& particles, std::size_t i) {
+int material_id_of(const methods::ParticleState& particles, std::size_t i) {
   return particles.material_ids.empty() ? 0 : particles.material_ids[i];
 }
 
 /// Distributes the mass of old particles over the new ones that replace them (`old_of`): each snow
 /// keeps its mass, in equal parts. The mass of a snow without new particles goes to all new
 /// particles.
-std::vector<double> share_masses(const ParticleState& old, const std::vector<std::size_t>& old_of,
-                                 std::size_t snows) {
+std::vector<double> share_masses(const methods::ParticleState& old,
+                                 const std::vector<std::size_t>& old_of, std::size_t snows) {
   std::vector<double> mass(snows), count(snows);
   for (std::size_t i = 0; i < old.masses.size(); ++i) mass[material_id_of(old, i)] += old.masses[i];
   for (const std::size_t i : old_of) ++count[material_id_of(old, i)];
@@ -55,38 +56,41 @@ std::vector<double> share_masses(const ParticleState& old, const std::vector<std
 }
 
 /// Points that fill the stack as a solid.
-std::vector<Vec3> fill_stack(const Scene& scene, const std::vector<Vec3>& stack, int event,
+std::vector<Vec3> fill_stack(const scene::Scene& scene, const std::vector<Vec3>& stack, int event,
                              const StopRequest& stop) {
-  const Seeding& s = scene.seeding;
+  const methods::Seeding& s = scene.seeding;
   const double dx = scene.numerics->resolution();
-  const Shape solid = particles_to_level_set(
-      stack, scene.dimension, dx, particle_radius(scene.dimension, dx, s.particles_per_voxel));
-  return seed(*solid, scene.dimension, dx, s.particles_per_voxel, s.pattern,
-              s.seed + 1000003u * std::uint64_t(event) + 500000u, stop);
+  const geometry::Shape solid = sampling::particles_to_level_set(
+      stack, scene.dimension, dx,
+      sampling::particle_radius(scene.dimension, dx, s.particles_per_voxel));
+  return sampling::seed(*solid, scene.dimension, dx, s.particles_per_voxel, s.pattern,
+                        s.seed + 1000003u * std::uint64_t(event) + 500000u, stop);
 }
 
-/// The new particles by event and snow, which are those of the old particles that they replace.
-std::vector<ParticleBatch> batches_of(const Reseeding::Cloud& cloud, const ParticleState& old,
-                                      const std::vector<std::size_t>& old_of) {
-  std::map<std::pair<int, int>, ParticleBatch> sorted;
+/// The new particles in batches by event and snow, which are those of the particles they replace.
+std::vector<methods::ParticleBatch> batches_of(const Reseeding::Cloud& cloud,
+                                               const methods::ParticleState& old,
+                                               const std::vector<std::size_t>& old_of) {
+  std::map<std::pair<int, int>, methods::ParticleBatch> sorted;
   for (std::size_t i = 0; i < old_of.size(); ++i) {
     const int event = old.events[old_of[i]], material_id = material_id_of(old, old_of[i]);
-    ParticleBatch& batch = sorted[{event, material_id}];
+    methods::ParticleBatch& batch = sorted[{event, material_id}];
     batch.positions.push_back(cloud.positions[i]);
     batch.mass = cloud.masses[i];
     batch.event = event;
     batch.material_id = material_id;
   }
-  std::vector<ParticleBatch> batches;
+  std::vector<methods::ParticleBatch> batches;
   for (auto& [_, batch] : sorted) batches.push_back(std::move(batch));
   return batches;
 }
 
 }  // namespace
 
-Reseeding reseed_stack(const Scene& scene, const PanelRegion& panel, ParticleState old, int event,
-                       double laid_height, const StopRequest& stop) try {
-  const std::vector<Snow> snows = assemble_snows(scene);
+Reseeding reseed_stack(const scene::Scene& scene, const PanelRegion& panel,
+                       methods::ParticleState old, int event, double laid_height,
+                       const StopRequest& stop) try {
+  const std::vector<material::Snow> snows = scene::distinct_snows(scene);
   const auto initial_density = [&](std::size_t i) {
     return snows[std::size_t(material_id_of(old, i))].density;
   };
@@ -109,4 +113,4 @@ Reseeding reseed_stack(const Scene& scene, const PanelRegion& panel, ParticleSta
   throw SimulationError(std::string("cannot reseed the stack: ") + error.what());
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::run

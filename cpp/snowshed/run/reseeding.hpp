@@ -9,7 +9,7 @@
 #include "snowshed/run/panel_region.hpp"
 #include "snowshed/scene/scene.hpp"
 
-namespace snowshed {
+namespace snowshed::run {
 
 /// The stack before and after reseeding.
 struct Reseeding {
@@ -20,7 +20,7 @@ struct Reseeding {
     std::vector<bool> on_panel;
   };
   Cloud before, after;
-  std::vector<ParticleBatch> batches;  // the particles after, by event and snow
+  std::vector<methods::ParticleBatch> batches;  // the particles after, by event and snow
 };
 
 /// Reseeds the stack `old` before the event that follows `event`: at rest, in its initial
@@ -28,7 +28,8 @@ struct Reseeding {
 /// and each snow keeps its mass. The snow that stayed on the panel is converted along with it, so
 /// nothing is lost. Throws SimulationError if the stack cannot be converted, and Stopped on
 /// request.
-Reseeding reseed_stack(const Scene& scene, const PanelRegion& panel, ParticleState old, int event,
-                       double laid_height, const StopRequest& stop = {});
+Reseeding reseed_stack(const scene::Scene& scene, const PanelRegion& panel,
+                       methods::ParticleState old, int event, double laid_height,
+                       const StopRequest& stop = {});
 
-}  // namespace snowshed
+}  // namespace snowshed::run

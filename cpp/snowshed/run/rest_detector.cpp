@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace snowshed {
+namespace snowshed::run {
 
 bool RestDetector::at_rest(double time, double speed) {
   next_ = time + 0.1 * duration_;
@@ -17,4 +17,4 @@ bool RestDetector::at_rest(double time, double speed) {
   return time - since_ >= duration_;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::run

@@ -1,7 +1,7 @@
 // Decides when snow is at rest.
 #pragma once
 
-namespace snowshed {
+namespace snowshed::run {
 
 /// The snow rests when its speed has stayed below `rest_speed` for `rest_time` seconds and has not
 /// grown during this time, because snow that starts to move is slow, too. The speed is the root of
@@ -16,10 +16,10 @@ class RestDetector {
   /// Returns whether the detector needs the speed again.
   bool due(double time) const { return time >= next_; }
 
-  /// Tells the detector the speed (m/s) at a time (s); returns whether the snow rests.
+  /// Records the speed (m/s) at a time (s); returns whether the snow rests.
   bool at_rest(double time, double speed);
 
-  /// The speed that the detector got last, m/s.
+  /// The speed that was recorded last, m/s.
   double speed() const { return speed_; }
 
   /// State for checkpoints.
@@ -38,4 +38,4 @@ class RestDetector {
   double speed_ = 0, next_ = 0;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::run

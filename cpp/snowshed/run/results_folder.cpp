@@ -15,14 +15,15 @@
 
 namespace fs = std::filesystem;
 
-namespace snowshed {
+namespace snowshed::run {
 namespace {
 
 /// The JSON paths at which two scenes differ, "/panel/tilt, /snow/density". The number of threads
 /// does not change the results of a scene.
-std::string differences(const Scene& one, const Scene& other) {
-  const auto json_of = [](const Scene& s) {
-    return parse_json(write_scene(resolve(with_threads(s, 0))), "scene");
+std::string differences(const scene::Scene& one, const scene::Scene& other) {
+  const auto json_of = [](const scene::Scene& s) {
+    return scene::parse_json(scene::write_scene(scene::resolve(scene::with_threads(s, 0))),
+                             "scene");
   };
   std::set<std::string> paths;
   for (const auto& change : nlohmann::json::diff(json_of(one), json_of(other)))
@@ -32,7 +33,7 @@ std::string differences(const Scene& one, const Scene& other) {
   return list;
 }
 
-/// Refusals of the system become FileErrors, as everywhere.
+/// Turns errors of the file system into FileErrors.
 template <class Action>
 auto with_file_errors(Action action) {
   try {
@@ -54,27 +55,27 @@ void ResultsFolder::require_empty(const fs::path& folder) {
   if (!fs::is_directory(folder)) throw InputError(folder.string(), "is not a folder");
   const bool empty = with_file_errors([&] {
     const auto entries = fs::directory_iterator(folder);
-    return std::all_of(begin(entries), end(entries), is_leftover);
+    return std::all_of(begin(entries), end(entries), io::is_leftover);
   });
   if (!empty)
     throw InputError(folder.string(), "not empty; choose a new folder, or resume with --resume");
 }
 
-ResultsFolder ResultsFolder::create(fs::path folder, const Scene& scene) {
+ResultsFolder ResultsFolder::create(fs::path folder, const scene::Scene& scene) {
   require_empty(folder);
   make_folder(folder);
   ResultsFolder made(std::move(folder));
-  require_empty(made.folder_);  // another run may have been faster
-  write_atomic(made.folder_ / "scene.json", write_scene(scene));
+  require_empty(made.folder_);  // another run may have begun meanwhile
+  io::write_atomic(made.folder_ / "scene.json", write_scene(scene));
   return made;
 }
 
-ResultsFolder ResultsFolder::reopen(fs::path folder, const Scene& scene) {
+ResultsFolder ResultsFolder::reopen(fs::path folder, const scene::Scene& scene) {
   const fs::path file = folder / "scene.json";
   if (!with_file_errors([&] { return fs::is_regular_file(file); }))
     throw InputError(folder.string(),
                      "nothing to resume; it holds no scene.json (start without --resume)");
-  const std::string paths = differences(load_scene(file), scene);
+  const std::string paths = differences(scene::load_scene(file), scene);
   if (!paths.empty())
     throw InputError(folder.string(), "made by another scene, which differs in " + paths +
                                           "; resume with the scene.json in it");
@@ -82,13 +83,14 @@ ResultsFolder ResultsFolder::reopen(fs::path folder, const Scene& scene) {
 }
 
 ResultsFolder::ResultsFolder(fs::path folder) : folder_(std::move(folder)), lock_(folder_) {
-  remove_leftovers(folder_);
+  io::remove_leftovers(folder_);
   std::error_code failed;
   for (fs::directory_iterator at(folder_, failed), end; !failed && at != end; at.increment(failed))
-    if (at->symlink_status(failed).type() == fs::file_type::directory) remove_leftovers(at->path());
+    if (at->symlink_status(failed).type() == fs::file_type::directory)
+      io::remove_leftovers(at->path());
 }
 
-std::unique_ptr<Simulation> ResultsFolder::load_checkpoint(const Scene& scene) const {
+std::unique_ptr<Simulation> ResultsFolder::load_checkpoint(const scene::Scene& scene) const {
   auto sim = Simulation::load(checkpoint(), scene.numerics->threads());
   const std::string paths = differences(sim->scene(), scene);
   if (!paths.empty())
@@ -98,7 +100,7 @@ std::unique_ptr<Simulation> ResultsFolder::load_checkpoint(const Scene& scene) c
 }
 
 std::string ResultsFolder::scene_checksum() const {
-  return snowshed::scene_checksum(read_bytes(folder_ / "scene.json"));
+  return snowshed::scene::scene_checksum(io::read_bytes(folder_ / "scene.json"));
 }
 
 void ResultsFolder::write_particles(const Simulation& sim) const {
@@ -106,7 +108,7 @@ void ResultsFolder::write_particles(const Simulation& sim) const {
   std::snprintf(name, sizeof name, "particles/event_%03d.vtp", sim.event());
   make_folder(folder_ / "particles");
   sim.write_vtp(folder_ / name);
-  PvdSeries::reopen(folder_ / "particles.pvd", sim.event()).append(sim.event(), name);
+  io::PvdSeries::reopen(folder_ / "particles.pvd", sim.event()).append(sim.event(), name);
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::run

@@ -7,7 +7,7 @@
 #include "snowshed/io/folder_lock.hpp"
 #include "snowshed/run/simulation.hpp"
 
-namespace snowshed {
+namespace snowshed::run {
 
 /// Holds scene.json, run.json (`RunRecord`), checkpoint.bin, particles/event_NNN.vtp,
 /// particles.pvd, film.bin and snapshots/. It is locked: no other run writes into it meanwhile.
@@ -15,10 +15,10 @@ namespace snowshed {
 class ResultsFolder {
  public:
   /// Makes the folder for a scene. Throws InputError if it holds anything.
-  static ResultsFolder create(std::filesystem::path folder, const Scene& scene);
+  static ResultsFolder create(std::filesystem::path folder, const scene::Scene& scene);
 
   /// Opens the folder of an earlier run of the same scene. Throws InputError if it is not one.
-  static ResultsFolder reopen(std::filesystem::path folder, const Scene& scene);
+  static ResultsFolder reopen(std::filesystem::path folder, const scene::Scene& scene);
 
   /// Throws InputError unless `folder` is new or empty; remains of a killed run do not count.
   static void require_empty(const std::filesystem::path& folder);
@@ -30,7 +30,7 @@ class ResultsFolder {
   std::filesystem::path snapshots() const { return folder_ / "snapshots"; }
 
   /// Reads the checkpoint. Throws InputError if it is damaged, or of another scene.
-  std::unique_ptr<Simulation> load_checkpoint(const Scene&) const;
+  std::unique_ptr<Simulation> load_checkpoint(const scene::Scene&) const;
 
   /// The checksum of its scene.json.
   std::string scene_checksum() const;
@@ -45,7 +45,7 @@ class ResultsFolder {
   explicit ResultsFolder(std::filesystem::path folder);
 
   std::filesystem::path folder_;
-  FolderLock lock_;
+  io::FolderLock lock_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::run

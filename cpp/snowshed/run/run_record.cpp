@@ -10,6 +10,7 @@
 #include "snowshed/core/kernel_variant.hpp"
 #include "snowshed/core/memory.hpp"
 #include "snowshed/core/message_format.hpp"
+#include "snowshed/core/version.hpp"
 #include "snowshed/io/atomic_file.hpp"
 #include "snowshed/io/checksum.hpp"
 #include "snowshed/io/file_bytes.hpp"
@@ -17,7 +18,7 @@
 #include "snowshed/scene/json_text.hpp"
 #include "snowshed/scene/json_value.hpp"
 
-namespace snowshed {
+namespace snowshed::run {
 namespace {
 
 using nlohmann::json;
@@ -37,9 +38,9 @@ ordered_json to_json(const EventRecord& record) {
   return j;
 }
 
-/// The value of a key that must be there.
+/// The value of a required key.
 const json& require(const json& object, const char* key, const std::string& path) {
-  if (!object.is_object()) throw wrong_type(path, object, "an object");
+  if (!object.is_object()) throw scene::wrong_type(path, object, "an object");
   if (!object.contains(key)) throw InputError(path, std::string("has no ") + key);
   return object[key];
 }
@@ -54,60 +55,63 @@ RunEnd run_end(const std::string& name, const std::string& path) {
 EventRecord event_record(const json& j, const std::vector<std::string>& energies,
                          const std::string& path) {
   const auto number = [&](const char* key) {
-    return to_number(require(j, key, path), path + "/" + key, "a number");
+    return scene::to_number(require(j, key, path), path + "/" + key, "a number");
   };
   EventRecord record;
   record.event = int(std::clamp(number("event"), 0.0, 1e9));
   record.sim_time = number("sim_time_s");
   record.steps = std::int64_t(std::clamp(number("steps"), 0.0, 1e18));
   record.wall = number("wall_s");
-  record.ended = run_end(to_text(require(j, "ended", path), path + "/ended"), path + "/ended");
+  record.ended =
+      run_end(scene::to_text(require(j, "ended", path), path + "/ended"), path + "/ended");
   record.laid_height = number("laid_height_m");
   const char* const damping = "damping_rate_per_s";
   if (j.contains(damping) && !j[damping].is_null()) record.damping_rate = number(damping);
   if (!j.contains("energy")) return record;
   for (const std::string& name : energies)
-    record.energy.emplace_back(name, to_number(require(j["energy"], name.c_str(), path + "/energy"),
-                                               path + "/energy/" + name, "a number"));
+    record.energy.emplace_back(
+        name, scene::to_number(require(j["energy"], name.c_str(), path + "/energy"),
+                               path + "/energy/" + name, "a number"));
   return record;
 }
 
 /// Converts a method's section about a run.
-ordered_json to_json(const ReportsRun::Section& section) {
+ordered_json to_json(const methods::ReportsRun::Section& section) {
   ordered_json j = ordered_json::object();
   for (const auto& [name, value] : section.facts)
     std::visit([&, name = name](const auto& number) { j[name] = number; }, value);
   return j;
 }
 
-std::map<std::string, std::map<std::string, std::string>> table_checksums(const json& j) {
-  std::map<std::string, std::map<std::string, std::string>> tables;
-  if (!j.is_object()) throw wrong_type("/tables", j, "an object");
+RunRecord::Tables table_checksums(const json& j) {
+  RunRecord::Tables tables;
+  if (!j.is_object()) throw scene::wrong_type("/tables", j, "an object");
   for (const auto& [table, sums] : j.items()) {
-    if (!sums.is_object()) throw wrong_type(pointer("/tables", table), sums, "an object");
+    if (!sums.is_object()) throw scene::wrong_type(pointer("/tables", table), sums, "an object");
     for (const auto& [event, sum] : sums.items())
-      tables[table][event] = to_text(sum, pointer(pointer("/tables", table), event));
+      tables[table][event] = scene::to_text(sum, pointer(pointer("/tables", table), event));
   }
   return tables;
 }
 
-std::map<std::string, FileMark> file_marks(const json& j) {
-  if (!j.is_object()) throw wrong_type("/files", j, "an object");
-  std::map<std::string, FileMark> marks;
+RunRecord::Files file_marks(const json& j) {
+  if (!j.is_object()) throw scene::wrong_type("/files", j, "an object");
+  RunRecord::Files marks;
   for (const auto& [name, mark] : j.items()) {
     const std::string path = pointer("/files", name);
-    const double bytes = to_number(require(mark, "bytes", path), path + "/bytes", "a number");
+    const double bytes =
+        scene::to_number(require(mark, "bytes", path), path + "/bytes", "a number");
     marks[name] = {std::uint64_t(std::clamp(bytes, 0.0, 1e15)),
-                   to_text(require(mark, "checksum", path), path + "/checksum")};
+                   scene::to_text(require(mark, "checksum", path), path + "/checksum")};
   }
   return marks;
 }
 
 std::vector<std::string> note_list(const json& j) {
   std::vector<std::string> notes;
-  if (!j.is_array()) throw wrong_type("/notes", j, "an array");
+  if (!j.is_array()) throw scene::wrong_type("/notes", j, "an array");
   for (std::size_t i = 0; i < j.size(); ++i)
-    notes.push_back(to_text(j[i], "/notes/" + std::to_string(i)));
+    notes.push_back(scene::to_text(j[i], "/notes/" + std::to_string(i)));
   return notes;
 }
 
@@ -145,20 +149,20 @@ RunRecord RunRecord::read(const std::filesystem::path& file,
                           const std::vector<std::string>& energies) try {
   RunRecord record;
   if (!std::filesystem::is_regular_file(file)) return record;
-  const std::string text = read_bytes(file);
-  check_seal(text, "text");
-  const json j = parse_json(text, "text");
+  const std::string text = io::read_bytes(file);
+  scene::check_seal(text, "text");
+  const json j = scene::parse_json(text, "text");
   if (j.contains("files") && !j.contains("checksum"))
     throw InputError("text", "its checksum is missing");
-  record.wall = to_number(require(j, "wall_s", "/"), "/wall_s", "a number");
+  record.wall = scene::to_number(require(j, "wall_s", "/"), "/wall_s", "a number");
   if (j.contains("tables")) record.tables = table_checksums(j["tables"]);
   if (j.contains("files")) record.files = file_marks(j["files"]);
   if (j.contains("notes")) record.notes = note_list(j["notes"]);
-  if (!j.contains("finished_events")) return record;  // written by the version before
+  if (!j.contains("finished_events")) return record;  // written by an earlier version
   const json& events = j["finished_events"];
-  if (!events.is_array()) throw wrong_type("/finished_events", events, "an array");
+  if (!events.is_array()) throw scene::wrong_type("/finished_events", events, "an array");
   for (std::size_t i = 0; i < events.size(); ++i)
-    record.finished.push_back(
+    record.finished_events.push_back(
         event_record(events[i], energies, "/finished_events/" + std::to_string(i)));
   return record;
 } catch (const InputError& error) {
@@ -167,8 +171,8 @@ RunRecord RunRecord::read(const std::filesystem::path& file,
 
 void RunRecord::write(const std::filesystem::path& file, const Simulation& sim, RunStatus status,
                       const std::string& error) const {
-  const Method& method = sim.method();
-  const StepCounters& c = method.counters();
+  const methods::Method& method = sim.method();
+  const methods::StepCounters& c = method.counters();
   ordered_json j{{"version", SNOWSHED_VERSION}, {"kernels", kernel_variant_name()}};
   for (const auto& [key, fact] : machine) j[key] = fact;
   j["threads"] = sim.threads();
@@ -180,37 +184,37 @@ void RunRecord::write(const std::filesystem::path& file, const Simulation& sim, 
   j["rejected_steps"] = c.rejected;
   j["damping_rate_per_s"] = or_null(sim.damping_rate());
   j["particle_updates"] = c.particle_updates;
-  j["slept_updates"] = slept_updates(method);
+  j["slept_updates"] = methods::slept_updates(method);
   j["updates_per_s"] = wall > 0 ? double(c.particle_updates) / wall : 0.0;
   j["peak_memory_mb"] = double(peak_resident_bytes()) / 1e6;
   j["wall_s"] = wall;
-  if (const auto* reporting = capability<ReportsRun>(method)) {
-    const ReportsRun::Section section = reporting->run_section();
+  if (const auto* reporting = methods::capability<methods::ReportsRun>(method)) {
+    const methods::ReportsRun::Section section = reporting->run_section();
     j[section.name] = to_json(section);
   }
   j["notes"] = notes;
   j["finished_events"] = ordered_json::array();
-  for (const EventRecord& record : finished) j["finished_events"].push_back(to_json(record));
+  for (const EventRecord& record : finished_events) j["finished_events"].push_back(to_json(record));
   if (!tables.empty()) j["tables"] = tables;
   j["files"] = ordered_json::object();
   for (const auto& [name, mark] : files)
     j["files"][name] = {{"bytes", mark.bytes}, {"checksum", mark.checksum}};
   if (!scene.empty()) j["scene_checksum"] = scene;
   if (const auto film = sim.film_mark())
-    j["film"] = {{"frames", film->frames}, {"checksum", hexadecimal(film->checksum)}};
+    j["film"] = {{"frames", film->frames}, {"checksum", io::hexadecimal(film->checksum)}};
   j["status"] = name_of(status);
   if (!error.empty()) j["error"] = error;
-  write_atomic(file, sealed_text(j));
+  io::write_atomic(file, scene::sealed_text(j));
 }
 
 void RunRecord::check_files(const std::filesystem::path& folder) const {
   for (const auto& [name, mark] : files) {
     const std::filesystem::path file = folder / name;
     if (!std::filesystem::exists(file)) continue;
-    const std::string bytes = read_bytes(file);
-    Crc32 sum;
+    const std::string bytes = io::read_bytes(file);
+    io::Crc32 sum;
     sum.update(bytes.data(), std::min<std::size_t>(bytes.size(), mark.bytes));
-    if (bytes.size() < mark.bytes || hexadecimal(sum.value()) != mark.checksum)
+    if (bytes.size() < mark.bytes || io::hexadecimal(sum.value()) != mark.checksum)
       throw InputError(file.string(), "damaged: not as the run wrote it; restore it, or remove it");
   }
 }
@@ -223,7 +227,8 @@ bool RunRecord::add_note(const std::string& note) {
 
 void RunRecord::keep_through(int event) {
   const auto later = [event](const EventRecord& record) { return record.event > event; };
-  finished.erase(std::remove_if(finished.begin(), finished.end(), later), finished.end());
+  finished_events.erase(std::remove_if(finished_events.begin(), finished_events.end(), later),
+                        finished_events.end());
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::run

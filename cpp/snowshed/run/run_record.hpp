@@ -12,7 +12,7 @@
 
 #include "snowshed/run/simulation.hpp"
 
-namespace snowshed {
+namespace snowshed::run {
 
 /// Course of one event. With particles/event_NNN.vtp it suffices to measure the event.
 struct EventRecord {
@@ -52,6 +52,10 @@ std::string name_of(RunStatus);
 
 class RunRecord {
  public:
+  /// Checksums by table name and event number: of all rows up to that event.
+  using Tables = std::map<std::string, std::map<std::string, std::string>>;
+  using Files = std::map<std::string, FileMark>;  ///< by name
+
   /// Reads run.json; returns an empty record if the file is missing. Throws InputError if it is
   /// damaged. `energies` are the names of an event's energies, in order, if it has any.
   static RunRecord read(const std::filesystem::path& file,
@@ -70,15 +74,14 @@ class RunRecord {
   /// Adds a note for readers of the results, a sentence. Returns whether it is new.
   bool add_note(const std::string& note);
 
-  std::vector<EventRecord> finished;           // one per event
+  std::vector<EventRecord> finished_events;    // one per event
   std::vector<std::string> notes;              // in the order of their creation
   std::map<std::string, std::string> machine;  // further facts, by key
-  /// Checksums of the tables that Python keeps: by name, of the rows through an event.
-  std::map<std::string, std::map<std::string, std::string>> tables;
-  /// Other files that Python wrote into the folder, by name.
-  std::map<std::string, FileMark> files;
+  // Tables and other files that another program keeps in the folder, see ExternalRecord.
+  Tables tables;
+  Files files;
   std::string scene;  // the checksum of scene.json, see scene_checksum
-  double wall = 0;    // s, of the whole run so far
+  double wall = 0;    // s, of the run so far
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::run

@@ -13,49 +13,48 @@
 #include "snowshed/run/energy_history.hpp"
 #include "snowshed/run/film_recorder.hpp"
 #include "snowshed/run/record_times.hpp"
-#include "snowshed/run/shape_prints.hpp"
+#include "snowshed/run/shape_fingerprints.hpp"
 #include "snowshed/run/snapshot_series.hpp"
 #include "snowshed/run/snow_placement.hpp"
-#include "snowshed/scene/assemble.hpp"
 #include "snowshed/scene/build_obstacles.hpp"
 #include "snowshed/scene/build_surroundings.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
-namespace snowshed {
+namespace snowshed::run {
 namespace {
 
 /// The mean distance of particles as they are seeded, m.
-double particle_distance(const Scene& scene) {
+double particle_distance(const scene::Scene& scene) {
   const double per_voxel =
-      scene.numerics.takes(Part::seeding) ? scene.seeding.particles_per_voxel : 1;
+      scene.numerics.takes(methods::Part::seeding) ? scene.seeding.particles_per_voxel : 1;
   return scene.numerics->resolution() / std::pow(per_voxel, 1.0 / scene.dimension);
 }
 
 }  // namespace
 
-Simulation::Simulation(const Scene& scene, const std::filesystem::path& base_dir)
-    : scene_(resolve(scene)),
-      scene_text_(write_scene(scene_)),
+Simulation::Simulation(const scene::Scene& scene, const std::filesystem::path& base_dir)
+    : scene_(scene::resolve(scene)),
+      scene_text_(scene::write_scene(scene_)),
       base_dir_(base_dir),
       panel_(scene_),
       rest_(scene.events.rest_speed, scene.events.rest_time) {
-  const bool takes_bodies = scene_.numerics.takes(Part::bodies);
+  const bool takes_bodies = scene_.numerics.takes(methods::Part::bodies);
   if (takes_bodies) {  // from the scene, before anything is built
     cost_ = estimate_cost(scene_, count_particles(scene_, base_dir));
     check_cost();
   }
-  shape_prints_ = fingerprints_of_shapes(scene_, base_dir_);
-  surroundings_ = build_surroundings(scene_, base_dir_);
+  shape_fingerprints_ = shape_fingerprints(scene_, base_dir_);
+  surroundings_ = scene::build_surroundings(scene_, base_dir_);
   notes_ = surroundings_.notes;
-  listed_obstacles_ = listed_obstacles(scene_, surroundings_.obstacles);
-  resolved_obstacles_ = listed_obstacles(scene_, surroundings_.resolved);
+  listed_obstacles_ = scene::listed_obstacles(scene_, surroundings_.obstacles);
+  resolved_obstacles_ = scene::listed_obstacles(scene_, surroundings_.resolved);
   method_ = empty_method();
   if (!takes_bodies) {
-    const SceneView view = view_of(scene_);
+    const methods::SceneView view = scene::view_of(scene_);
     cost_ = scene_.numerics->cost_of_method(view, surroundings_, *method_);
     check_cost();
   }
-  if (const auto* measured = capability<HasCurve>(std::as_const(*method_)))
+  if (const auto* measured = methods::capability<methods::HasCurve>(std::as_const(*method_)))
     curve_ = measured->empty_curve();
   else if (scene_.output.energy)
     energies_ = std::make_unique<EnergyHistory>(scene_.numerics->info().energies,
@@ -70,12 +69,12 @@ void Simulation::check_cost() const {
 }
 
 /// The scene's method with its obstacles, before any snow.
-std::unique_ptr<Method> Simulation::empty_method() const {
-  return scene_.numerics->build(view_of(scene_), surroundings_);
+std::unique_ptr<methods::Method> Simulation::empty_method() const {
+  return scene_.numerics->build(scene::view_of(scene_), surroundings_);
 }
 
-std::string Simulation::input_remark() const {
-  return surroundings_.input ? surroundings_.input->remark() : "";
+std::string Simulation::input_note() const {
+  return surroundings_.input ? surroundings_.input->note() : "";
 }
 
 const EnergyHistory& Simulation::energy_history() const {
@@ -90,7 +89,7 @@ int Simulation::threads() const { return threads_to_use(scene_.numerics->threads
 std::optional<Reseeding> Simulation::begin_event(const StopRequest& stop) {
   if (running_) throw SimulationError("the present event has not ended yet");
   std::optional<Reseeding> reseeding;
-  if (event_ > 0 && scene_.events.between == Between::reseed)
+  if (event_ > 0 && scene_.events.between == methods::Between::reseed)
     reseeding = reseed_stack(scene_, panel_, method_->state(), event_, laid_height_, stop);
   const double lift = lift_of_next_slab(reseeding);
   SeededSnow snow = seed_next_event(lift, stop);
@@ -108,7 +107,7 @@ std::optional<Reseeding> Simulation::begin_event(const StopRequest& stop) {
 }
 
 SeededSnow Simulation::seed_next_event(double lift, const StopRequest& stop) const {
-  if (const auto* seeding = capability<SeedsItself>(std::as_const(*method_)))
+  if (const auto* seeding = methods::capability<methods::SeedsItself>(std::as_const(*method_)))
     return seeded(seeding->seed(stop));
   return seed_event(scene_, base_dir_, panel_, event_ + 1, lift, stop);
 }
@@ -142,7 +141,7 @@ std::vector<std::string> Simulation::check_placement_of(
 }
 
 std::vector<Vec3> Simulation::positions() const {
-  const FieldView view = method_->field("position");
+  const particles::FieldView view = method_->field("position");
   std::vector<Vec3> positions;
   positions.reserve(method_->size());
   for (std::size_t i = 0; i < method_->size(); ++i)
@@ -162,7 +161,8 @@ void Simulation::advance() {
 
 /// Makes the only change to the particles at the beginning of an event, all or nothing.
 void Simulation::change_snow(const std::optional<Reseeding>& reseeding,
-                             std::vector<ParticleBatch> added, const StopRequest& stop) try {
+                             std::vector<methods::ParticleBatch> added,
+                             const StopRequest& stop) try {
   if (!reseeding) return method_->add(added, stop);
   added.insert(added.begin(), reseeding->batches.begin(), reseeding->batches.end());
   method_->replace(added);
@@ -170,10 +170,10 @@ void Simulation::change_snow(const std::optional<Reseeding>& reseeding,
   throw InputError("/", error.what());
 }
 
-void Simulation::add_snow(ParticleBatch batch) {
+void Simulation::add_snow(methods::ParticleBatch batch) {
   batch.event = std::max(event_, 1);
   std::vector<std::string> notes;
-  if (scene_.numerics.takes(Part::bodies))
+  if (scene_.numerics.takes(methods::Part::bodies))
     notes = check_placement(scene_, {{"positions", &batch.positions}},
                             {surroundings_.obstacles, surroundings_.resolved, method_->time(),
                              positions(), particle_distance(scene_), event_});
@@ -194,8 +194,9 @@ double Simulation::lift_of_next_slab(const std::optional<Reseeding>& reseeding) 
 }
 
 /// The particles of batches, rounded to the method's precision.
-ParticleState Simulation::as_held(const std::vector<ParticleBatch>& batches) const {
-  const std::unique_ptr<Method> method = empty_method();
+methods::ParticleState Simulation::as_held(
+    const std::vector<methods::ParticleBatch>& batches) const {
+  const std::unique_ptr<methods::Method> method = empty_method();
   method->add(batches);
   return method->state();
 }
@@ -203,7 +204,7 @@ ParticleState Simulation::as_held(const std::vector<ParticleBatch>& batches) con
 void Simulation::settle(const std::vector<double>& drops,
                         const std::vector<double>& plastic_changes) {
   if (running_) throw InputError("settling", "an event is running; snow settles between events");
-  if (auto* settling = capability<Settles>(*method_))
+  if (auto* settling = methods::capability<methods::Settles>(*method_))
     return settling->settle(drops, plastic_changes);
   for (const auto* changes : {&drops, &plastic_changes})
     if (std::any_of(changes->begin(), changes->end(), [](double change) { return change != 0; }))
@@ -211,9 +212,10 @@ void Simulation::settle(const std::vector<double>& drops,
 }
 
 /// Signed distance to the nearest obstacle, at its position at the given time, m.
-static double nearest_distance(const std::vector<Obstacle>& obstacles, double time, const Vec3& x) {
+static double nearest_distance(const std::vector<methods::Obstacle>& obstacles, double time,
+                               const Vec3& x) {
   double nearest = std::numeric_limits<double>::infinity();
-  for (const Obstacle& o : obstacles)
+  for (const methods::Obstacle& o : obstacles)
     nearest = std::min(nearest, o.shape->distance(o.motion ? o.motion->to_body(x, time) : x));
   return nearest;
 }
@@ -258,7 +260,7 @@ void Simulation::record() {
   if (film_ && film_->due({event_, running_, method_->time()})) film_->record(*method_, event_);
 }
 
-/// Reason for which the event has ended, or none while it goes on. The last step is not shortened,
+/// The reason for the end of the event, or none while it runs. The last step is not shortened,
 /// so it may end beyond the time limit. A step that ends before the limit by rounding alone has
 /// reached it.
 std::optional<RunEnd> Simulation::event_end() {
@@ -273,7 +275,7 @@ std::optional<RunEnd> Simulation::event_end() {
 }
 
 bool Simulation::is_at_rest() {
-  const MotionSummary m = method_->motion(scene_.events.rest_speed);
+  const methods::MotionSummary m = method_->motion(scene_.events.rest_speed);
   const double brought = event_mass_ > 0 ? event_mass_ : m.mass;
   const double speed = m.rms_speed * std::sqrt(m.mass / std::max(brought, 1e-300));
   return rest_.at_rest(method_->time(), speed);
@@ -310,10 +312,12 @@ void Simulation::close_film() {
   if (film_) film_->close();
 }
 
-std::optional<FilmMark> Simulation::film_mark() const { return film_ ? film_->mark() : film_mark_; }
+std::optional<io::FilmMark> Simulation::film_mark() const {
+  return film_ ? film_->mark() : film_mark_;
+}
 
 void Simulation::write_vtp(const std::filesystem::path& file) const {
   write_particles(file, *method_);
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::run

@@ -19,10 +19,15 @@
 #include "snowshed/run/rest_detector.hpp"
 #include "snowshed/scene/scene.hpp"
 
-namespace snowshed {
-
+namespace snowshed::io {
 class BinaryReader;
+}
+namespace snowshed::methods {
 class Curve;
+}
+
+namespace snowshed::run {
+
 class EnergyHistory;
 class FilmRecorder;
 class SnapshotSeries;
@@ -45,7 +50,7 @@ class Simulation {
  public:
   /// Builds obstacles, reads all files and checks that the scene fits into memory; seeds nothing
   /// yet. Relative file names are looked for in `base_dir`. Throws InputError.
-  explicit Simulation(const Scene& scene, const std::filesystem::path& base_dir = ".");
+  explicit Simulation(const scene::Scene& scene, const std::filesystem::path& base_dir = ".");
   ~Simulation();
 
   /// Seeds the next event's snow: the slab on the panel (above the snow that remained there, unless
@@ -65,7 +70,7 @@ class Simulation {
   /// Adds particles of the present event, beside those that begin_event seeds. Particles that are
   /// added before the first event belong to the first event. `batch.event` is set here. Throws
   /// InputError if the particles lie where snow may not be.
-  void add_snow(ParticleBatch batch);
+  void add_snow(methods::ParticleBatch batch);
 
   /// Takes `count` steps of the present event, whether the snow rests or not. Callers that drive
   /// the snow themselves can change velocities between steps by `add_velocity`.
@@ -88,11 +93,11 @@ class Simulation {
   bool films() const { return film_ != nullptr; }
   void close_film();  ///< no frame will follow
   /// The mark of the film as it is now, or as it was when the loaded checkpoint was made.
-  std::optional<FilmMark> film_mark() const;
+  std::optional<io::FilmMark> film_mark() const;
 
   /// Writes a checkpoint, which replaces an older one only once it has been read back. Throws
-  /// SimulationError if the state could not be resumed from, FileError if it cannot be
-  /// written; the older file stays then.
+  /// SimulationError if no run could resume from it, and FileError if it cannot be written; the
+  /// older file then stays.
   void save(const std::filesystem::path& checkpoint) const;
   /// Throws InputError if the file is not a sound checkpoint. Any number of `threads` (0: all)
   /// gives the same bits; by default it is that of the checkpoint's scene.
@@ -101,20 +106,21 @@ class Simulation {
   /// The same for another scene, which may lay other snow from the next event on, or have more
   /// events. It must have the same method and obstacles, and its snows must begin with those of the
   /// checkpoint's scene. Also throws InputError if an event was running.
-  static std::unique_ptr<Simulation> load_into(const Scene&, const std::filesystem::path& base_dir,
+  static std::unique_ptr<Simulation> load_into(const scene::Scene&,
+                                               const std::filesystem::path& base_dir,
                                                const std::filesystem::path& checkpoint);
 
-  const Scene& scene() const { return scene_; }
+  const scene::Scene& scene() const { return scene_; }
   /// Indexed by material_id.
-  const std::vector<Snow>& snows() const { return surroundings_.snows; }
-  const CostEstimate& cost() const { return cost_; }
-  const Method& method() const { return *method_; }
+  const std::vector<material::Snow>& snows() const { return surroundings_.snows; }
+  const methods::CostEstimate& cost() const { return cost_; }
+  const methods::Method& method() const { return *method_; }
   /// The curve measured after each step so far; null for methods without such a curve.
-  const Curve* curve() const { return curve_.get(); }
-  /// A remark on the files that the method reads; empty if there is none.
-  std::string input_remark() const;
-  /// The energies over time while `run` ran. Throws InputError if the scene does not keep them, or
-  /// if a curve has them.
+  const methods::Curve* curve() const { return curve_.get(); }
+  /// A note on the files that the method reads; empty if there is none.
+  std::string input_note() const;
+  /// The energies over time that `run` recorded. Throws InputError if the scene does not keep them,
+  /// or if a curve has them.
   const EnergyHistory& energy_history() const;
   int event() const { return event_; }
   /// Notes for readers of the results on the snow that was laid since this object was made, a
@@ -156,40 +162,40 @@ class Simulation {
 
  private:
   double lift_of_next_slab(const std::optional<Reseeding>&) const;
-  ParticleState as_held(const std::vector<ParticleBatch>&) const;
+  methods::ParticleState as_held(const std::vector<methods::ParticleBatch>&) const;
   SeededSnow seed_next_event(double lift, const StopRequest& stop) const;
   std::vector<std::string> check_placement_of(const SeededSnow&,
                                               const std::optional<Reseeding>&) const;
   std::vector<Vec3> positions() const;
   void check_cost() const;
-  void change_snow(const std::optional<Reseeding>&, std::vector<ParticleBatch> added,
+  void change_snow(const std::optional<Reseeding>&, std::vector<methods::ParticleBatch> added,
                    const StopRequest& stop);
   void advance();
   void record();
   bool is_at_rest();
   std::optional<RunEnd> event_end();
-  std::unique_ptr<Method> empty_method() const;
-  static std::unique_ptr<Simulation> from_archive(const BinaryReader&, const Scene&,
+  std::unique_ptr<methods::Method> empty_method() const;
+  static std::unique_ptr<Simulation> from_archive(const io::BinaryReader&, const scene::Scene&,
                                                   const std::filesystem::path& base_dir);
   void read_back(const std::filesystem::path& checkpoint) const;
   RunReport report(double rms_speed) const;
 
-  Scene scene_;
+  scene::Scene scene_;
   // Text for checkpoints, made in advance: the JSON library would end the process if memory ran
   // out.
   std::string scene_text_;
-  std::vector<std::int64_t> shape_prints_;  // fingerprints of the files that shapes are read from
+  std::vector<std::int64_t> shape_fingerprints_;  // files that shapes are read from
   std::filesystem::path base_dir_;
-  CostEstimate cost_;
+  methods::CostEstimate cost_;
   PanelRegion panel_;
-  Surroundings surroundings_;
+  methods::Surroundings surroundings_;
   // The obstacles of the scene's list, as given and thickened.
-  std::vector<Obstacle> listed_obstacles_, resolved_obstacles_;
-  std::unique_ptr<Method> method_;
+  std::vector<methods::Obstacle> listed_obstacles_, resolved_obstacles_;
+  std::unique_ptr<methods::Method> method_;
   std::unique_ptr<SnapshotSeries> snapshots_;
   std::unique_ptr<FilmRecorder> film_;
-  std::optional<FilmMark> film_mark_;        // in the checkpoint that was loaded
-  std::unique_ptr<Curve> curve_;             // for methods that have one
+  std::optional<io::FilmMark> film_mark_;    // in the checkpoint that was loaded
+  std::unique_ptr<methods::Curve> curve_;    // for methods that have one
   std::unique_ptr<EnergyHistory> energies_;  // for all others, with output.energy
   RestDetector rest_;
   std::vector<std::string> notes_;
@@ -200,4 +206,4 @@ class Simulation {
   double laid_height_ = 0;  // m
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::run

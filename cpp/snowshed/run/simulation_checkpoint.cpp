@@ -6,16 +6,16 @@
 #include "snowshed/io/binary_archive.hpp"
 #include "snowshed/methods/capabilities.hpp"
 #include "snowshed/run/energy_history.hpp"
-#include "snowshed/run/shape_prints.hpp"
+#include "snowshed/run/shape_fingerprints.hpp"
 #include "snowshed/run/simulation.hpp"
 #include "snowshed/run/snapshot_series.hpp"
-#include "snowshed/scene/assemble.hpp"
+#include "snowshed/scene/distinct_snows.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
-namespace snowshed {
+namespace snowshed::run {
 namespace {
 
-void check_file(const BinaryReader& in, const std::string& file, std::int64_t then,
+void check_file(const io::BinaryReader& in, const std::string& file, std::int64_t then,
                 std::int64_t now) {
   if (then == now) return;
   if (file.empty())
@@ -25,31 +25,33 @@ void check_file(const BinaryReader& in, const std::string& file, std::int64_t th
 }
 
 /// Throws InputError if a file that the method read has changed since the checkpoint was made.
-void check_files(const BinaryReader& in, const Surroundings& surroundings) {
+void check_files(const io::BinaryReader& in, const methods::Surroundings& surroundings) {
   if (!surroundings.input) return;
-  const std::vector<FilePrint> now = surroundings.input->files();
+  const std::vector<methods::FileFingerprint> now = surroundings.input->files();
   const auto then = in.get<std::int64_t>(surroundings.input->section(), now.size());
-  for (std::size_t i = 0; i < now.size(); ++i) check_file(in, now[i].file, then[i], now[i].print);
+  for (std::size_t i = 0; i < now.size(); ++i)
+    check_file(in, now[i].file, then[i], now[i].fingerprint);
 }
 
-std::vector<std::int64_t> prints_of(const MethodInput& input) {
-  std::vector<std::int64_t> prints;
-  for (const FilePrint& file : input.files()) prints.push_back(file.print);
-  return prints;
+std::vector<std::int64_t> fingerprints_of(const methods::MethodInput& input) {
+  std::vector<std::int64_t> fingerprints;
+  for (const methods::FileFingerprint& file : input.files())
+    fingerprints.push_back(file.fingerprint);
+  return fingerprints;
 }
 
 /// The same for the files that shapes are read from; a checkpoint of an earlier version has no
 /// fingerprints of them.
-void check_shape_files(const BinaryReader& in, const Scene& scene,
+void check_shape_files(const io::BinaryReader& in, const scene::Scene& scene,
                        const std::vector<std::int64_t>& now) {
-  const std::vector<std::string> files = shape_files(scene);
+  const std::vector<std::string> files = scene::shape_files(scene);
   if (files.empty() || !in.has("shape_files")) return;
   const auto then = in.get<std::int64_t>("shape_files", files.size());
   for (std::size_t i = 0; i < files.size(); ++i) check_file(in, files[i], then[i], now[i]);
 }
 
 /// Other kernels round differently, so that the run would not continue to the same bits.
-void check_kernels(const BinaryReader& in) {
+void check_kernels(const io::BinaryReader& in) {
   if (!in.has("kernels")) return;
   const std::string then = in.text("kernels"), now = kernel_variant_name();
   if (then != now)
@@ -60,10 +62,10 @@ void check_kernels(const BinaryReader& in) {
 }
 
 /// Throws InputError unless the particles' snows have the same numbers in another scene.
-void check_same_snow(const BinaryReader& in, const std::vector<Snow>& then,
-                     const std::vector<Snow>& now) {
+void check_same_snow(const io::BinaryReader& in, const std::vector<material::Snow>& then,
+                     const std::vector<material::Snow>& now) {
   for (std::size_t i = 0; i < then.size(); ++i)
-    if (i >= now.size() || material_id_of(then[i], now) != int(i))
+    if (i >= now.size() || scene::material_id_of(then[i], now) != int(i))
       throw InputError(in.path().string(),
                        "the scene does not name its snows first, in the same order");
 }
@@ -71,12 +73,13 @@ void check_same_snow(const BinaryReader& in, const std::vector<Snow>& then,
 }  // namespace
 
 void Simulation::save(const std::filesystem::path& checkpoint) const {
-  BinaryWriter out;
+  io::BinaryWriter out;
   out.add_text("scene", scene_text_);
   out.add_text("base_dir", std::filesystem::absolute(base_dir_).string());
   out.add_text("kernels", kernel_variant_name());
-  if (!shape_prints_.empty()) out.add("shape_files", shape_prints_);
-  if (surroundings_.input) out.add(surroundings_.input->section(), prints_of(*surroundings_.input));
+  if (!shape_fingerprints_.empty()) out.add("shape_files", shape_fingerprints_);
+  if (surroundings_.input)
+    out.add(surroundings_.input->section(), fingerprints_of(*surroundings_.input));
   if (curve_) curve_->save(out);
   if (energies_) energies_->save(out);
   if (const auto film = film_mark())
@@ -97,26 +100,28 @@ void Simulation::save(const std::filesystem::path& checkpoint) const {
 /// Makes the checks of `load`, and throws as `load` does. This needs memory for the particles
 /// twice; if that is not available, only the file is checked.
 void Simulation::read_back(const std::filesystem::path& checkpoint) const {
-  const BinaryReader in = BinaryReader::load(checkpoint);
+  const io::BinaryReader in = io::BinaryReader::load(checkpoint);
   in.require_finite();
   if (method_->bytes() < available_memory_bytes()) method_->check(in);
 }
 
 std::unique_ptr<Simulation> Simulation::load(const std::filesystem::path& checkpoint,
                                              std::optional<int> threads) {
-  const BinaryReader in = BinaryReader::load(checkpoint);
+  const io::BinaryReader in = io::BinaryReader::load(checkpoint);
   in.require_finite();  // a clock that is not a number would never reach the end of an event
-  const Scene scene = parse_scene(in.text("scene"), checkpoint.string());
-  return from_archive(in, threads ? with_threads(scene, *threads) : scene, in.text("base_dir"));
+  const scene::Scene scene = scene::parse_scene(in.text("scene"), checkpoint.string());
+  return from_archive(in, threads ? scene::with_threads(scene, *threads) : scene,
+                      in.text("base_dir"));
 }
 
-std::unique_ptr<Simulation> Simulation::load_into(const Scene& scene,
+std::unique_ptr<Simulation> Simulation::load_into(const scene::Scene& scene,
                                                   const std::filesystem::path& base_dir,
                                                   const std::filesystem::path& checkpoint) {
-  const BinaryReader in = BinaryReader::load(checkpoint);
+  const io::BinaryReader in = io::BinaryReader::load(checkpoint);
   in.require_finite();
-  const Scene earlier = resolve(parse_scene(in.text("scene"), checkpoint.string()));
-  check_same_snow(in, assemble_snows(earlier), assemble_snows(resolve(scene)));
+  const scene::Scene earlier =
+      scene::resolve(scene::parse_scene(in.text("scene"), checkpoint.string()));
+  check_same_snow(in, scene::distinct_snows(earlier), scene::distinct_snows(scene::resolve(scene)));
   auto sim = from_archive(in, scene, base_dir);
   if (sim->running_)
     throw InputError(checkpoint.string(),
@@ -124,12 +129,13 @@ std::unique_ptr<Simulation> Simulation::load_into(const Scene& scene,
   return sim;
 }
 
-std::unique_ptr<Simulation> Simulation::from_archive(const BinaryReader& in, const Scene& scene,
+std::unique_ptr<Simulation> Simulation::from_archive(const io::BinaryReader& in,
+                                                     const scene::Scene& scene,
                                                      const std::filesystem::path& base_dir) {
   auto sim = std::make_unique<Simulation>(scene, base_dir);
   check_kernels(in);
   check_files(in, sim->surroundings_);
-  check_shape_files(in, sim->scene_, sim->shape_prints_);
+  check_shape_files(in, sim->scene_, sim->shape_fingerprints_);
   const auto event = in.get<std::int64_t>("event", 2);
   if (event[0] < 0 || event[0] > sim->scene_.events.count)
     throw InputError(in.path().string(), "event " + std::to_string(event[0]) + " of " +
@@ -145,10 +151,10 @@ std::unique_ptr<Simulation> Simulation::from_archive(const BinaryReader& in, con
   if (sim->energies_) sim->energies_->load(in);
   if (in.has("film")) {
     const auto film = in.get<std::uint64_t>("film", 2);
-    sim->film_mark_ = FilmMark{std::size_t(film[0]), std::uint32_t(film[1])};
+    sim->film_mark_ = io::FilmMark{std::size_t(film[0]), std::uint32_t(film[1])};
   }
   sim->method_->load(in);
   return sim;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::run

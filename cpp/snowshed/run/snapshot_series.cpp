@@ -5,10 +5,10 @@
 
 #include "snowshed/io/vtp_writer.hpp"
 
-namespace snowshed {
-void write_particles(const std::filesystem::path& file, const Method& method) {
-  const PointCloud cloud = method.snapshot();
-  write_vtp(file, cloud.points, cloud.arrays, cloud.lines);
+namespace snowshed::run {
+void write_particles(const std::filesystem::path& file, const methods::Method& method) {
+  const methods::PointCloud cloud = method.snapshot();
+  io::write_vtp(file, cloud.points, cloud.arrays, cloud.lines);
 }
 
 SnapshotSeries::SnapshotSeries(std::filesystem::path folder, double interval, double time)
@@ -17,9 +17,9 @@ SnapshotSeries::SnapshotSeries(std::filesystem::path folder, double interval, do
       // On multiples of the interval, so that a resumed run writes the same snapshots.
       next_(std::ceil(time / interval - 1e-9) * interval),
       series_((std::filesystem::create_directories(folder_),
-               PvdSeries::reopen(folder_ / "snapshots.pvd", next_))) {}
+               io::PvdSeries::reopen(folder_ / "snapshots.pvd", next_))) {}
 
-void SnapshotSeries::write(const Method& method) {
+void SnapshotSeries::write(const methods::Method& method) {
   char name[32];
   std::snprintf(name, sizeof name, "snapshot_%06lld.vtp",
                 static_cast<long long>(std::llround(next_ / interval_)));
@@ -28,4 +28,4 @@ void SnapshotSeries::write(const Method& method) {
   while (next_ <= method.time()) next_ += interval_;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::run

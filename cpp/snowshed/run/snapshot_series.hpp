@@ -6,10 +6,10 @@
 #include "snowshed/io/pvd_series.hpp"
 #include "snowshed/methods/method.hpp"
 
-namespace snowshed {
+namespace snowshed::run {
 
 /// Writes the method's fields of its particles, in SI units: at least the velocity.
-void write_particles(const std::filesystem::path& file, const Method&);
+void write_particles(const std::filesystem::path& file, const methods::Method&);
 
 class SnapshotSeries {
  public:
@@ -17,12 +17,12 @@ class SnapshotSeries {
   SnapshotSeries(std::filesystem::path folder, double interval, double time);
 
   bool due(double time) const { return time >= next_; }
-  void write(const Method&);
+  void write(const methods::Method&);
 
  private:
   std::filesystem::path folder_;
   double interval_, next_;
-  PvdSeries series_;
+  io::PvdSeries series_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::run

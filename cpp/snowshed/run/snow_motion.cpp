@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "snowshed/scene/assemble.hpp"
+#include "snowshed/scene/panel_frame.hpp"
 #include "snowshed/scene/shape_measure.hpp"
 
-namespace snowshed {
+namespace snowshed::run {
 namespace {
 
 /// From the last impact to rest, snow loses the speed of its fall at about the acceleration of
@@ -16,20 +16,20 @@ namespace {
 constexpr double min_settling_time = 0.25;  // s
 
 /// Mean acceleration down the panel, from gravity less friction.
-double sliding_acceleration(const Scene& scene) {
-  if (scene.panel->condition == Condition::sticky) return 0.0;
-  const PanelFrame frame = panel_frame(scene);
+double sliding_acceleration(const scene::Scene& scene) {
+  if (scene.panel->condition == methods::Condition::sticky) return 0.0;
+  const scene::PanelFrame frame = scene::panel_frame(scene);
   const double sine = -frame.slope.z(), cosine = frame.normal.z();
   return std::max(0.0, scene.gravity * (sine - scene.panel->friction * cosine));
 }
 
-/// Whether there is anything for snow to land on, at about the height of the ground.
-bool has_floor(const Scene& scene) {
+/// Whether the scene has a surface on which snow can land; its height is taken to be the ground's.
+bool has_floor(const scene::Scene& scene) {
   return scene.ground || scene.terrain || scene.domain || !scene.obstacles.empty();
 }
 
 /// Time to fall `height` (measured vertically) with a downward velocity relative to the ground.
-double fall_duration(const Scene& scene, double height, double downward) {
+double fall_duration(const scene::Scene& scene, double height, double downward) {
   if (!has_floor(scene)) return std::numeric_limits<double>::infinity();
   if (height <= 0.0) return 0.0;
   const double root = std::sqrt(downward * downward + 2.0 * scene.gravity * height);
@@ -37,19 +37,19 @@ double fall_duration(const Scene& scene, double height, double downward) {
                                : std::numeric_limits<double>::infinity();
 }
 
-/// Speed at which a velocity brings a point nearer to the ground below it; the height is linear.
-double approach(const Scene& scene, const Vec3& velocity) {
-  return -height_above_ground(scene, velocity);
+/// Speed at which a point with this velocity approaches the ground, measured vertically.
+double approach(const scene::Scene& scene, const Vec3& velocity) {
+  return -scene::height_above_ground(scene, velocity);
 }
 
-/// Largest distance of a fall that begins with a speed, after a time.
-double falling_distance(const Scene& scene, double speed, double time) {
+/// Upper bound of the distance of a fall, after a time, from an initial speed in any direction.
+double falling_distance(const scene::Scene& scene, double speed, double time) {
   return time * (speed + scene.gravity * time / 2.0);
 }
 
 /// Adds the distance of the slab's rear within the time limit, and the stretch of a slab that never
 /// lands: its front falls freely while its rear still slides.
-void add_flight(const Scene& scene, double front_slides, SnowMotion& motion) {
+void add_flight(const scene::Scene& scene, double front_slides, methods::SnowMotion& motion) {
   const double slides = std::min(motion.sliding_time, scene.events.max_time);
   const double falls = std::min(motion.fall_time, scene.events.max_time - slides);
   const double acceleration = sliding_acceleration(scene);
@@ -61,8 +61,8 @@ void add_flight(const Scene& scene, double front_slides, SnowMotion& motion) {
 }
 
 /// The slab's rear slides off the lower edge and falls freely.
-void add_slab(const Scene& scene, SnowMotion& motion) {
-  const PanelFrame frame = panel_frame(scene);
+void add_slab(const scene::Scene& scene, methods::SnowMotion& motion) {
+  const scene::PanelFrame frame = scene::panel_frame(scene);
   const double distance = (scene.panel->length + scene.slab->length) / 2.0;
   const double acceleration = sliding_acceleration(scene);
   motion.slides = acceleration > 0.0;
@@ -80,19 +80,19 @@ void add_slab(const Scene& scene, SnowMotion& motion) {
 }
 
 /// The speed at which the last snow lands, divided by gravity, s.
-double time_to_lose_speed(const Scene& scene, const SnowMotion& motion) {
+double time_to_lose_speed(const scene::Scene& scene, const methods::SnowMotion& motion) {
   if (!(scene.gravity > 0.0) || !motion.slides) return 0.0;
   const double along = sliding_acceleration(scene) * motion.sliding_time;
   return std::sqrt(along * along + 2.0 * scene.gravity * scene.panel->height) / scene.gravity;
 }
 
 /// Returns the longest fall of a body, s.
-double add_bodies(const Scene& scene, SnowMotion& motion) {
+double add_bodies(const scene::Scene& scene, methods::SnowMotion& motion) {
   double longest = 0.0;
   for (const auto& body : scene.bodies) {
-    const auto bounds = shape_bounds(body.shape);
+    const auto bounds = scene::shape_bounds(body.shape);
     if (!bounds) continue;
-    const double height = height_above_ground(scene, bounds->center());
+    const double height = scene::height_above_ground(scene, bounds->center());
     const double falls = fall_duration(scene, height, approach(scene, body.velocity));
     const double distance =
         falling_distance(scene, body.velocity.norm(), std::min(falls, scene.events.max_time));
@@ -104,8 +104,8 @@ double add_bodies(const Scene& scene, SnowMotion& motion) {
 
 }  // namespace
 
-SnowMotion estimate_motion(const Scene& scene) {
-  SnowMotion motion;
+methods::SnowMotion estimate_motion(const scene::Scene& scene) {
+  methods::SnowMotion motion;
   if (scene.slab) add_slab(scene, motion);
   const double bodies = add_bodies(scene, motion);
   const double slab = motion.sliding_time + motion.fall_time;
@@ -116,4 +116,4 @@ SnowMotion estimate_motion(const Scene& scene) {
   return motion;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::run

@@ -4,9 +4,9 @@
 #include "snowshed/methods/cost.hpp"
 #include "snowshed/scene/scene.hpp"
 
-namespace snowshed {
+namespace snowshed::run {
 
 /// Requires a resolved scene: zeros that follow other fields are replaced.
-SnowMotion estimate_motion(const Scene& scene);
+methods::SnowMotion estimate_motion(const scene::Scene& scene);
 
-}  // namespace snowshed
+}  // namespace snowshed::run

@@ -11,10 +11,10 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/particles/point_grid.hpp"
 
-namespace snowshed {
+namespace snowshed::run {
 namespace {
 
-/// Consecutive particles are close to each other.
+/// Number of particles that share a bounding box; consecutive particles are close to each other.
 constexpr std::size_t particles_in_box = 64;
 
 constexpr double depth_over_resolution = 1e-3;  // less is rounding of files, not an overlap
@@ -173,7 +173,7 @@ class OldSnow {
   double radius_, min_count_;
   std::vector<Vec3> near_;
   PointBox box_;
-  std::optional<PointGrid> grid_;
+  std::optional<particles::PointGrid> grid_;
 };
 
 std::string position_text(const Vec3& x, int dimension) {
@@ -188,11 +188,11 @@ std::string position_text(const Vec3& x, int dimension) {
 /// The obstacles, and texts for positions inside them.
 class Obstacles {
  public:
-  Obstacles(const Scene& scene, const OccupiedSpace& space)
+  Obstacles(const scene::Scene& scene, const OccupiedSpace& space)
       : scene_(scene), space_(space), depth_(depth_over_resolution * scene.numerics->resolution()) {
     const std::size_t standing = std::size_t(scene.ground.has_value()) + scene.panel.has_value();
     for (std::size_t k = 0; k < space.obstacles.size(); ++k) {
-      const Obstacle& o = space.obstacles[k];
+      const methods::Obstacle& o = space.obstacles[k];
       bounds_.push_back(o.shape->bounds());
       if (o.name == "domain" && k >= standing + scene.obstacles.size())
         words_.push_back("outside the domain");
@@ -208,7 +208,7 @@ class Obstacles {
 
   void find(Particles& snow) const {
     for_each_near(snow, 0, [&](std::size_t k, const auto& to_body) {
-      const LevelSet& shape = *space_.obstacles[k].shape;
+      const geometry::LevelSet& shape = *space_.obstacles[k].shape;
       snow.find_within(words_[k], depth_,
                        [&](const Vec3& x) { return shape.distance(to_body(x)); });
     });
@@ -217,7 +217,7 @@ class Obstacles {
   /// Adds sentences on particles that lie only where obstacles are made thicker.
   void find_in_thickening(const Particles& snow, std::vector<std::string>& sentences) const {
     for_each_near(snow, scene_.numerics->resolution(), [&](std::size_t k, const auto& to_body) {
-      const Shape& seen = space_.resolved[k].shape;
+      const geometry::Shape& seen = space_.resolved[k].shape;
       if (seen == space_.obstacles[k].shape) return;
       const std::size_t count = snow.count_others_within(
           depth_, [&](const Vec3& x) { return seen->distance(to_body(x)); });
@@ -233,9 +233,9 @@ class Obstacles {
   template <class Visit>
   void for_each_near(const Particles& snow, double margin, const Visit& visit) const {
     for (std::size_t k = 0; k < space_.obstacles.size(); ++k) {
-      const Obstacle& o = space_.obstacles[k];
+      const methods::Obstacle& o = space_.obstacles[k];
       if (o.motion) {
-        const RigidPose pose = o.motion->at(space_.time);
+        const geometry::RigidPose pose = o.motion->at(space_.time);
         visit(k, [&](const Vec3& x) { return pose.to_body(x); });
         continue;
       }
@@ -245,10 +245,10 @@ class Obstacles {
     }
   }
 
-  const Scene& scene_;
+  const scene::Scene& scene_;
   const OccupiedSpace& space_;
   const double depth_;
-  std::vector<Bounds> bounds_;
+  std::vector<geometry::Bounds> bounds_;
   std::vector<std::string> words_;
 };
 
@@ -290,13 +290,14 @@ std::string percent(double share) {
   return text;
 }
 
-std::vector<std::string> check_placement(const Scene& scene, const std::vector<PlacedBody>& bodies,
+std::vector<std::string> check_placement(const scene::Scene& scene,
+                                         const std::vector<PlacedBody>& bodies,
                                          const OccupiedSpace& space) {
   const Obstacles obstacles(scene, space);
   const double depth = depth_over_resolution * scene.numerics->resolution();
-  std::vector<Bounds> bounds;
+  std::vector<geometry::Bounds> bounds;
   for (const PlacedBody& body : bodies)
-    bounds.push_back(body.shape ? body.shape->bounds() : Bounds{});
+    bounds.push_back(body.shape ? body.shape->bounds() : geometry::Bounds{});
   std::vector<std::string> notes;
   for (const PlacedBody& body : bodies) {
     if (body.positions->empty()) continue;
@@ -320,11 +321,11 @@ std::vector<std::string> check_placement(const Scene& scene, const std::vector<P
     if (snow.parts().empty()) continue;
     const std::string sentence = sentence_of(snow, scene.dimension, space.event);
     if (snow.share() > max_misplaced && !body.is_only_noted &&
-        scene.misplaced_snow == MisplacedSnow::refuse)
+        scene.misplaced_snow == scene::MisplacedSnow::refuse)
       throw InputError(body.path, sentence + "; move it, or set /misplaced_snow to \"allow\"");
     notes.push_back(body.path + ": " + sentence);
   }
   return shortened(std::move(notes));
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::run

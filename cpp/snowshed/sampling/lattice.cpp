@@ -9,7 +9,7 @@
 #include "snowshed/sampling/seeding.hpp"
 #include "snowshed/sampling/voxel_set.hpp"
 
-namespace snowshed {
+namespace snowshed::sampling {
 namespace {
 
 constexpr double rounding = 1e-6;  // share of a cell
@@ -23,7 +23,7 @@ struct Cell {
 };
 
 std::size_t count_for(double volume, int dimension, double spacing) {
-  // Half a cell counts, however its volume was rounded.
+  // Half a cell counts as a cell, in spite of rounding.
   const double count = std::floor(volume / std::pow(spacing, dimension) + 0.5 + rounding);
   if (count > max_particles)
     throw InputError("particles to fill the solid",
@@ -33,7 +33,7 @@ std::size_t count_for(double volume, int dimension, double spacing) {
 }
 
 /// The cells of a box, of which the last layer along each edge may be cut.
-std::vector<Cell> cells_of(const OrientedBox& box, int dimension, double spacing) {
+std::vector<Cell> cells_of(const geometry::OrientedBox& box, int dimension, double spacing) {
   std::array<std::size_t, 3> counts{1, 1, 1}, cut_layer{};
   std::array<double, 3> part{1, 1, 1};  // share of the cut layer that lies within
   Vec3 center = box.center;
@@ -66,7 +66,7 @@ std::vector<Cell> cells_of(const OrientedBox& box, int dimension, double spacing
 
 /// The vector from the centre of a solid's bounds to a corner of a lattice that begins at their
 /// lowest corner.
-Vec3 shift_to_lowest_corner(const Bounds& bounds, double spacing) {
+Vec3 shift_to_lowest_corner(const geometry::Bounds& bounds, double spacing) {
   const Vec3 half = (bounds.max - bounds.min) / 2;
   Vec3 shift = Vec3::Zero();
   for (int axis = 0; axis < 3; ++axis)
@@ -76,7 +76,7 @@ Vec3 shift_to_lowest_corner(const Bounds& bounds, double spacing) {
 }
 
 /// The same for another solid: its lattice begins at the lowest corner of its bounds.
-std::vector<Cell> cells_of(const LevelSet& shape, int dimension, double spacing,
+std::vector<Cell> cells_of(const geometry::LevelSet& shape, int dimension, double spacing,
                            const StopRequest& stop) {
   const Vec3 shift = shift_to_lowest_corner(shape.bounds(), spacing);
   const std::vector<Voxel> voxels = voxelize(shape, dimension, spacing, 0.0, stop, shift);
@@ -138,7 +138,7 @@ class CutCells {
 };
 
 /// The nearest point that is not outside of the solid.
-Vec3 moved_within(const LevelSet& shape, Vec3 x, int dimension, double spacing) {
+Vec3 moved_within(const geometry::LevelSet& shape, Vec3 x, int dimension, double spacing) {
   for (int turn = 0; turn < 3; ++turn) {
     const double outside = shape.distance(x);
     if (!(outside > 0)) break;
@@ -150,12 +150,12 @@ Vec3 moved_within(const LevelSet& shape, Vec3 x, int dimension, double spacing) 
 
 }  // namespace
 
-std::size_t count_lattice(const LevelSet& shape, int dimension, double spacing,
+std::size_t count_lattice(const geometry::LevelSet& shape, int dimension, double spacing,
                           const StopRequest& stop) {
   return count_for(measure(shape, dimension, spacing, stop), dimension, spacing);
 }
 
-LatticeFilling fill_lattice(const LevelSet& shape, int dimension, double spacing,
+LatticeFilling fill_lattice(const geometry::LevelSet& shape, int dimension, double spacing,
                             const StopRequest& stop) {
   LatticeFilling filling;
   filling.volume = measure(shape, dimension, spacing, stop);
@@ -176,4 +176,4 @@ LatticeFilling fill_lattice(const LevelSet& shape, int dimension, double spacing
   return filling;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::sampling

@@ -7,7 +7,7 @@
 #include "snowshed/core/stop_request.hpp"
 #include "snowshed/geometry/level_set.hpp"
 
-namespace snowshed {
+namespace snowshed::sampling {
 
 /// The particles of a solid.
 struct LatticeFilling {
@@ -27,11 +27,11 @@ struct LatticeFilling {
 ///
 /// Throws InputError if the solid holds less than half a cell, or more than `max_particles`, and
 /// Stopped on request.
-LatticeFilling fill_lattice(const LevelSet& shape, int dimension, double spacing,
+LatticeFilling fill_lattice(const geometry::LevelSet& shape, int dimension, double spacing,
                             const StopRequest& stop = {});
 
 /// Returns the number of points that `fill_lattice` places. Throws as `fill_lattice` does.
-std::size_t count_lattice(const LevelSet& shape, int dimension, double spacing,
+std::size_t count_lattice(const geometry::LevelSet& shape, int dimension, double spacing,
                           const StopRequest& stop = {});
 
-}  // namespace snowshed
+}  // namespace snowshed::sampling

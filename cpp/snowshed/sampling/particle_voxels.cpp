@@ -17,24 +17,25 @@
 #include "snowshed/geometry/bounds.hpp"
 #include "snowshed/geometry/nearest_seed.hpp"
 
-namespace snowshed {
+namespace snowshed::sampling {
 namespace {
 
 constexpr double max_nodes = 1.5e8;  // 1.2 GB while converting, 0.6 GB after
 
-Bounds bounds_of(const std::vector<Vec3>& points, int dimension) {
-  Bounds bounds = empty_bounds();
+geometry::Bounds bounds_of(const std::vector<Vec3>& points, int dimension) {
+  geometry::Bounds bounds = geometry::empty_bounds();
   for (const Vec3& x : points) {
     if (!x.allFinite()) throw InputError("", "a particle position is not finite");
-    bounds = united_bounds(bounds, {x, x});
+    bounds = geometry::united_bounds(bounds, {x, x});
   }
   if (dimension == 2) bounds.min.y() = bounds.max.y() = 0;
   return bounds;
 }
 
 /// Returns a grid that covers the cloud and a margin; its values are not yet set.
-GridSamples make_grid(const Bounds& bounds, int dimension, double spacing, double margin) {
-  GridSamples grid;
+geometry::GridSamples make_grid(const geometry::Bounds& bounds, int dimension, double spacing,
+                                double margin) {
+  geometry::GridSamples grid;
   grid.origin = bounds.min.array() - margin;
   grid.spacing = spacing;
   double total = 1;
@@ -54,8 +55,9 @@ GridSamples make_grid(const Bounds& bounds, int dimension, double spacing, doubl
 
 /// Returns the number of nodes inside the solid among those within two to three spacings of x along
 /// each axis.
-int count_inside(const GridSamples& grid, const NearestSeed& nodes, const Vec3& x) {
-  const NearestSeed::Index low = nodes.cell_of(x);
+int count_inside(const geometry::GridSamples& grid, const geometry::NearestSeed& nodes,
+                 const Vec3& x) {
+  const geometry::NearestSeed::Index low = nodes.cell_of(x);
   int inside = 0;
   for (std::int64_t i = low.i - 2; i <= low.i + 3; ++i)
     for (std::int64_t j = low.j - 2; j <= low.j + 3; ++j)
@@ -66,8 +68,8 @@ int count_inside(const GridSamples& grid, const NearestSeed& nodes, const Vec3& 
 
 /// Unites the solid with a ball around each isolated particle, which is one with less than a voxel
 /// of solid around it. The ball is large enough for the grid to resolve.
-void keep_isolated_particles(GridSamples& grid, NearestSeed& nodes, const std::vector<Vec3>& points,
-                             int dimension) {
+void keep_isolated_particles(geometry::GridSamples& grid, geometry::NearestSeed& nodes,
+                             const std::vector<Vec3>& points, int dimension) {
   std::vector<Vec3> isolated;
   for (const Vec3& x : points)
     if (count_inside(grid, nodes, x) < (dimension == 2 ? 4 : 8)) isolated.push_back(x);
@@ -75,7 +77,7 @@ void keep_isolated_particles(GridSamples& grid, NearestSeed& nodes, const std::v
   // Seeding places no particle in a smaller ball.
   const double radius = (dimension == 2 ? 1.0 : 1.15) * grid.spacing;
   nodes.propagate(isolated);
-  nodes.for_each_node([&](const NearestSeed::Index& n) {
+  nodes.for_each_node([&](const geometry::NearestSeed::Index& n) {
     float& value = grid.values[nodes.at(n)];
     value = std::min(value, static_cast<float>(nodes.distance(n) - radius));
   });
@@ -95,23 +97,23 @@ double particle_radius(int dimension, double voxel, double per_voxel) {
   return 0.375 * voxel / (dimension == 2 ? std::sqrt(per_voxel) : std::cbrt(per_voxel));
 }
 
-GridSamples particles_to_samples(const std::vector<Vec3>& points, int dimension, double voxel,
-                                 double radius) {
+geometry::GridSamples particles_to_samples(const std::vector<Vec3>& points, int dimension,
+                                           double voxel, double radius) {
   check_arguments(points, voxel, radius);
   const double spacing = voxel / 2, closing = voxel;
-  GridSamples grid =
+  geometry::GridSamples grid =
       make_grid(bounds_of(points, dimension), dimension, spacing, radius + closing + 2 * spacing);
 
-  NearestSeed nodes(grid.origin, spacing, grid.counts);
+  geometry::NearestSeed nodes(grid.origin, spacing, grid.counts);
   nodes.propagate(points);
   grid.values.resize(grid.counts[0] * grid.counts[1] * grid.counts[2]);
-  nodes.for_each_node([&](const NearestSeed::Index& n) {
+  nodes.for_each_node([&](const geometry::NearestSeed::Index& n) {
     grid.values[nodes.at(n)] = static_cast<float>(nodes.distance(n) - radius - closing);
   });
 
-  const std::vector<Vec3> surface = zero_crossings(nodes, grid.values);
+  const std::vector<Vec3> surface = geometry::zero_crossings(nodes, grid.values);
   nodes.propagate(surface);
-  nodes.for_each_node([&](const NearestSeed::Index& n) {
+  nodes.for_each_node([&](const geometry::NearestSeed::Index& n) {
     float& value = grid.values[nodes.at(n)];
     value = static_cast<float>(std::copysign(nodes.distance(n), value) + closing);
   });
@@ -119,9 +121,10 @@ GridSamples particles_to_samples(const std::vector<Vec3>& points, int dimension,
   return grid;
 }
 
-Shape particles_to_level_set(const std::vector<Vec3>& points, int dimension, double voxel,
-                             double radius) {
-  return make_sampled_grid(particles_to_samples(points, dimension, voxel, radius), "particles");
+geometry::Shape particles_to_level_set(const std::vector<Vec3>& points, int dimension, double voxel,
+                                       double radius) {
+  return geometry::make_sampled_grid(particles_to_samples(points, dimension, voxel, radius),
+                                     "particles");
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::sampling

@@ -6,12 +6,12 @@
 #include "snowshed/geometry/level_set.hpp"
 #include "snowshed/geometry/sampled_grid.hpp"
 
-namespace snowshed {
+namespace snowshed::sampling {
 
 /// Returns the radius of particles of which `per_voxel` were seeded to a voxel, metres: three
-/// eighths of their mean spacing. This factor keeps the volume best among those that were tried
-/// (within 1.5 % for slabs and domes in 2D and 3D, poisson or jittered), and the outline within 0.2
-/// voxels at each end.
+/// eighths of their mean spacing. Compared with other factors, this keeps the volume best (within
+/// 1.5 % for slabs and domes in 2D and 3D, poisson or jittered), and the outline within 0.2 voxels
+/// at each end.
 double particle_radius(int dimension, double voxel, double per_voxel);
 
 /// Returns the solid that a cloud of particles fills. This is the "VDB from particles" of the
@@ -26,11 +26,11 @@ double particle_radius(int dimension, double voxel, double per_voxel);
 ///
 /// Throws InputError if there are no points, if a point is not finite, or if the cloud's bounds
 /// need too large a grid.
-Shape particles_to_level_set(const std::vector<Vec3>& points, int dimension, double voxel,
-                             double radius);
+geometry::Shape particles_to_level_set(const std::vector<Vec3>& points, int dimension, double voxel,
+                                       double radius);
 
 /// Returns the samples of that solid at a spacing of half a voxel; in 2D a single one along y.
-GridSamples particles_to_samples(const std::vector<Vec3>& points, int dimension, double voxel,
-                                 double radius);
+geometry::GridSamples particles_to_samples(const std::vector<Vec3>& points, int dimension,
+                                           double voxel, double radius);
 
-}  // namespace snowshed
+}  // namespace snowshed::sampling

@@ -9,7 +9,7 @@
 
 #include "snowshed/particles/point_grid.hpp"
 
-namespace snowshed {
+namespace snowshed::sampling {
 namespace {
 
 /// The weight of a pair of points: (1 - d / (2 r_max))^8 as a fixed-point number, with their
@@ -84,7 +84,7 @@ std::vector<Vec3> eliminate_samples(const Candidates& candidates, std::size_t co
   const std::vector<Vec3>& points = candidates.points;
   const double sampled_share = static_cast<double>(count) / candidates.inside_count;
   const PairWeight pair_weight(dimension, point_measure, sampled_share);
-  const PointGrid grid(points, pair_weight.reach(), stop);
+  const particles::PointGrid grid(points, pair_weight.reach(), stop);
 
   std::vector<std::int64_t> weights(points.size(), 0);
   for (std::uint32_t i = 0; i < points.size(); ++i) {
@@ -112,4 +112,4 @@ std::vector<Vec3> eliminate_samples(const Candidates& candidates, std::size_t co
   return chosen;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::sampling

@@ -7,7 +7,7 @@
 #include "snowshed/core/stop_request.hpp"
 #include "snowshed/core/vec.hpp"
 
-namespace snowshed {
+namespace snowshed::sampling {
 
 /// Random points in and around a solid.
 struct Candidates {
@@ -35,4 +35,4 @@ struct Candidates {
 std::vector<Vec3> eliminate_samples(const Candidates& candidates, std::size_t count, int dimension,
                                     double point_measure, const StopRequest& stop = {});
 
-}  // namespace snowshed
+}  // namespace snowshed::sampling

@@ -10,7 +10,7 @@
 #include "snowshed/sampling/sample_elimination.hpp"
 #include "snowshed/sampling/voxel_set.hpp"
 
-namespace snowshed {
+namespace snowshed::sampling {
 namespace {
 
 [[noreturn]] void fail(const std::string& where, double value, const std::string& allowed) {
@@ -44,11 +44,11 @@ double count_for(double measure, int dimension, double voxel, double per_voxel) 
 
 /// A box cut into equal cells no larger than the spacing.
 struct Tiling {
-  OrientedBox box;
+  geometry::OrientedBox box;
   std::array<std::size_t, 3> counts{1, 1, 1};
   Mat3 cell = Mat3::Zero();  // columns: the edges of a cell
 
-  Tiling(const OrientedBox& box, int dimension, double spacing) : box(box) {
+  Tiling(const geometry::OrientedBox& box, int dimension, double spacing) : box(box) {
     for (int axis = 0; axis < 3; ++axis) {
       if (axis == 1 && dimension == 2) continue;
       const double length = 2 * box.half[axis];
@@ -69,7 +69,7 @@ struct Tiling {
 /// Places a point in each lattice cell: its centre, or a random point if `random` is given.
 class LatticeSeeder {
  public:
-  LatticeSeeder(const LevelSet& shape, Random* random, const StopRequest& stop)
+  LatticeSeeder(const geometry::LevelSet& shape, Random* random, const StopRequest& stop)
       : shape_(shape), random_(random), check_stop_(stop) {}
 
   /// Returns one point for every cell of the tiling.
@@ -104,13 +104,13 @@ class LatticeSeeder {
     return cell * Vec3(a - 0.5, b - 0.5, c - 0.5);
   }
 
-  const LevelSet& shape_;
+  const geometry::LevelSet& shape_;
   Random* random_;
   StopCheck check_stop_;
 };
 
-std::vector<Vec3> seed_lattice(const LevelSet& shape, int dimension, double spacing, Random* random,
-                               const StopRequest& stop) {
+std::vector<Vec3> seed_lattice(const geometry::LevelSet& shape, int dimension, double spacing,
+                               Random* random, const StopRequest& stop) {
   LatticeSeeder seeder(shape, random, stop);
   if (const auto box = scene_box(shape, dimension))
     return seeder.fill(Tiling(*box, dimension, spacing));
@@ -121,8 +121,8 @@ std::vector<Vec3> seed_lattice(const LevelSet& shape, int dimension, double spac
 
 /// Returns random candidates inside the solid and within `margin` of it, on average `per_voxel` in
 /// each voxel. At least `wanted` of them are inside.
-Candidates draw_candidates(const LevelSet& shape, int dimension, double voxel, double per_voxel,
-                           double margin, std::size_t wanted, Random& random,
+Candidates draw_candidates(const geometry::LevelSet& shape, int dimension, double voxel,
+                           double per_voxel, double margin, std::size_t wanted, Random& random,
                            const StopRequest& stop) {
   constexpr int max_rounds = 1000;
   const std::vector<Voxel> voxels = voxelize(shape, dimension, voxel, margin, stop);
@@ -145,8 +145,8 @@ Candidates draw_candidates(const LevelSet& shape, int dimension, double voxel, d
   return candidates;
 }
 
-std::vector<Vec3> seed_poisson(const LevelSet& shape, int dimension, double voxel, double per_voxel,
-                               Random& random, const StopRequest& stop) {
+std::vector<Vec3> seed_poisson(const geometry::LevelSet& shape, int dimension, double voxel,
+                               double per_voxel, Random& random, const StopRequest& stop) {
   constexpr std::size_t candidates_per_point = 3;  // Yuksel: 5 gains little over 3
   const double total = measure(shape, dimension, voxel, stop);
   const auto count = static_cast<std::size_t>(count_for(total, dimension, voxel, per_voxel));
@@ -161,8 +161,9 @@ std::vector<Vec3> seed_poisson(const LevelSet& shape, int dimension, double voxe
 
 }  // namespace
 
-std::vector<Vec3> seed(const LevelSet& shape, int dimension, double voxel, double per_voxel,
-                       SeedPattern pattern, std::uint64_t seed, const StopRequest& stop) {
+std::vector<Vec3> seed(const geometry::LevelSet& shape, int dimension, double voxel,
+                       double per_voxel, SeedPattern pattern, std::uint64_t seed,
+                       const StopRequest& stop) {
   // Checks the arguments and refuses excessive counts before anything is allocated.
   expected_count(shape, dimension, voxel, per_voxel, pattern);
   Random random(seed);
@@ -176,8 +177,8 @@ std::vector<Vec3> seed(const LevelSet& shape, int dimension, double voxel, doubl
   return points;
 }
 
-std::size_t expected_count(const LevelSet& shape, int dimension, double voxel, double per_voxel,
-                           SeedPattern pattern) {
+std::size_t expected_count(const geometry::LevelSet& shape, int dimension, double voxel,
+                           double per_voxel, SeedPattern pattern) {
   check_arguments(dimension, voxel, per_voxel);
   const double count = count_for(measure(shape, dimension, voxel), dimension, voxel, per_voxel);
   const auto box = scene_box(shape, dimension);
@@ -185,4 +186,4 @@ std::size_t expected_count(const LevelSet& shape, int dimension, double voxel, d
   return Tiling(*box, dimension, spacing(dimension, voxel, per_voxel)).size();
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::sampling

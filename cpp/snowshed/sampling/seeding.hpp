@@ -8,7 +8,7 @@
 #include "snowshed/core/stop_request.hpp"
 #include "snowshed/geometry/level_set.hpp"
 
-namespace snowshed {
+namespace snowshed::sampling {
 
 /// The arrangement of the particles of a solid, see `seed`.
 enum class SeedPattern { regular, jittered, poisson };
@@ -28,12 +28,13 @@ inline constexpr double max_particles = 2e8;
 ///
 /// The same arguments give the same points. Throws InputError if the solid is unbounded, if it
 /// holds no particle, or if it holds more than `max_particles`, and Stopped on request.
-std::vector<Vec3> seed(const LevelSet& shape, int dimension, double voxel, double per_voxel,
-                       SeedPattern pattern, std::uint64_t seed, const StopRequest& stop = {});
+std::vector<Vec3> seed(const geometry::LevelSet& shape, int dimension, double voxel,
+                       double per_voxel, SeedPattern pattern, std::uint64_t seed,
+                       const StopRequest& stop = {});
 
 /// Returns the number of particles that `seed` will place. It is exact for poisson and for boxes,
 /// and per_voxel * measure / voxel^d otherwise.
-std::size_t expected_count(const LevelSet& shape, int dimension, double voxel, double per_voxel,
-                           SeedPattern pattern);
+std::size_t expected_count(const geometry::LevelSet& shape, int dimension, double voxel,
+                           double per_voxel, SeedPattern pattern);
 
-}  // namespace snowshed
+}  // namespace snowshed::sampling

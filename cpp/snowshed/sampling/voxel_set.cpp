@@ -7,14 +7,14 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/geometry/bounds.hpp"
 
-namespace snowshed {
+namespace snowshed::sampling {
 namespace {
 
 constexpr std::size_t max_boundary_cells = 200'000'000;
 constexpr int max_levels = 20;
 
-void require_bounded(const Bounds& bounds, int dimension) {
-  if (!is_finite(bounds, dimension))
+void require_bounded(const geometry::Bounds& bounds, int dimension) {
+  if (!geometry::is_finite(bounds, dimension))
     throw InputError("", "the solid is unbounded; only bounded solids can be filled or measured");
 }
 
@@ -27,7 +27,7 @@ class Subdivision {
     int levels;
   };
 
-  Subdivision(const LevelSet& shape, int dimension, const StopRequest& stop)
+  Subdivision(const geometry::LevelSet& shape, int dimension, const StopRequest& stop)
       : shape_(shape), bounds_(shape.bounds()), dimension_(dimension), check_stop_(stop) {}
 
   /// Returns the smallest cell with edge `edge` * 2^levels that covers the solid and the margin.
@@ -116,8 +116,8 @@ class Subdivision {
     }
   }
 
-  const LevelSet& shape_;
-  const Bounds bounds_;
+  const geometry::LevelSet& shape_;
+  const geometry::Bounds bounds_;
   const int dimension_;
   StopCheck check_stop_;
   std::size_t cells_ = 0;
@@ -125,8 +125,8 @@ class Subdivision {
 
 }  // namespace
 
-std::vector<Voxel> voxelize(const LevelSet& shape, int dimension, double edge, double margin,
-                            const StopRequest& stop, const Vec3& shift) {
+std::vector<Voxel> voxelize(const geometry::LevelSet& shape, int dimension, double edge,
+                            double margin, const StopRequest& stop, const Vec3& shift) {
   std::vector<Voxel> voxels;
   Subdivision cut(shape, dimension, stop);
   const auto [center, levels] = cut.root(edge, margin, shift);
@@ -134,7 +134,7 @@ std::vector<Voxel> voxelize(const LevelSet& shape, int dimension, double edge, d
   return voxels;
 }
 
-std::vector<double> shares_within(const LevelSet& shape, int dimension, double edge,
+std::vector<double> shares_within(const geometry::LevelSet& shape, int dimension, double edge,
                                   const std::vector<Voxel>& voxels, const StopRequest& stop) {
   const int levels = dimension == 2 ? 2 : 1;
   Subdivision cut(shape, dimension, stop);
@@ -146,8 +146,8 @@ std::vector<double> shares_within(const LevelSet& shape, int dimension, double e
   return shares;
 }
 
-std::optional<OrientedBox> scene_box(const LevelSet& shape, int dimension) {
-  std::optional<OrientedBox> box = shape.oriented_box();
+std::optional<geometry::OrientedBox> scene_box(const geometry::LevelSet& shape, int dimension) {
+  std::optional<geometry::OrientedBox> box = shape.oriented_box();
   if (!box || dimension == 3) return box;
   const bool across_plane = std::abs(box->axes(1, 1)) > 1 - 1e-12;
   if (!across_plane || std::abs(box->center.y()) >= box->half.y()) return std::nullopt;
@@ -155,17 +155,18 @@ std::optional<OrientedBox> scene_box(const LevelSet& shape, int dimension) {
   return box;
 }
 
-double measure(const LevelSet& shape, int dimension, double voxel, const StopRequest& stop) {
+double measure(const geometry::LevelSet& shape, int dimension, double voxel,
+               const StopRequest& stop) {
   require_bounded(shape.bounds(), dimension);
   if (const auto box = scene_box(shape, dimension))
     return dimension == 2 ? 4 * box->half.x() * box->half.z() : 8 * box->half.prod();
   Subdivision cut(shape, dimension, stop);
   auto [center, levels] = cut.root(voxel, 0.0);
   const double edge = std::ldexp(voxel, levels);
-  // A small solid needs a finer subdivision of its boundary most, and can afford it.
+  // Small solids, which have few cells, get the finest subdivision of their boundary.
   const int coarse_levels = dimension == 2 ? 12 : 8;
   levels += std::clamp(coarse_levels - levels, 1, 3);
   return cut.measure(center, edge, levels);
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::sampling

@@ -6,7 +6,7 @@
 #include "snowshed/core/stop_request.hpp"
 #include "snowshed/geometry/level_set.hpp"
 
-namespace snowshed {
+namespace snowshed::sampling {
 
 /// A voxel that may hold points of a solid.
 struct Voxel {
@@ -20,22 +20,24 @@ struct Voxel {
 ///
 /// Throws InputError if the solid is unbounded or needs more than 2e8 voxels on its boundary, and
 /// Stopped on request.
-std::vector<Voxel> voxelize(const LevelSet& shape, int dimension, double edge, double margin = 0.0,
-                            const StopRequest& stop = {}, const Vec3& shift = Vec3::Zero());
+std::vector<Voxel> voxelize(const geometry::LevelSet& shape, int dimension, double edge,
+                            double margin = 0.0, const StopRequest& stop = {},
+                            const Vec3& shift = Vec3::Zero());
 
 /// Returns which part of each voxel lies within the solid, 0 to 1, with the error of `measure`.
 /// `voxels` are those that `voxelize` found for an edge. Throws Stopped on request.
-std::vector<double> shares_within(const LevelSet& shape, int dimension, double edge,
+std::vector<double> shares_within(const geometry::LevelSet& shape, int dimension, double edge,
                                   const std::vector<Voxel>& voxels, const StopRequest& stop = {});
 
 /// Returns `shape` as a box if it is one. In 2D this is the rectangle in which the box cuts the
 /// plane y = 0, with edges along columns 0 and 2 of `axes`; the box's own y axis must be normal to
 /// the plane.
-std::optional<OrientedBox> scene_box(const LevelSet& shape, int dimension);
+std::optional<geometry::OrientedBox> scene_box(const geometry::LevelSet& shape, int dimension);
 
 /// Returns the volume (3D, m3) or area (2D, m2) of a bounded solid. It is exact for boxes in any
 /// orientation. For other solids, voxels on the boundary are subdivided and cut by the tangent
 /// plane, with an error of second order in the voxel size. Throws as `voxelize` does.
-double measure(const LevelSet& shape, int dimension, double voxel, const StopRequest& stop = {});
+double measure(const geometry::LevelSet& shape, int dimension, double voxel,
+               const StopRequest& stop = {});
 
-}  // namespace snowshed
+}  // namespace snowshed::sampling

@@ -8,15 +8,17 @@
 #include "snowshed/methods/obstacle.hpp"
 #include "snowshed/scene/scene.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 
 /// Builds the ground, the panel, the obstacles of the scene's list and the sides of its domain, in
 /// this order. Relative file names are looked for in `base_dir`. Throws InputError naming the
 /// obstacle whose shape cannot be built. `notes`, if given, are those of build_shape.
-std::vector<Obstacle> build_obstacles(const Scene& scene, const std::filesystem::path& base_dir,
-                                      std::vector<std::string>* notes = nullptr);
+std::vector<methods::Obstacle> build_obstacles(const Scene& scene,
+                                               const std::filesystem::path& base_dir,
+                                               std::vector<std::string>* notes = nullptr);
 
 /// Returns the obstacles of the scene's list from the result of `build_obstacles`.
-std::vector<Obstacle> listed_obstacles(const Scene& scene, const std::vector<Obstacle>& built);
+std::vector<methods::Obstacle> listed_obstacles(const Scene& scene,
+                                                const std::vector<methods::Obstacle>& built);
 
-}  // namespace snowshed
+}  // namespace snowshed::scene

@@ -15,7 +15,7 @@
 #include "snowshed/geometry/sample_checks.hpp"
 #include "snowshed/geometry/sampled_grid.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 namespace {
 
 // Beyond this, squares and differences of coordinates lose the millimetres.
@@ -34,10 +34,10 @@ class Builder {
         depth_(depth),
         notes_(notes) {}
 
-  Shape build() const {
+  geometry::Shape build() const {
     if (depth_ > max_shape_depth)
       fail("", "shapes nested deeper than " + std::to_string(max_shape_depth) + " levels");
-    static const std::map<std::string, Shape (Builder::*)() const> makers = {
+    static const std::map<std::string, geometry::Shape (Builder::*)() const> makers = {
         {"plane", &Builder::plane},
         {"box", &Builder::box},
         {"sphere", &Builder::sphere},
@@ -59,54 +59,56 @@ class Builder {
   }
 
  private:
-  Shape plane() const {
-    return make_plane(point(spec_.center, "/center"), direction(spec_.normal, "/normal"));
+  geometry::Shape plane() const {
+    return geometry::make_plane(point(spec_.center, "/center"), direction(spec_.normal, "/normal"));
   }
 
-  Shape box() const {
+  geometry::Shape box() const {
     const Vec3 center = point(spec_.center, "/center");
     Vec3 size;
     for (int axis = 0; axis < 3; ++axis)
-      size[axis] = axis == 1 && dimension_ == 2 ? infinity : length(spec_.size[axis], "/size");
-    return make_box(center, size);
+      size[axis] =
+          axis == 1 && dimension_ == 2 ? geometry::infinity : length(spec_.size[axis], "/size");
+    return geometry::make_box(center, size);
   }
 
-  Shape sphere() const {
-    return make_sphere(point(spec_.center, "/center"), length(spec_.radius, "/radius"));
+  geometry::Shape sphere() const {
+    return geometry::make_sphere(point(spec_.center, "/center"), length(spec_.radius, "/radius"));
   }
 
-  Shape cylinder() const {
+  geometry::Shape cylinder() const {
     check_axis();
-    return make_cylinder(spec_.from, spec_.to, length(spec_.radius, "/radius"));
+    return geometry::make_cylinder(spec_.from, spec_.to, length(spec_.radius, "/radius"));
   }
 
-  Shape capsule() const {
+  geometry::Shape capsule() const {
     check_axis();
-    return make_capsule(spec_.from, spec_.to, length(spec_.radius, "/radius"));
+    return geometry::make_capsule(spec_.from, spec_.to, length(spec_.radius, "/radius"));
   }
 
-  Shape plate() const {
+  geometry::Shape plate() const {
     const Vec3 normal = direction(spec_.normal, "/normal");
     if (std::hypot(normal.x(), normal.z()) < 1e-6)
       fail("/normal", describe(spec_.normal) +
                           " is along y; a plate needs a normal with a part "
                           "in the x-z plane");
-    return make_plate(point(spec_.center, "/center"), normal, length(spec_.length, "/length"),
-                      dimension_ == 2 ? infinity : length(spec_.width, "/width"),
-                      length(spec_.thickness, "/thickness"));
+    return geometry::make_plate(
+        point(spec_.center, "/center"), normal, length(spec_.length, "/length"),
+        dimension_ == 2 ? geometry::infinity : length(spec_.width, "/width"),
+        length(spec_.thickness, "/thickness"));
   }
 
-  Shape mesh() const {
+  geometry::Shape mesh() const {
     const double scale = length(spec_.scale, "/scale");
-    return make_mesh_solid(file(), scale, dimension_, notes_);
+    return geometry::make_mesh_solid(file(), scale, dimension_, notes_);
   }
 
-  Shape grid() const {
-    GridSamples samples;
+  geometry::Shape grid() const {
+    geometry::GridSamples samples;
     samples.origin = point(spec_.origin, "/origin", any_y);
     samples.spacing = length(spec_.spacing, "/spacing");
     const std::filesystem::path path = file();
-    NpyArray array = read_npy(path);
+    geometry::NpyArray array = geometry::read_npy(path);
     const std::vector<std::size_t>& n = array.shape;
     const bool flat = n.size() == 2;
     if (flat && dimension_ == 3)
@@ -115,27 +117,27 @@ class Builder {
                        "a grid with the indices [x][y][z]");
     samples.counts = {n[0], flat ? 1 : n[1], flat ? n[1] : n[2]};
     samples.values = std::move(array.values);
-    require_counts(samples, path.string());
-    repair_distances(samples, path.string(), notes_);
+    geometry::require_counts(samples, path.string());
+    geometry::repair_distances(samples, path.string(), notes_);
     return in_scene(std::move(samples), path.string());
   }
 
-  Shape vdb() const {
-    const VdbSource source{file(), spec_.grid, length(spec_.threshold, "/threshold"),
-                           length(spec_.scale, "/scale")};
-    return in_scene(read_vdb(source), source.path.string());
+  geometry::Shape vdb() const {
+    const geometry::VdbSource source{file(), spec_.grid, length(spec_.threshold, "/threshold"),
+                                     length(spec_.scale, "/scale")};
+    return in_scene(geometry::read_vdb(source), source.path.string());
   }
 
-  Shape make_union() const { return unite(children(1)); }
+  geometry::Shape make_union() const { return geometry::unite(children(1)); }
 
-  Shape difference() const {
-    std::vector<Shape> shapes = children(2);
-    Shape first = shapes.front();
+  geometry::Shape difference() const {
+    std::vector<geometry::Shape> shapes = children(2);
+    geometry::Shape first = shapes.front();
     shapes.erase(shapes.begin());
-    return subtract(std::move(first), std::move(shapes));
+    return geometry::subtract(std::move(first), std::move(shapes));
   }
 
-  Shape transformed() const {
+  geometry::Shape transformed() const {
     if (spec_.shapes.size() != 1)
       fail("/shapes", std::to_string(spec_.shapes.size()) + " shapes; a transform takes one");
     const Vec3 translation = point(spec_.translate, "/translate");
@@ -147,15 +149,15 @@ class Builder {
     if (!(std::abs(spec_.angle) <= 36000))
       fail("/angle", describe(spec_.angle) + "; allowed: -36000 to 36000 degrees");
     const double angle = radians(std::fmod(spec_.angle, 360.0));
-    return transform(children(1).front(), Eigen::AngleAxisd(angle, axis).toRotationMatrix(),
-                     translation);
+    return geometry::transform(children(1).front(),
+                               Eigen::AngleAxisd(angle, axis).toRotationMatrix(), translation);
   }
 
-  std::vector<Shape> children(std::size_t at_least) const {
+  std::vector<geometry::Shape> children(std::size_t at_least) const {
     if (spec_.shapes.size() < at_least)
       fail("/shapes", std::to_string(spec_.shapes.size()) + " shapes; at least " +
                           std::to_string(at_least) + " needed");
-    std::vector<Shape> shapes;
+    std::vector<geometry::Shape> shapes;
     for (std::size_t i = 0; i < spec_.shapes.size(); ++i)
       shapes.push_back(Builder(spec_.shapes[i], dimension_, path_ + "/shapes/" + std::to_string(i),
                                base_dir_, depth_ + 1, notes_)
@@ -163,9 +165,9 @@ class Builder {
     return shapes;
   }
 
-  Shape in_scene(GridSamples samples, const std::string& where) const {
-    if (dimension_ == 2) samples = samples_at_y0(samples, where);
-    return make_sampled_grid(std::move(samples), where);
+  geometry::Shape in_scene(geometry::GridSamples samples, const std::string& where) const {
+    if (dimension_ == 2) samples = geometry::samples_at_y0(samples, where);
+    return geometry::make_sampled_grid(std::move(samples), where);
   }
 
   std::filesystem::path file() const {
@@ -224,9 +226,10 @@ class Builder {
 
 }  // namespace
 
-Shape build_shape(const ShapeSpec& spec, int dimension, const std::string& json_path,
-                  const std::filesystem::path& base_dir, std::vector<std::string>* notes) {
+geometry::Shape build_shape(const ShapeSpec& spec, int dimension, const std::string& json_path,
+                            const std::filesystem::path& base_dir,
+                            std::vector<std::string>* notes) {
   return Builder(spec, dimension, json_path, base_dir, 1, notes).build();
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::scene

@@ -8,7 +8,7 @@
 #include "snowshed/geometry/level_set.hpp"
 #include "snowshed/scene/scene.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 
 /// Largest depth to which unions, differences and transforms may nest.
 inline constexpr int max_shape_depth = 32;
@@ -20,8 +20,9 @@ inline constexpr int max_shape_depth = 32;
 /// Changes and assumptions about files are added to `notes`, if given, a sentence each.
 ///
 /// Throws InputError with the JSON path (`json_path` + "/radius") of a bad value, or with
-/// the file and place of bad mesh or grid data.
-Shape build_shape(const ShapeSpec& spec, int dimension, const std::string& json_path,
-                  const std::filesystem::path& base_dir, std::vector<std::string>* notes = nullptr);
+/// the file and the position in it of bad mesh or grid data.
+geometry::Shape build_shape(const ShapeSpec& spec, int dimension, const std::string& json_path,
+                            const std::filesystem::path& base_dir,
+                            std::vector<std::string>* notes = nullptr);
 
-}  // namespace snowshed
+}  // namespace snowshed::scene

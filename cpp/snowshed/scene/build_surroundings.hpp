@@ -6,9 +6,9 @@
 #include "snowshed/methods/surroundings.hpp"
 #include "snowshed/scene/scene.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 
 /// Relative file names are looked for in `base_dir`. Throws InputError.
-Surroundings build_surroundings(const Scene& scene, const std::filesystem::path& base_dir);
+methods::Surroundings build_surroundings(const Scene& scene, const std::filesystem::path& base_dir);
 
-}  // namespace snowshed
+}  // namespace snowshed::scene

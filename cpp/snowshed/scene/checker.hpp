@@ -5,7 +5,7 @@
 
 #include "snowshed/scene/path_visitor.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 
 class Checker : public PathVisitor<Checker> {
  public:
@@ -13,17 +13,18 @@ class Checker : public PathVisitor<Checker> {
 
   void version(const char*, int, const char*) {}
 
-  void number(const char* key, double& value, const char* unit, const Range& range, const char*) {
+  void number(const char* key, double& value, const char* unit, const methods::Range& range,
+              const char*) {
     check(at(key), value, range.in(dimension_), unit);
   }
 
   void number_instead(const char* key, std::optional<double>& value, const char*, const char* unit,
-                      const Range& range, const char* doc) {
+                      const methods::Range& range, const char* doc) {
     if (value) number(key, *value, unit, range, doc);
   }
 
   template <class Int>
-  void integer(const char* key, Int& value, const Range& range, const char*) {
+  void integer(const char* key, Int& value, const methods::Range& range, const char*) {
     check(at(key), static_cast<double>(value), range);
   }
 
@@ -39,12 +40,13 @@ class Checker : public PathVisitor<Checker> {
       throw InputError(at(key), quote(value) + " is not the name of a file");
   }
 
-  void choice(const char* key, const Choice& value, const char*) {
+  void choice(const char* key, const methods::Choice& value, const char*) {
     if (!value.name())
       throw InputError(at(key), std::to_string(value.number()) + " is not a known choice");
   }
 
-  void vector(const char* key, Vec3& value, const char* unit, const Range& range, const char*) {
+  void vector(const char* key, Vec3& value, const char* unit, const methods::Range& range,
+              const char*) {
     if (dimension_ == 2) {
       check(at(key) + "/0", value.x(), range, unit);
       check(at(key) + "/1", value.z(), range, unit);
@@ -54,7 +56,7 @@ class Checker : public PathVisitor<Checker> {
   }
 
   void direction(const char* key, Vec3& value, const char* doc) {
-    vector(key, value, "", between(-1e6, 1e6), doc);
+    vector(key, value, "", methods::between(-1e6, 1e6), doc);
     const double length = dimension_ == 2 ? std::hypot(value.x(), value.z()) : value.norm();
     // Shorter vectors lose their direction to rounding when squared.
     constexpr double min_length = 1e-100;
@@ -65,14 +67,15 @@ class Checker : public PathVisitor<Checker> {
     if (dimension_ == 3) direction(key, value, doc);
   }
 
-  void spin(const char* key, Vec3& value, const char* unit, const Range& range, const char* doc) {
+  void spin(const char* key, Vec3& value, const char* unit, const methods::Range& range,
+            const char* doc) {
     if (dimension_ == 3)
       vector(key, value, unit, range, doc);
     else
       check(at(key), value.y(), range, unit);
   }
 
-  void outline(const char* key, Ring& ring, const char*) {
+  void outline(const char* key, geometry::Ring& ring, const char*) {
     constexpr std::size_t max_corners = 100000;
     if (ring.size() < 3 || ring.size() > max_corners)
       throw InputError(at(key), std::to_string(ring.size()) + " corners; allowed: 3 to " +
@@ -80,28 +83,28 @@ class Checker : public PathVisitor<Checker> {
     for (std::size_t i = 0; i < ring.size(); ++i)
       for (const int axis : {0, 1})
         check(at(key) + "/" + std::to_string(i) + "/" + std::to_string(axis), ring[i][axis],
-              allowed::map_coordinate, "m");
+              methods::allowed::map_coordinate, "m");
   }
 
   template <class T>
-  void list(const char* key, std::vector<T>& items, const Range& count, const char* doc) {
+  void list(const char* key, std::vector<T>& items, const methods::Range& count, const char* doc) {
     check_count(at(key), items.size(), count);
     PathVisitor::list(key, items, count, doc);
   }
 
  protected:
-  static void check(const std::string& path, double value, const Range& range,
+  static void check(const std::string& path, double value, const methods::Range& range,
                     const std::string& unit = "") {
     if (!range.contains(value))
       throw InputError(path,
                        show(value) + " is outside the allowed range (" + range.text(unit) + ")");
   }
 
-  static void check_count(const std::string& path, std::size_t size, const Range& count) {
+  static void check_count(const std::string& path, std::size_t size, const methods::Range& count) {
     if (!count.contains(static_cast<double>(size)))
       throw InputError(path, std::to_string(size) + " entries are outside the allowed number (" +
                                  count.text() + ")");
   }
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::scene

@@ -20,9 +20,9 @@
 //                                            fields after variant(name) belong to that kind only
 //   method(key, settings_key, member, doc, settings_doc)
 //                                            the name of a method, and the settings of that method
-//   method_ahead(key, member)                before parts that only some methods take
+//   read_method_first(key, member)           before parts that only some methods take
 //   shows(member, part)                      whether to visit a part: does the method take it?
-//   taken_by(part)                           before a part that may be left out: its methods
+//   only_for_methods_with(part)              before a part: only methods that take it may have it
 //   alias(key, other)                        before a field: another key for the same field
 //   accuracy({key...})                       before fields: those that trade accuracy for time
 #pragma once
@@ -32,198 +32,218 @@
 #include "snowshed/methods/settings_visitor.hpp"
 #include "snowshed/scene/scene.hpp"
 
-namespace snowshed {
+namespace snowshed::methods {
 
 template <>
-struct EnumNames<MisplacedSnow> {
-  static constexpr Named<MisplacedSnow> list[] = {{MisplacedSnow::refuse, "refuse"},
-                                                  {MisplacedSnow::allow, "allow"}};
+struct EnumNames<scene::MisplacedSnow> {
+  static constexpr Named<scene::MisplacedSnow> list[] = {{scene::MisplacedSnow::refuse, "refuse"},
+                                                         {scene::MisplacedSnow::allow, "allow"}};
 };
 
+}  // namespace snowshed::methods
+
+namespace snowshed::scene {
+
 inline constexpr const char* condition_doc =
-    "Motion of touching snow: stay (sticky), slide in the surface (slip), slide and leave "
+    "Snow in contact: sticks (sticky), slides and cannot leave (slip), slides and may leave "
     "(separate)";
 
 template <class V>
-void describe(V& v, Snow& s) {
+void describe(V& v, material::Snow& s) {
   v.choice("model", s.model, "Law: cohesive Modified Cam-Clay, or elastic without yielding");
-  v.number("density", s.density, "kg/m3", positive.up_to(1000.0), "Initial bulk density");
-  v.number("youngs_modulus", s.youngs_modulus, "Pa", allowed::pressure, "Young's modulus E");
-  v.number("poissons_ratio", s.poissons_ratio, "", non_negative.below(0.5), "Poisson's ratio nu");
-  v.number("critical_state_slope", s.critical_state_slope, "", allowed::coefficient,
+  v.number("density", s.density, "kg/m3", methods::positive.up_to(1000.0), "Initial bulk density");
+  v.number("youngs_modulus", s.youngs_modulus, "Pa", methods::allowed::pressure,
+           "Young's modulus E");
+  v.number("poissons_ratio", s.poissons_ratio, "", methods::non_negative.below(0.5),
+           "Poisson's ratio nu");
+  v.number("critical_state_slope", s.critical_state_slope, "", methods::allowed::coefficient,
            "Slope M of the critical state line (internal friction)");
-  v.number("preconsolidation_pressure", s.preconsolidation_pressure, "Pa", allowed::pressure,
-           "Initial preconsolidation pressure p0");
-  v.number("cohesion", s.cohesion, "", fraction, "Cohesion beta: tensile strength over p0");
-  v.number("hardening_factor", s.hardening_factor, "", positive.up_to(1e3), "Hardening factor xi");
+  v.number("preconsolidation_pressure", s.preconsolidation_pressure, "Pa",
+           methods::allowed::pressure, "Initial preconsolidation pressure p0");
+  v.number("cohesion", s.cohesion, "", methods::fraction,
+           "Cohesion beta: tensile strength over p0");
+  v.number("hardening_factor", s.hardening_factor, "", methods::positive.up_to(1e3),
+           "Hardening factor xi");
 }
 
 template <class V>
-void describe(V& v, ShapeSpec& s) {
+void describe(V& v, scene::ShapeSpec& s) {
   v.variants("type", s.type, "Kind of solid; it decides which other keys are allowed");
   if (v.variant("plane", "The half-space below a plane")) {
-    v.vector("center", s.center, "m", allowed::coordinate, "A point on the plane");
+    v.vector("center", s.center, "m", methods::allowed::coordinate, "A point on the plane");
     v.direction("normal", s.normal, "Outward normal");
   }
   if (v.variant("box", "Box along the axes; unbounded along y in 2D")) {
-    v.vector("center", s.center, "m", allowed::coordinate, "Centre");
-    v.vector("size", s.size, "m", allowed::size.required(), "Edge lengths");
+    v.vector("center", s.center, "m", methods::allowed::coordinate, "Centre");
+    v.vector("size", s.size, "m", methods::allowed::size.required(), "Edge lengths");
   }
   if (v.variant("sphere", "Ball; a disc in 2D")) {
-    v.vector("center", s.center, "m", allowed::coordinate, "Centre");
-    v.number("radius", s.radius, "m", allowed::size.required(), "Radius");
+    v.vector("center", s.center, "m", methods::allowed::coordinate, "Centre");
+    v.number("radius", s.radius, "m", methods::allowed::size.required(), "Radius");
   }
   if (v.variant("cylinder", "Cylinder with flat ends")) {
-    v.vector("from", s.from, "m", allowed::coordinate.required(), "One end of the axis");
-    v.vector("to", s.to, "m", allowed::coordinate.required(), "The other end");
-    v.number("radius", s.radius, "m", allowed::size.required(), "Radius");
+    v.vector("from", s.from, "m", methods::allowed::coordinate.required(), "One end of the axis");
+    v.vector("to", s.to, "m", methods::allowed::coordinate.required(), "The other end");
+    v.number("radius", s.radius, "m", methods::allowed::size.required(), "Radius");
   }
   if (v.variant("capsule", "All points within a radius of a segment")) {
-    v.vector("from", s.from, "m", allowed::coordinate.required(), "One end of the segment");
-    v.vector("to", s.to, "m", allowed::coordinate.required(), "The other end");
-    v.number("radius", s.radius, "m", allowed::size.required(), "Radius");
+    v.vector("from", s.from, "m", methods::allowed::coordinate.required(),
+             "One end of the segment");
+    v.vector("to", s.to, "m", methods::allowed::coordinate.required(), "The other end");
+    v.number("radius", s.radius, "m", methods::allowed::size.required(), "Radius");
   }
   if (v.variant("plate", "A rectangular board below its face")) {
-    v.vector("center", s.center, "m", allowed::coordinate, "Middle of the face");
+    v.vector("center", s.center, "m", methods::allowed::coordinate, "Middle of the face");
     v.direction("normal", s.normal, "Outward normal of the face; not along y");
-    v.number("length", s.length, "m", allowed::size.required(), "Length, down the slope");
-    v.number("width", s.width, "m", allowed::size.required_in_3d(), "Width, across; ignored in 2D");
-    v.number("thickness", s.thickness, "m", allowed::size.required(), "Thickness, below the face");
+    v.number("length", s.length, "m", methods::allowed::size.required(), "Length, down the slope");
+    v.number("width", s.width, "m", methods::allowed::size.required_in_3d(),
+             "Width, across; ignored in 2D");
+    v.number("thickness", s.thickness, "m", methods::allowed::size.required(),
+             "Thickness, below the face");
   }
   if (v.variant("mesh", "Closed triangle mesh")) {
     v.file("file", s.file, "STL, OBJ or PLY file; relative to the scene file");
-    v.number("scale", s.scale, "m", positive.up_to(1e6), "Length of one unit of the file");
+    v.number("scale", s.scale, "m", methods::positive.up_to(1e6), "Length of one unit of the file");
   }
   if (v.variant("grid", "Sampled signed distances")) {
     v.file("file", s.file, "NPY file; relative to the scene file");
-    v.vector("origin", s.origin, "m", allowed::coordinate, "Position of the first sample");
-    v.number("spacing", s.spacing, "m", allowed::size.required(), "Distance between samples");
+    v.vector("origin", s.origin, "m", methods::allowed::coordinate, "Position of the first sample");
+    v.number("spacing", s.spacing, "m", methods::allowed::size.required(),
+             "Distance between samples");
   }
   if (v.variant("vdb", "Level set or fog volume of an OpenVDB file")) {
     v.file("file", s.file, "VDB file; relative to the scene file");
     v.text("grid", s.grid, "Name of the grid; empty: the only one of floats");
-    v.number("scale", s.scale, "m", positive.up_to(1e6), "Length of one unit of the file");
-    v.number("threshold", s.threshold, "", positive.up_to(1e6),
+    v.number("scale", s.scale, "m", methods::positive.up_to(1e6), "Length of one unit of the file");
+    v.number("threshold", s.threshold, "", methods::positive.up_to(1e6),
              "Threshold of a fog volume: the solid is where its value is larger");
   }
   if (v.variant("union", "Everything in any of the shapes")) {
-    v.list("shapes", s.shapes, between(1, 10000).required(), "The parts");
+    v.list("shapes", s.shapes, methods::between(1, 10000).required(), "The parts");
   }
   if (v.variant("difference", "The first shape without the others")) {
-    v.list("shapes", s.shapes, between(2, 10000).required(),
+    v.list("shapes", s.shapes, methods::between(2, 10000).required(),
            "The body, then the shapes that are cut away");
   }
   if (v.variant("transform", "A shape, rotated about the origin and then moved")) {
-    v.list("shapes", s.shapes, exactly(1).required(), "The shape");
+    v.list("shapes", s.shapes, methods::exactly(1).required(), "The shape");
     v.axis("axis", s.axis, "Rotation axis");
-    v.number("angle", s.angle, "degrees", between(-360.0, 360.0), "Rotation about the axis");
-    v.vector("translate", s.translate, "m", allowed::coordinate, "Translation, after the rotation");
+    v.number("angle", s.angle, "degrees", methods::between(-360.0, 360.0),
+             "Rotation about the axis");
+    v.vector("translate", s.translate, "m", methods::allowed::coordinate,
+             "Translation, after the rotation");
   }
   v.end_variants();
 }
 
 template <class V>
-void describe(V& v, MotionSpec& m) {
-  v.vector("velocity", m.velocity, "m/s", allowed::speed, "Velocity");
-  v.spin("angular_velocity", m.angular_velocity, "rad/s", allowed::speed,
+void describe(V& v, geometry::MotionSpec& m) {
+  v.vector("velocity", m.velocity, "m/s", methods::allowed::speed, "Velocity");
+  v.spin("angular_velocity", m.angular_velocity, "rad/s", methods::allowed::speed,
          "Angular velocity about the pivot");
-  v.vector("pivot", m.pivot, "m", allowed::coordinate,
+  v.vector("pivot", m.pivot, "m", methods::allowed::coordinate,
            "Centre of the rotation; moves with the velocity");
-  v.number("start", m.start, "s", allowed::time,
+  v.number("start", m.start, "s", methods::allowed::time,
            "Start of the motion, on the clock of the whole run");
-  v.number("end", m.end, "s", allowed::time, "End of the motion");
+  v.number("end", m.end, "s", methods::allowed::time, "End of the motion");
 }
 
 template <class V>
-void describe(V& v, ObstacleSpec& o) {
+void describe(V& v, scene::ObstacleSpec& o) {
   v.text("name", o.name, "Name in messages and results");
-  v.object("shape", o.shape, Need::required, "The solid");
+  v.object("shape", o.shape, methods::Need::required, "The solid");
   v.choice("condition", o.condition, condition_doc);
-  v.number("friction", o.friction, "", allowed::coefficient,
+  v.number("friction", o.friction, "", methods::allowed::coefficient,
            "Coulomb coefficient; unused when sticky");
   v.optional("motion", o.motion, "Prescribed rigid motion; fixed without it");
 }
 
 template <class V>
-void describe(V& v, BodySpec& b) {
-  v.object("shape", b.shape, Need::required, "The solid to fill with snow");
-  v.vector("velocity", b.velocity, "m/s", allowed::speed, "Initial velocity");
-  v.integer("event", b.event, non_negative.up_to(1000),
+void describe(V& v, scene::BodySpec& b) {
+  v.object("shape", b.shape, methods::Need::required, "The solid to fill with snow");
+  v.vector("velocity", b.velocity, "m/s", methods::allowed::speed, "Initial velocity");
+  v.integer("event", b.event, methods::non_negative.up_to(1000),
             "Event at whose start it appears, 1 the first; 0: at the start of every event");
   v.optional("snow", b.snow,
              "Snow of its own; values that are left out are those of the scene's snow");
 }
 
 template <class V>
-void describe(V& v, Panel& p) {
+void describe(V& v, scene::Panel& p) {
   v.alias("height", "lower_edge_height");  // the words of pvlib
   v.alias("length", "slant_height");
   v.alias("tilt", "surface_tilt");
-  v.number("height", p.height, "m", allowed::size_or_zero.required(),
+  v.number("height", p.height, "m", methods::allowed::size_or_zero.required(),
            "Vertical distance of the lower edge above the ground");
-  v.number("length", p.length, "m", allowed::size.required(), "Length along the slope");
-  v.number("width", p.width, "m", allowed::size.required_in_3d(),
+  v.number("length", p.length, "m", methods::allowed::size.required(), "Length along the slope");
+  v.number("width", p.width, "m", methods::allowed::size.required_in_3d(),
            "Width across the slope; ignored in 2D");
-  v.number("tilt", p.tilt, "degrees", non_negative.below(90.0), "Tilt from the horizontal");
-  v.number("thickness", p.thickness, "m", allowed::size_or_zero,
+  v.number("tilt", p.tilt, "degrees", methods::non_negative.below(90.0),
+           "Tilt from the horizontal");
+  v.number("thickness", p.thickness, "m", methods::allowed::size_or_zero,
            "Thickness, below the sliding face");
   v.choice("condition", p.condition, condition_doc);
-  v.number("friction", p.friction, "", allowed::coefficient,
+  v.number("friction", p.friction, "", methods::allowed::coefficient,
            "Coulomb coefficient; unused when sticky");
 }
 
 template <class V>
-void describe(V& v, Layer& l) {
-  v.number("thickness", l.thickness, "m", allowed::size.required(),
+void describe(V& v, scene::Layer& l) {
+  v.number("thickness", l.thickness, "m", methods::allowed::size.required(),
            "Thickness, normal to the panel");
   v.optional("snow", l.snow,
              "Snow of its own; values that are left out are those of the scene's snow");
-  v.integer("event", l.event, non_negative.up_to(1000),
+  v.integer("event", l.event, methods::non_negative.up_to(1000),
             "Event at whose start it is laid, 1 the first; 0: at the start of every event");
 }
 
 template <class V>
-void describe(V& v, Slab& s) {
-  v.number("thickness", s.thickness, "m", allowed::size_or_zero,
+void describe(V& v, scene::Slab& s) {
+  v.number("thickness", s.thickness, "m", methods::allowed::size_or_zero,
            "Thickness, normal to the panel; 0: that of the layers");
-  v.number("length", s.length, "m", allowed::size_or_zero, "Length; 0: as long as the panel");
-  v.number("width", s.width, "m", allowed::size_or_zero,
+  v.number("length", s.length, "m", methods::allowed::size_or_zero,
+           "Length; 0: as long as the panel");
+  v.number("width", s.width, "m", methods::allowed::size_or_zero,
            "Width; 0: two thirds of the panel's; ignored in 2D");
-  v.list("layers", s.layers, between(0, 1000), "Layers from the panel up, instead of a thickness");
+  v.list("layers", s.layers, methods::between(0, 1000),
+         "Layers from the panel up, instead of a thickness");
 }
 
 template <class V>
-void describe(V& v, Ground& g) {
-  v.number("tilt", g.tilt, "degrees", Range{-60.0, 60.0, true, true, Need::optional},
+void describe(V& v, scene::Ground& g) {
+  v.number("tilt", g.tilt, "degrees",
+           methods::Range{-60.0, 60.0, true, true, methods::Need::optional},
            "Tilt; positive falls in the slide direction");
   v.choice("condition", g.condition, condition_doc);
-  v.number("friction", g.friction, "", allowed::coefficient,
+  v.number("friction", g.friction, "", methods::allowed::coefficient,
            "Coulomb coefficient; unused when sticky");
 }
 
 template <class V>
-void describe(V& v, HoleSpec& h) {
-  v.outline("outline", h.outline, "Corners, in the terrain's coordinates, m");
+void describe(V& v, methods::HoleSpec& h) {
+  v.outline("outline", h.outline, "Corners, in the terrain's coordinates");
 }
 
 template <class V>
-void describe(V& v, AreaSpec& a) {
+void describe(V& v, methods::AreaSpec& a) {
   v.text("name", a.name, "Name in messages and results");
-  v.outline("outline", a.outline, "Corners, in the terrain's coordinates, m");
-  v.list("holes", a.holes, between(0, 1000), "Parts within the outline that do not belong to it");
-  v.number("thickness", a.thickness, "m", positive.up_to(100.0).required(),
+  v.outline("outline", a.outline, "Corners, in the terrain's coordinates");
+  v.list("holes", a.holes, methods::between(0, 1000),
+         "Parts within the outline that do not belong to it");
+  v.number("thickness", a.thickness, "m", methods::positive.up_to(100.0).required(),
            "Thickness of the snow, normal to the ground");
 }
 
 template <class V>
-void describe(V& v, ResistanceSpec& r) {
+void describe(V& v, methods::ResistanceSpec& r) {
   v.text("name", r.name, "Name in messages and results");
-  v.outline("outline", r.outline, "Corners, in the terrain's coordinates, m");
-  v.list("holes", r.holes, between(0, 1000), "Parts within the outline that do not belong to it");
+  v.outline("outline", r.outline, "Corners, in the terrain's coordinates");
+  v.list("holes", r.holes, methods::between(0, 1000),
+         "Parts within the outline that do not belong to it");
 }
 
 template <class V>
-void describe(V& v, TerrainSpec& t) {
+void describe(V& v, methods::TerrainSpec& t) {
   v.file("file", t.file, "Elevations, m: an ESRI ASCII grid; relative to the scene file");
   v.text("crs", t.crs, "Coordinate system of the raster and the areas, passed on to the results");
   v.flag("single_precision", t.single_precision,
@@ -232,15 +252,16 @@ void describe(V& v, TerrainSpec& t) {
   v.text("thickness_file", t.thickness_file,
          "Thickness of the released snow, m, in place of that of the areas: an ESRI ASCII grid; "
          "relative to the scene file");
-  v.number("max_thickness", t.max_thickness, "m", positive.up_to(100.0),
+  v.number("max_thickness", t.max_thickness, "m", methods::positive.up_to(100.0),
            "Largest thickness of the snow that is released or entrained");
-  v.number("max_slope", t.max_slope, "deg", positive.up_to(90.0),
+  v.number("max_slope", t.max_slope, "deg", methods::positive.up_to(90.0),
            "Steepest ground between neighbouring nodes under a release, where they differ by more "
            "than 10 m in height");
   v.text("notes", t.notes, "Assumptions about the files, one a line, passed on to the results");
-  v.list("release", t.release, between(1, 10000).required(), "Areas of release");
-  v.list("entrainment", t.entrainment, between(0, 10000), "Areas where the slide entrains snow");
-  v.list("resistance", t.resistance, between(0, 10000),
+  v.list("release", t.release, methods::between(1, 10000).required(), "Areas of release");
+  v.list("entrainment", t.entrainment, methods::between(0, 10000),
+         "Areas where the slide entrains snow");
+  v.list("resistance", t.resistance, methods::between(0, 10000),
          "Areas where forest or buildings resist the slide");
 }
 
@@ -248,97 +269,100 @@ void describe(V& v, TerrainSpec& t) {
 inline constexpr int max_stages = 100;
 
 template <class V>
-void describe(V& v, SampleSpec& s) {
+void describe(V& v, methods::SampleSpec& s) {
   v.file("file", s.file,
          "Segmented image: an NPY file of integers (nz, ny, nx), 0 air and any other number a "
          "grain; relative to the scene file");
-  v.number("voxel_size", s.voxel_size, "m", between(1e-9, 1.0).required(), "Edge of a voxel");
+  v.number("voxel_size", s.voxel_size, "m", methods::between(1e-9, 1.0).required(),
+           "Edge of a voxel");
   v.flag("split_labels", s.split_labels,
          "Whether each connected piece of a label is a grain; else all pieces of a label are one "
          "rigid grain");
 }
 
 template <class V>
-void describe(V& v, LoadingStage& s) {
+void describe(V& v, methods::LoadingStage& s) {
   v.choice("kind", s.kind,
            "Motion: the top plate down (compress), up until the stress has fallen (unload), up "
            "(stretch) or along x (shear); all sides inward (isotropic); a cone down (penetrate); "
            "nothing, until the snow rests (hold)");
-  v.number("speed", s.speed, "m/s", positive.up_to(1e3), "Speed of the plates or of the cone");
-  v.number("strain", s.strain, "", positive.up_to(10.0),
+  v.number("speed", s.speed, "m/s", methods::positive.up_to(1e3),
+           "Speed of the plates or of the cone");
+  v.number("strain", s.strain, "", methods::positive.up_to(10.0),
            "Displacement over the sample's initial height at which the stage ends");
-  v.number("stress", s.stress, "Pa", non_negative.up_to(1e12),
+  v.number("stress", s.stress, "Pa", methods::non_negative.up_to(1e12),
            "Stress that ends the stage (compress, isotropic; 0: none; unload), or is kept on the "
            "top plate (shear; 0: constant height)");
 }
 
 template <class V>
-void describe(V& v, Cone& c) {
-  v.number("radius", c.radius, "m", between(1e-9, 1.0),
+void describe(V& v, methods::Cone& c) {
+  v.number("radius", c.radius, "m", methods::between(1e-9, 1.0),
            "Radius of the cone's base and of the shaft");
-  v.number("half_angle", c.half_angle, "degrees", positive.up_to(90.0),
+  v.number("half_angle", c.half_angle, "degrees", methods::positive.up_to(90.0),
            "Angle between the axis and the cone's side");
 }
 
 template <class V>
-void describe(V& v, Domain& d) {
-  v.vector("min", d.min, "m", allowed::coordinate.required(), "Lowest corner");
-  v.vector("max", d.max, "m", allowed::coordinate.required(), "Highest corner");
+void describe(V& v, scene::Domain& d) {
+  v.vector("min", d.min, "m", methods::allowed::coordinate.required(), "Lowest corner");
+  v.vector("max", d.max, "m", methods::allowed::coordinate.required(), "Highest corner");
 }
 
 template <class V>
-void describe(V& v, Seeding& s) {
+void describe(V& v, methods::Seeding& s) {
   v.accuracy({"particles_per_voxel", "pattern"});
-  v.number("particles_per_voxel", s.particles_per_voxel, "", non_negative.up_to(1000.0),
+  v.number("particles_per_voxel", s.particles_per_voxel, "", methods::non_negative.up_to(1000.0),
            "Particles per voxel of edge dx, at least 4 in 2D and 6 in 3D; 0: 6 in 2D, 8 in 3D");
   v.choice("pattern", s.pattern, "Arrangement of the particles");
-  v.integer("seed", s.seed, non_negative, "Seed of the random numbers");
+  v.integer("seed", s.seed, methods::non_negative, "Seed of the random numbers");
   v.flag("allow_sparse", s.allow_sparse, "Accept fewer particles per voxel");
 }
 
 template <class V>
-void describe(V& v, Events& e) {
-  v.integer("count", e.count, between(1, 1000), "Number of slide-off events");
+void describe(V& v, methods::Events& e) {
+  v.integer("count", e.count, methods::between(1, 1000), "Number of slide-off events");
   v.choice("between", e.between,
            "Treatment of the stack between events: keep its particles, or reseed its volume");
-  v.number("max_time", e.max_time, "s", allowed::duration, "Longest duration of an event");
-  v.number("rest_speed", e.rest_speed, "m/s", positive.up_to(1e4),
+  v.number("max_time", e.max_time, "s", methods::allowed::duration, "Longest duration of an event");
+  v.number("rest_speed", e.rest_speed, "m/s", methods::positive.up_to(1e4),
            "Speed below which the snow counts as resting");
-  v.number("rest_time", e.rest_time, "s", allowed::time, "Duration of rest that ends the event");
+  v.number("rest_time", e.rest_time, "s", methods::allowed::time,
+           "Duration of rest that ends the event");
 }
 
 template <class V>
-void describe(V& v, Output& o) {
-  v.number("snapshot_interval", o.snapshot_interval, "s", allowed::time,
+void describe(V& v, methods::Output& o) {
+  v.number("snapshot_interval", o.snapshot_interval, "s", methods::allowed::time,
            "Simulated time between particle snapshots; 0: only at the end of an event");
   v.flag("film", o.film, "Record the particles over time, for snowshed view");
   v.number(
-      "film_interval", o.film_interval, "s", allowed::time,
+      "film_interval", o.film_interval, "s", methods::allowed::time,
       "Simulated time between frames of the film; 0: chosen by the expected duration of an event");
   v.flag("energy", o.energy, "Keep the energy balance");
-  v.number("checkpoint_interval", o.checkpoint_interval, "s", allowed::time,
+  v.number("checkpoint_interval", o.checkpoint_interval, "s", methods::allowed::time,
            "Wall time between checkpoints; 0: none");
 }
 
 /// Gives a visitor the method's description of its settings.
 template <class V>
-class SettingsAdapter final : public SettingsVisitor {
+class SettingsAdapter final : public methods::SettingsVisitor {
  public:
   explicit SettingsAdapter(V& v) : v_(v) {}
 
-  void number(const char* key, double& value, const char* unit, const Range& range,
+  void number(const char* key, double& value, const char* unit, const methods::Range& range,
               const char* doc) override {
     v_.number(key, value, unit, range, doc);
   }
   void number_instead(const char* key, std::optional<double>& value, const char* other,
-                      const char* unit, const Range& range, const char* doc) override {
+                      const char* unit, const methods::Range& range, const char* doc) override {
     v_.number_instead(key, value, other, unit, range, doc);
   }
-  void integer(const char* key, int& value, const Range& range, const char* doc) override {
+  void integer(const char* key, int& value, const methods::Range& range, const char* doc) override {
     v_.integer(key, value, range, doc);
   }
   void flag(const char* key, bool& value, const char* doc) override { v_.flag(key, value, doc); }
-  void choice(const char* key, const Choice& value, const char* doc) override {
+  void choice(const char* key, const methods::Choice& value, const char* doc) override {
     v_.choice(key, value, doc);
   }
   void alias(const char* key, const char* other) override { v_.alias(key, other); }
@@ -349,7 +373,7 @@ class SettingsAdapter final : public SettingsVisitor {
 };
 
 template <class V>
-void describe(V& v, MethodChoice& m) {
+void describe(V& v, methods::MethodChoice& m) {
   SettingsAdapter<V> adapter(v);
   m->describe(adapter);
 }
@@ -358,41 +382,43 @@ template <class V>
 void describe(V& v, Scene& s) {
   v.version("snowshed", scene_version, "Version of the scene format");
   // Stands before any vector, because it decides how vectors are written.
-  v.integer("dimension", s.dimension, between(2, 3), "2: the plane (x, z); 3: space");
+  v.integer("dimension", s.dimension, methods::between(2, 3), "2: the plane (x, z); 3: space");
   v.text("title", s.title, "Title of the scene");
-  v.number("gravity", s.gravity, "m/s2", non_negative.up_to(1e3), "Gravity, along -z");
+  v.number("gravity", s.gravity, "m/s2", methods::non_negative.up_to(1e3), "Gravity, along -z");
   v.choice("misplaced_snow", s.misplaced_snow,
            "Treatment of a scene that seeds more than 1 % of a body of snow inside an obstacle, "
            "below the ground, outside the domain, or within other snow");
-  v.method_ahead("method", s.numerics);
-  if (v.shows(s.numerics, Part::snow)) v.object("snow", s.snow, Need::optional, "The material");
-  v.taken_by(Part::panel);
+  v.read_method_first("method", s.numerics);
+  if (v.shows(s.numerics, methods::Part::snow))
+    v.object("snow", s.snow, methods::Need::optional, "The material");
+  v.only_for_methods_with(methods::Part::panel);
   v.optional("panel", s.panel,
              "The panel; its centre is the origin of x, which points down the slide direction");
-  v.taken_by(Part::slab);
+  v.only_for_methods_with(methods::Part::slab);
   v.optional("slab", s.slab, "The slab laid on the panel, centred, at the start of every event");
-  v.taken_by(Part::ground);
+  v.only_for_methods_with(methods::Part::ground);
   v.optional("ground", s.ground, "An inclined plane through the origin");
-  v.taken_by(Part::terrain);
+  v.only_for_methods_with(methods::Part::terrain);
   v.optional("terrain", s.terrain,
              "Ground from a raster of elevations, with the areas of its snow");
-  v.taken_by(Part::sample);
+  v.only_for_methods_with(methods::Part::sample);
   v.optional("sample", s.sample, "Segmented snow for a loading test");
-  if (v.shows(s.numerics, Part::sample))  // other scenes, and their hashes, lack the list
-    v.list("loading", s.loading, between(0, max_stages), "Stages of the loading test");
-  v.taken_by(Part::sample);
+  if (v.shows(s.numerics, methods::Part::sample))  // other scenes, and their hashes, lack the list
+    v.list("loading", s.loading, methods::between(0, max_stages), "Stages of the loading test");
+  v.only_for_methods_with(methods::Part::sample);
   v.optional("cone", s.cone, "Cone that the stages \"penetrate\" push in");
-  v.taken_by(Part::obstacles);
-  v.list("obstacles", s.obstacles, between(0, 10000), "Further solids that snow collides with");
-  v.taken_by(Part::bodies);
-  v.list("bodies", s.bodies, between(0, 10000), "Further bodies of snow");
-  v.taken_by(Part::domain);
+  v.only_for_methods_with(methods::Part::obstacles);
+  v.list("obstacles", s.obstacles, methods::between(0, 10000),
+         "Further solids that snow collides with");
+  v.only_for_methods_with(methods::Part::bodies);
+  v.list("bodies", s.bodies, methods::between(0, 10000), "Further bodies of snow");
+  v.only_for_methods_with(methods::Part::domain);
   v.optional("domain", s.domain, "A box with sticky sides; unbounded without it");
-  if (v.shows(s.numerics, Part::seeding))
-    v.object("seeding", s.seeding, Need::optional, "Seeding of the snow with particles");
+  if (v.shows(s.numerics, methods::Part::seeding))
+    v.object("seeding", s.seeding, methods::Need::optional, "Seeding of the snow with particles");
   v.method("method", "numerics", s.numerics, "The numerical method", "The method's settings");
-  v.object("events", s.events, Need::optional, "Number of events, and their end");
-  v.object("output", s.output, Need::optional, "Output during a run");
+  v.object("events", s.events, methods::Need::optional, "Number of events, and their end");
+  v.object("output", s.output, methods::Need::optional, "Output during a run");
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::scene

@@ -2,7 +2,7 @@
 
 #include "snowshed/scene/scene.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 namespace {
 
 using nlohmann::json;
@@ -20,10 +20,10 @@ std::vector<json::json_pointer> parts_with_condition(const json& scene) {
 /// Renames the condition `slip` of version 1, which released snow as `separate` does now.
 void rename_slip(json& scene, std::vector<std::string>& notes) {
   for (const json::json_pointer& part : parts_with_condition(scene)) {
-    const json::json_pointer place = part / "condition";
-    if (!scene.contains(place) || scene[place] != "slip") continue;
-    scene[place] = "separate";
-    notes.push_back(place.to_string() +
+    const json::json_pointer condition = part / "condition";
+    if (!scene.contains(condition) || scene[condition] != "slip") continue;
+    scene[condition] = "separate";
+    notes.push_back(condition.to_string() +
                     ": \"slip\" of version 1 is read as \"separate\", its name since version 2; "
                     "there \"slip\" holds snow on the surface except at its edge");
   }
@@ -39,4 +39,4 @@ std::vector<std::string> update_version(json& scene) {
   return notes;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::scene

@@ -6,12 +6,11 @@
 
 #include "snowshed/core/message_format.hpp"
 #include "snowshed/geometry/bounds.hpp"
-#include "snowshed/scene/assemble.hpp"
 #include "snowshed/scene/build_obstacles.hpp"
 #include "snowshed/scene/build_shape.hpp"
 #include "snowshed/scene/shape_measure.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 namespace {
 
 /// Files in millimetres that are read as metres, or the reverse, are 1000 times too large or small.
@@ -30,7 +29,7 @@ std::string file_of(const ShapeSpec& shape) {
   return "";
 }
 
-double longest_edge(const Bounds& bounds, int dimension) {
+double longest_edge(const geometry::Bounds& bounds, int dimension) {
   Vec3 size = bounds.max - bounds.min;
   if (dimension == 2) size.y() = 0;
   return size.maxCoeff();
@@ -44,15 +43,15 @@ double size_of_body(const BodySpec& body, std::size_t i, const Scene& scene,
                             ->bounds(),
                         scene.dimension);
   const auto box = shape_bounds(body.shape);
-  return box ? longest_edge({box->min(), box->max()}, scene.dimension) : infinity;
+  return box ? longest_edge({box->min(), box->max()}, scene.dimension) : geometry::infinity;
 }
 
 std::vector<Solid> solids_of(const Scene& scene, const std::filesystem::path& base_dir,
-                             const std::vector<Obstacle>& obstacles,
+                             const std::vector<methods::Obstacle>& obstacles,
                              std::vector<std::string>& notes) {
   std::vector<Solid> solids;
   if (scene.panel) solids.push_back({"", scene.panel->length});
-  const std::vector<Obstacle> listed = listed_obstacles(scene, obstacles);
+  const std::vector<methods::Obstacle> listed = listed_obstacles(scene, obstacles);
   for (std::size_t i = 0; i < listed.size(); ++i)
     solids.push_back({file_of(scene.obstacles[i].shape),
                       longest_edge(listed[i].shape->bounds(), scene.dimension)});
@@ -65,14 +64,15 @@ std::vector<Solid> solids_of(const Scene& scene, const std::filesystem::path& ba
 }  // namespace
 
 void add_notes_on_files(const Scene& scene, const std::filesystem::path& base_dir,
-                        const std::vector<Obstacle>& obstacles, std::vector<std::string>& notes) {
+                        const std::vector<methods::Obstacle>& obstacles,
+                        std::vector<std::string>& notes) {
   const std::vector<Solid> solids = solids_of(scene, base_dir, obstacles, notes);
   const double cell = scene.numerics->resolution();
   for (const Solid& solid : solids) {
     if (solid.file.empty() || !std::isfinite(solid.size)) continue;
     const std::string size =
         solid.file + ": the solid is " + show_briefly(solid.size) + " m" + " large, ";
-    const std::string question = "; if the unit of the file is another, give its \"scale\"";
+    const std::string question = "; if the file is in another unit, set its \"scale\"";
     double largest = 0;  // the largest value of all others
     for (const Solid& other : solids)
       if (&other != &solid && std::isfinite(other.size)) largest = std::max(largest, other.size);
@@ -86,4 +86,4 @@ void add_notes_on_files(const Scene& scene, const std::filesystem::path& base_di
   }
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::scene

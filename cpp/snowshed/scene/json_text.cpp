@@ -8,7 +8,7 @@
 #include "snowshed/core/message_format.hpp"
 #include "snowshed/io/checksum.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 namespace {
 
 using nlohmann::json;
@@ -24,8 +24,8 @@ std::string location(const std::string& text, std::size_t position, const std::s
   return name + ":" + std::to_string(line) + ":" + std::to_string(column);
 }
 
-/// The library's message without its own code and place, in printable characters, and the last text
-/// that it could read.
+/// The message of the library in printable characters, without its error code and position, and the
+/// last text that the parser read.
 std::string plain_message(std::string message, std::string last_read) {
   last_read.erase(0, last_read.find_first_not_of(' '));
   for (const std::string end : {"syntax error ", ": "}) {
@@ -173,9 +173,9 @@ const std::string seal_begins = ",\n  \"checksum\": \"";
 
 /// The end of an object, with the checksum of the text before.
 std::string seal_of(const std::string& text) {
-  Crc32 sum;
+  io::Crc32 sum;
   sum.update(text.data(), text.size());
-  return seal_begins + hexadecimal(sum.value()) + "\"\n}\n";
+  return seal_begins + io::hexadecimal(sum.value()) + "\"\n}\n";
 }
 
 void append(std::string& out, const ordered_json& value, const std::string& indent) {
@@ -232,4 +232,4 @@ std::string indented_text(const ordered_json& value) {
   return out + "\n";
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::scene

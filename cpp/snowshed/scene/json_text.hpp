@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-namespace snowshed {
+namespace snowshed::scene {
 
 inline constexpr std::size_t max_text_bytes = 64u << 20;
 inline constexpr std::size_t max_depth = 64;
@@ -24,4 +24,4 @@ std::string sealed_text(const nlohmann::ordered_json& object);
 /// Indented text; arrays of plain values stay on one line.
 std::string indented_text(const nlohmann::ordered_json& value);
 
-}  // namespace snowshed
+}  // namespace snowshed::scene

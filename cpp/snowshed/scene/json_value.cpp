@@ -1,6 +1,6 @@
 #include "snowshed/scene/json_value.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 
 using nlohmann::json;
 
@@ -56,9 +56,9 @@ Vec3 to_vector(const json& value, const std::string& path, int dimension) {
   return {entry(0), entry(1), entry(2)};
 }
 
-Ring to_ring(const json& value, const std::string& path) {
+geometry::Ring to_ring(const json& value, const std::string& path) {
   if (!value.is_array()) throw wrong_type(path, value, "an array of corners [x, y]");
-  Ring ring;
+  geometry::Ring ring;
   for (std::size_t i = 0; i < value.size(); ++i) {
     const std::string corner = path + "/" + std::to_string(i);
     if (!value[i].is_array() || value[i].size() != 2)
@@ -70,4 +70,4 @@ Ring to_ring(const json& value, const std::string& path) {
   return ring;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::scene

@@ -14,7 +14,7 @@
 #include "snowshed/geometry/polygon.hpp"
 #include "snowshed/methods/range.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 
 /// A value in a message: the scalar itself, or "an object", "an array".
 std::string shown(const nlohmann::json& value);
@@ -31,11 +31,11 @@ std::string vector_text(int dimension);
 Vec3 to_vector(const nlohmann::json& value, const std::string& path, int dimension);
 
 /// The corners of an outline: an array of [x, y].
-Ring to_ring(const nlohmann::json& value, const std::string& path);
+geometry::Ring to_ring(const nlohmann::json& value, const std::string& path);
 
 /// Also takes whole numbers written as 5.0, which are integers in JSON Schema.
 template <class Int>
-Int to_integer(const nlohmann::json& value, const std::string& path, const Range& range,
+Int to_integer(const nlohmann::json& value, const std::string& path, const methods::Range& range,
                const std::string& allowed) {
   const double number = to_number(value, path, allowed);
   if (std::floor(number) != number) throw wrong_type(path, value, allowed);
@@ -58,4 +58,4 @@ Int to_integer(const nlohmann::json& value, const std::string& path, const Range
 std::size_t to_index(const nlohmann::json& value, const std::string& path,
                      const std::vector<std::string>& names);
 
-}  // namespace snowshed
+}  // namespace snowshed::scene

@@ -5,7 +5,7 @@
 
 #include "snowshed/scene/path_visitor.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 
 /// Visitor that finds the path of the object with a given address and type.
 class Locator : public PathVisitor<Locator> {
@@ -38,15 +38,15 @@ class Locator : public PathVisitor<Locator> {
   void flag(const char* key, bool& value, const char*) { compare(at(key), value); }
   void text(const char* key, std::string& value, const char*) { compare(at(key), value); }
   void file(const char* key, std::string& value, const char*) { compare(at(key), value); }
-  void choice(const char* key, const Choice& value, const char*) {
+  void choice(const char* key, const methods::Choice& value, const char*) {
     if (value.is_at(target_, type_)) result_ = at(key);
   }
   void direction(const char* key, Vec3& value, const char*) { compare(at(key), value); }
-  void outline(const char* key, Ring& ring, const char*) { compare(at(key), ring); }
+  void outline(const char* key, geometry::Ring& ring, const char*) { compare(at(key), ring); }
   void axis(const char* key, Vec3& value, const char*) { compare(at(key), value); }
 
   template <class T>
-  void object(const char* key, T& value, Need need, const char* doc) {
+  void object(const char* key, T& value, methods::Need need, const char* doc) {
     compare(at(key), value);
     PathVisitor::object(key, value, need, doc);
   }
@@ -56,13 +56,13 @@ class Locator : public PathVisitor<Locator> {
     if (value) compare(at(key), *value);
     PathVisitor::optional(key, value, doc);
   }
-  void method(const char* key, const char* settings_key, MethodChoice& method, const char* doc,
-              const char* settings_doc) {
+  void method(const char* key, const char* settings_key, methods::MethodChoice& method,
+              const char* doc, const char* settings_doc) {
     compare(at(settings_key), method);
     PathVisitor::method(key, settings_key, method, doc, settings_doc);
   }
   template <class T>
-  void list(const char* key, std::vector<T>& items, const Range& count, const char* doc) {
+  void list(const char* key, std::vector<T>& items, const methods::Range& count, const char* doc) {
     compare(at(key), items);
     for (std::size_t i = 0; i < items.size(); ++i)
       compare(pointer(at(key), std::to_string(i)), items[i]);
@@ -90,4 +90,4 @@ std::string path_of(const Scene& scene, const T& member) {
   return path;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::scene

@@ -1,5 +1,5 @@
-// Base of the visitors that need their place in a scene: it keeps the path to the visited object,
-// and visits the objects in it.
+// Base of the visitors that need paths in a scene: it keeps the path of the visited object, and
+// visits the objects in it.
 #pragma once
 
 #include <initializer_list>
@@ -11,9 +11,9 @@
 #include "snowshed/core/message_format.hpp"
 #include "snowshed/scene/describe.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 
-/// The path as messages show it: the whole document, whose path is empty, is "/".
+/// The path as messages show it: "/" for the document itself, whose path is empty.
 inline std::string shown_path(const std::string& path) { return path.empty() ? "/" : path; }
 
 /// `Self` is the visitor. A copy of it visits each nested object.
@@ -25,7 +25,7 @@ class PathVisitor {
       : path_(std::move(path)), dimension_(dimension) {}
 
   template <class T>
-  void object(const char* key, T& value, Need, const char*) {
+  void object(const char* key, T& value, methods::Need, const char*) {
     visit(at(key), value);
   }
 
@@ -35,16 +35,18 @@ class PathVisitor {
   }
 
   template <class T>
-  void list(const char* key, std::vector<T>& items, const Range&, const char*) {
+  void list(const char* key, std::vector<T>& items, const methods::Range&, const char*) {
     for (std::size_t i = 0; i < items.size(); ++i)
       visit(pointer(at(key), std::to_string(i)), items[i]);
   }
 
-  void method_ahead(const char*, MethodChoice&) {}
-  bool shows(const MethodChoice& method, Part part) const { return method.takes(part); }
-  void taken_by(Part) {}
+  void read_method_first(const char*, methods::MethodChoice&) {}
+  bool shows(const methods::MethodChoice& method, methods::Part part) const {
+    return method.takes(part);
+  }
+  void only_for_methods_with(methods::Part) {}
 
-  void method(const char*, const char* settings_key, MethodChoice& method, const char*,
+  void method(const char*, const char* settings_key, methods::MethodChoice& method, const char*,
               const char*) {
     visit(at(settings_key), method);
   }
@@ -88,4 +90,4 @@ class PathVisitor {
   std::vector<std::string> known_types_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::scene

@@ -5,18 +5,18 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/message_format.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 namespace {
 
 /// Table 4.3.1; with the density and Poisson's ratio of Table 4.1.1 these are Snow's defaults.
-Snow calibrated_snow() { return {}; }
+material::Snow calibrated_snow() { return {}; }
 
 /// Reference values of Table 3.2.1 that differ from the calibrated ones. In our copy of the thesis
 /// bold type survives only as blanks around a number. It marks M 0.5, xi 0.1 and beta 0.1, and
 /// leaves p0 open, for which the middle value is taken. (The thesis's chapter 4 says that only p0
 /// changed in the calibration, which would make the reference beta 0.2.)
-Snow reference_snow() {
-  Snow snow;
+material::Snow reference_snow() {
+  material::Snow snow;
   snow.preconsolidation_pressure = 5.0e3;
   snow.cohesion = 0.1;
   return snow;
@@ -33,11 +33,11 @@ Scene lab_scene(double tilt) {
   panel.length = 0.245;
   panel.width = 0.213;
   panel.tilt = tilt;
-  panel.condition = Condition::separate;
+  panel.condition = methods::Condition::separate;
   Slab& slab = scene.slab.emplace();
   slab.thickness = 0.02;  // its length stays 0: as long as the panel, even if that is changed
   slab.width = 0.142;
-  scene.ground.emplace().condition = Condition::sticky;
+  scene.ground.emplace().condition = methods::Condition::sticky;
   scene.events.count = 5;
   return scene;
 }
@@ -71,9 +71,9 @@ struct Preset {
   std::function<T()> make;
 };
 
-const std::vector<Preset<Snow>>& snow_presets() {
-  static const std::vector<Preset<Snow>> presets = {{"calibrated", calibrated_snow},
-                                                    {"reference", reference_snow}};
+const std::vector<Preset<material::Snow>>& snow_presets() {
+  static const std::vector<Preset<material::Snow>> presets = {{"calibrated", calibrated_snow},
+                                                              {"reference", reference_snow}};
   return presets;
 }
 
@@ -103,7 +103,7 @@ T make(const std::vector<Preset<T>>& presets, const std::string& name) {
 
 }  // namespace
 
-Snow preset_snow(const std::string& name) { return make(snow_presets(), name); }
+material::Snow preset_snow(const std::string& name) { return make(snow_presets(), name); }
 
 Scene preset_scene(const std::string& name) { return make(scene_presets(), name); }
 
@@ -111,4 +111,4 @@ std::vector<std::string> snow_preset_names() { return names_of(snow_presets()); 
 
 std::vector<std::string> scene_preset_names() { return names_of(scene_presets()); }
 
-}  // namespace snowshed
+}  // namespace snowshed::scene

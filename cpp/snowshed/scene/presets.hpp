@@ -6,10 +6,10 @@
 
 #include "snowshed/scene/scene.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 
 /// "calibrated" (Table 4.3.1) or "reference" (Table 3.2.1). Throws InputError on other names.
-Snow preset_snow(const std::string& name);
+material::Snow preset_snow(const std::string& name);
 
 /// "lab-40" and "lab-50" (Tables 2.3.1 and 4.1.1), "sensitivity" (Table 3.2.1) or "geometry"
 /// (Table 5.1.1, reference values). Throws InputError on other names.
@@ -20,4 +20,4 @@ Scene preset_scene(const std::string& name);
 std::vector<std::string> snow_preset_names();
 std::vector<std::string> scene_preset_names();
 
-}  // namespace snowshed
+}  // namespace snowshed::scene

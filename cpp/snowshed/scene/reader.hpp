@@ -9,7 +9,7 @@
 #include "snowshed/scene/checker.hpp"
 #include "snowshed/scene/json_value.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 
 class Reader : public Checker {
  public:
@@ -28,14 +28,14 @@ class Reader : public Checker {
   }
 
   void version(const char* key, int number, const char*) {
-    const json* value = take(key, Need::required, "the version " + std::to_string(number));
+    const json* value = take(key, methods::Need::required, "the version " + std::to_string(number));
     if (value && *value != number)
       throw InputError(at(key), shown(*value) + " is not a version that this program reads (" +
                                     std::to_string(oldest_scene_version) + " to " +
                                     std::to_string(number) + ")");
   }
 
-  void number(const char* key, double& value, const char* unit, const Range& range,
+  void number(const char* key, double& value, const char* unit, const methods::Range& range,
               const char* doc) {
     const std::string allowed = "a number (" + range.in(dimension_).text(unit) + ")";
     if (const json* given = take(key, range.need, allowed)) {
@@ -45,7 +45,7 @@ class Reader : public Checker {
   }
 
   void number_instead(const char* key, std::optional<double>& value, const char* other,
-                      const char* unit, const Range& range, const char* doc) {
+                      const char* unit, const methods::Range& range, const char* doc) {
     if (object_.contains(key) && object_.contains(other))
       throw InputError(at(key), "takes the place of " + at(other) + "; give one of the two");
     keys_.push_back(key);
@@ -54,7 +54,7 @@ class Reader : public Checker {
   }
 
   template <class Int>
-  void integer(const char* key, Int& value, const Range& range, const char* doc) {
+  void integer(const char* key, Int& value, const methods::Range& range, const char* doc) {
     const std::string allowed = "a whole number (" + range.text() + ")";
     if (const json* given = take(key, range.need, allowed)) {
       value = to_integer<Int>(*given, at(key), range, allowed);
@@ -74,17 +74,18 @@ class Reader : public Checker {
   }
 
   void file(const char* key, std::string& value, const char* doc) {
-    if (const json* given = take(key, Need::required, "a file name")) {
+    if (const json* given = take(key, methods::Need::required, "a file name")) {
       value = to_text(*given, at(key));
       Checker::file(key, value, doc);
     }
   }
 
-  void choice(const char* key, const Choice& value, const char*) {
+  void choice(const char* key, const methods::Choice& value, const char*) {
     if (const json* given = take(key)) value.choose(to_index(*given, at(key), value.names()));
   }
 
-  void vector(const char* key, Vec3& value, const char* unit, const Range& range, const char* doc) {
+  void vector(const char* key, Vec3& value, const char* unit, const methods::Range& range,
+              const char* doc) {
     if (const json* given = take(key, range.need, vector_text(dimension_))) {
       value = to_vector(*given, at(key), dimension_);
       Checker::vector(key, value, unit, range, doc);
@@ -102,7 +103,8 @@ class Reader : public Checker {
     if (dimension_ == 3) direction(key, value, doc);
   }
 
-  void spin(const char* key, Vec3& value, const char* unit, const Range& range, const char* doc) {
+  void spin(const char* key, Vec3& value, const char* unit, const methods::Range& range,
+            const char* doc) {
     if (dimension_ == 3) {
       vector(key, value, unit, range, doc);
     } else if (const json* given = take(key)) {
@@ -111,15 +113,15 @@ class Reader : public Checker {
     }
   }
 
-  void outline(const char* key, Ring& ring, const char* doc) {
-    if (const json* given = take(key, Need::required, "an array of corners [x, y]")) {
+  void outline(const char* key, geometry::Ring& ring, const char* doc) {
+    if (const json* given = take(key, methods::Need::required, "an array of corners [x, y]")) {
       ring = to_ring(*given, at(key));
       Checker::outline(key, ring, doc);
     }
   }
 
   template <class T>
-  void object(const char* key, T& value, Need need, const char*) {
+  void object(const char* key, T& value, methods::Need need, const char*) {
     if (const json* given = take(key, need, "an object")) read(*given, at(key), dimension_, value);
   }
 
@@ -129,7 +131,7 @@ class Reader : public Checker {
   }
 
   template <class T>
-  void list(const char* key, std::vector<T>& items, const Range& count, const char*) {
+  void list(const char* key, std::vector<T>& items, const methods::Range& count, const char*) {
     const json* given = take(key, count.need, "an array");
     if (!given) return;
     if (!given->is_array()) throw wrong_type(at(key), *given, "an array");
@@ -139,16 +141,17 @@ class Reader : public Checker {
       read((*given)[i], at(key) + "/" + std::to_string(i), dimension_, items[i]);
   }
 
-  void method_ahead(const char* key, MethodChoice& method) {
+  void read_method_first(const char* key, methods::MethodChoice& method) {
     const auto given = object_.find(key);
     if (given != object_.end())
-      method = MethodChoice(*all_methods()[to_index(*given, at(key), method_names())]);
+      method = methods::MethodChoice(
+          *methods::all_methods()[to_index(*given, at(key), methods::method_names())]);
   }
 
-  void method(const char* key, const char* settings_key, MethodChoice& method, const char*,
+  void method(const char* key, const char* settings_key, methods::MethodChoice& method, const char*,
               const char* settings_doc) {
     take(key);  // read ahead
-    object(settings_key, method, Need::optional, settings_doc);
+    object(settings_key, method, methods::Need::optional, settings_doc);
   }
 
   void alias(const char* key, const char* other) {
@@ -160,7 +163,7 @@ class Reader : public Checker {
   }
 
   void variants(const char* key, std::string& type, const char* doc) {
-    const json* given = take(key, Need::required, "a text");
+    const json* given = take(key, methods::Need::required, "a text");
     if (!given) throw *missing_;  // without it no other key makes sense
     type = to_text(*given, at(key));
     Checker::variants(key, type, doc);
@@ -169,14 +172,15 @@ class Reader : public Checker {
  private:
   using json = nlohmann::json;
 
-  /// The value of `key`, or null if it is not there. A missing required key is reported only in
+  /// The value of `key`, or null if it is absent. A missing required key is reported only in
   /// `finish`, after unknown ones: a misspelt key is both, and naming the misspelling helps more.
-  const json* take(const char* key, Need need = Need::optional, const std::string& allowed = "") {
+  const json* take(const char* key, methods::Need need = methods::Need::optional,
+                   const std::string& allowed = "") {
     keys_.push_back(key);
     const auto alias = given_alias_.find(key);
     const auto member = object_.find(alias == given_alias_.end() ? key : alias->second);
     if (member != object_.end()) return &*member;
-    if (is_required(need, dimension_) && !missing_)
+    if (methods::is_required(need, dimension_) && !missing_)
       missing_ = InputError(at(key), "missing: " + allowed + " is required");
     return nullptr;
   }
@@ -200,4 +204,4 @@ class Reader : public Checker {
   std::optional<InputError> missing_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::scene

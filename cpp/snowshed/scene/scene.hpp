@@ -15,7 +15,7 @@
 #include "snowshed/methods/method_choice.hpp"
 #include "snowshed/methods/scene_parts.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 
 // Oldest version that is read, see earlier_version.hpp.
 inline constexpr int oldest_scene_version = 1;
@@ -39,20 +39,20 @@ struct ShapeSpec {
   Vec3 origin = Vec3::Zero();     // grid: position of the first sample
   double spacing = 0.0;           // grid: metres between samples
   std::string grid;               // vdb: name of the grid; empty: the only one of floats
-  double threshold = 0.5;         // vdb, a fog volume: the solid is where it is above this
+  double threshold = 0.5;         // vdb, a fog volume: threshold of the solid
   Vec3 translate = Vec3::Zero();  // transform: applied after the rotation
   Vec3 axis = Vec3::UnitY();      // transform: rotation axis
   double angle = 0.0;             // transform: degrees
   std::vector<ShapeSpec> shapes;  // union, difference (first minus the rest), transform (one)
 };
 
-/// Something snow collides with.
+/// A solid with which snow collides.
 struct ObstacleSpec {
   std::string name;
   ShapeSpec shape;
-  Condition condition = Condition::separate;
+  methods::Condition condition = methods::Condition::separate;
   double friction = 0.3;  // Coulomb coefficient; unused when sticky
-  std::optional<MotionSpec> motion;
+  std::optional<geometry::MotionSpec> motion;
 };
 
 /// A body of snow that appears at the start of event `event` (1 is the first; 0: at the start of
@@ -61,7 +61,7 @@ struct BodySpec {
   ShapeSpec shape;
   Vec3 velocity = Vec3::Zero();  // m/s
   int event = 1;
-  std::optional<Snow> snow;  // none: the scene's
+  std::optional<material::Snow> snow;  // none: the scene's
 };
 
 /// The panel of Figure 3.1.1: x points down the slide direction, z up, the origin of x is
@@ -72,15 +72,15 @@ struct Panel {
   double width = 0.0;      // m, 3D only
   double tilt = 40.0;      // degrees from horizontal
   double thickness = 0.0;  // m, below the sliding face
-  Condition condition = Condition::separate;
+  methods::Condition condition = methods::Condition::separate;
   double friction = 0.3;
 };
 
 /// A layer of the slab, over its whole length and width.
 struct Layer {
-  double thickness = 0.0;    // m
-  std::optional<Snow> snow;  // none: the scene's
-  int event = 0;             // at whose start it is laid, 1 the first; 0: of every event
+  double thickness = 0.0;              // m
+  std::optional<material::Snow> snow;  // none: the scene's
+  int event = 0;                       // at whose start it is laid, 1 the first; 0: of every event
 };
 
 /// The slab laid on the panel at the start of every event: of the scene's snow, or layer by layer.
@@ -94,7 +94,7 @@ struct Slab {
 /// An inclined plane through the origin; positive tilt falls in the slide direction.
 struct Ground {
   double tilt = 0.0;  // degrees
-  Condition condition = Condition::sticky;
+  methods::Condition condition = methods::Condition::sticky;
   double friction = 0.3;
 };
 
@@ -111,26 +111,26 @@ struct Scene {
   std::string title;
   double gravity = 9.81;  // m/s2, along -z
   MisplacedSnow misplaced_snow = MisplacedSnow::refuse;
-  Snow snow;
+  material::Snow snow;
   std::optional<Panel> panel;
   std::optional<Slab> slab;
   std::optional<Ground> ground;
-  std::optional<TerrainSpec> terrain;
-  std::optional<SampleSpec> sample;
-  std::vector<LoadingStage> loading;  // stages of the sample, one after another
-  std::optional<Cone> cone;           // none: the default one, if a stage asks for it
+  std::optional<methods::TerrainSpec> terrain;
+  std::optional<methods::SampleSpec> sample;
+  std::vector<methods::LoadingStage> loading;  // stages of the sample, one after another
+  std::optional<methods::Cone> cone;           // none: the default one, if a stage asks for it
   std::vector<ObstacleSpec> obstacles;
   std::vector<BodySpec> bodies;
   std::optional<Domain> domain;  // its sides are sticky walls; none: unbounded
-  Seeding seeding;
-  MethodChoice numerics;  // the method that the scene chooses, with its settings
-  Events events;
-  Output output;
+  methods::Seeding seeding;
+  methods::MethodChoice numerics;  // the method that the scene chooses, with its settings
+  methods::Events events;
+  methods::Output output;
 };
 
 /// The methods' view of a scene, to which it refers.
-inline SceneView view_of(const Scene& s) {
+inline methods::SceneView view_of(const Scene& s) {
   return {s.dimension, s.gravity, s.terrain, s.sample, s.loading, s.cone, s.events, s.output};
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::scene

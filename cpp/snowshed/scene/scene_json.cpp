@@ -11,7 +11,7 @@
 #include "snowshed/scene/validation.hpp"
 #include "snowshed/scene/writer.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 namespace {
 
 /// Reads at most one byte more than is allowed, even from an endless file.
@@ -64,9 +64,9 @@ void complete_snow(nlohmann::json& scene) {
   if (!scene.is_object() || !scene.contains("snow") || !scene["snow"].is_object()) return;
   const nlohmann::json of_scene = scene["snow"];
   for (const char* list : {"/slab/layers", "/bodies"}) {
-    const nlohmann::json::json_pointer place(list);
-    if (!scene.contains(place) || !scene[place].is_array()) continue;
-    for (auto& part : scene[place]) complete_snow(of_scene, part);
+    const nlohmann::json::json_pointer pointer(list);
+    if (!scene.contains(pointer) || !scene[pointer].is_array()) continue;
+    for (auto& part : scene[pointer]) complete_snow(of_scene, part);
   }
 }
 
@@ -133,13 +133,13 @@ std::string scene_checksum(const std::string& text) {
   if (json.is_object() && json.contains("numerics") && json["numerics"].is_object())
     json["numerics"].erase("threads");
   const std::string values = json.dump();
-  Crc32 sum;
+  io::Crc32 sum;
   sum.update(values.data(), values.size());
-  return hexadecimal(sum.value());
+  return io::hexadecimal(sum.value());
 }
 
-std::string write_snow(const Snow& snow) {
-  Snow copy = snow;
+std::string write_snow(const material::Snow& snow) {
+  material::Snow copy = snow;
   return indented_text(Writer::write(copy, 3));
 }
 
@@ -161,4 +161,4 @@ Scene resolve(Scene scene) {
   return scene;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::scene

@@ -8,13 +8,13 @@
 
 #include "snowshed/scene/scene.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 
 /// Reads and validates a scene. Missing values of a layer's or a body's snow are those of the
 /// scene's snow. Throws InputError whose `where` is the JSON pointer of the offending value
-/// ("/snow/density", "/" for the whole), or "name:line:column" when the text is not JSON. The text
-/// need not be trusted: its size, depth and number of values are limited. `notes` (if any) gets the
-/// new names of fields in a scene of an earlier version.
+/// ("/snow/density", "/" for the scene itself), or "name:line:column" when the text is not JSON.
+/// The text need not be trusted: its size, depth and number of values are limited. `notes` (if any)
+/// gets the new names of fields in a scene of an earlier version.
 Scene parse_scene(const std::string& text, const std::string& name = "scene",
                   std::vector<std::string>* notes = nullptr);
 
@@ -41,17 +41,17 @@ Scene with_threads(Scene scene, int threads);
 std::string scene_checksum(const std::string& text);
 
 /// The complete JSON of a snow.
-std::string write_snow(const Snow& snow);
+std::string write_snow(const material::Snow& snow);
 
 /// JSON Schema (2020-12) of the form; units stand under "x-unit". Rules between several fields
 /// are beyond a schema: `validate` has them.
 std::string scene_schema();
 
-/// Throws InputError at the first field out of range or at odds with another.
+/// Throws InputError at the first field that is out of range or contradicts another.
 void validate(const Scene& scene);
 
 /// Replaces the zeros that stand for "follow another field": the slab's length and width (from
 /// the panel) and the particles per voxel (from the dimension).
 Scene resolve(Scene scene);
 
-}  // namespace snowshed
+}  // namespace snowshed::scene

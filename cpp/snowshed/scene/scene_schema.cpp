@@ -2,7 +2,7 @@
 #include "snowshed/scene/scene_json.hpp"
 #include "snowshed/scene/schema_writer.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 
 std::string scene_schema() {
   nlohmann::ordered_json definitions = nlohmann::ordered_json::object();
@@ -20,4 +20,4 @@ std::string scene_schema() {
   return indented_text(schema);
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::scene

@@ -12,7 +12,7 @@
 #include "snowshed/methods/registry.hpp"
 #include "snowshed/scene/describe.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 
 class SchemaWriter {
  public:
@@ -31,10 +31,10 @@ class SchemaWriter {
   }
 
   void version(const char* key, int number, const char* doc) {
-    add(key, {{"const", number}}, doc, Need::required);
+    add(key, {{"const", number}}, doc, methods::Need::required);
   }
 
-  void number(const char* key, double& value, const char* unit, const Range& range,
+  void number(const char* key, double& value, const char* unit, const methods::Range& range,
               const char* doc) {
     // The range that either dimension allows.
     const json schema = limited("number", range.in(2), unit);
@@ -42,14 +42,14 @@ class SchemaWriter {
   }
 
   void number_instead(const char* key, std::optional<double>&, const char* other, const char* unit,
-                      const Range& range, const char* doc) {
+                      const methods::Range& range, const char* doc) {
     json schema = limited("number", range, unit);
     schema["x-instead-of"] = other;
     add(key, schema, doc);
   }
 
   template <class Int>
-  void integer(const char* key, Int& value, const Range& range, const char* doc) {
+  void integer(const char* key, Int& value, const methods::Range& range, const char* doc) {
     add(key, with_default(limited("integer", range), value, range.need), doc, range.need);
   }
 
@@ -62,58 +62,61 @@ class SchemaWriter {
   }
 
   void file(const char* key, std::string&, const char* doc) {
-    add(key, {{"type", "string"}, {"minLength", 1}}, doc, Need::required);
+    add(key, {{"type", "string"}, {"minLength", 1}}, doc, methods::Need::required);
   }
 
-  void choice(const char* key, const Choice& value, const char* doc) {
+  void choice(const char* key, const methods::Choice& value, const char* doc) {
     add(key, {{"enum", value.names()}, {"default", value.name()}}, doc);
   }
 
-  void vector(const char* key, Vec3& value, const char* unit, const Range& range, const char* doc) {
+  void vector(const char* key, Vec3& value, const char* unit, const methods::Range& range,
+              const char* doc) {
     add(key, with_default(array(limited("number", range), 2, unit), entries(value), range.need),
         doc, range.need);
   }
 
   void direction(const char* key, Vec3& value, const char* doc) {
-    vector(key, value, "", anything, doc);
+    vector(key, value, "", methods::anything, doc);
   }
 
   void axis(const char* key, Vec3& value, const char* doc) {
-    json schema = array(limited("number", anything), 3, "");
-    add(key, with_default(std::move(schema), entries(value), Need::optional),
+    json schema = array(limited("number", methods::anything), 3, "");
+    add(key, with_default(std::move(schema), entries(value), methods::Need::optional),
         std::string(doc) + " (3D only; +y in 2D)");
   }
 
-  void spin(const char* key, Vec3&, const char* unit, const Range& range, const char* doc) {
+  void spin(const char* key, Vec3&, const char* unit, const methods::Range& range,
+            const char* doc) {
     const json component = limited("number", range);
     json schema = {{"anyOf", json::array({component, array(component, 3, "")})}, {"x-unit", unit}};
     add(key, schema, std::string(doc) + "; in 2D a single number, about +y");
   }
 
-  void outline(const char* key, Ring&, const char* doc) {
+  void outline(const char* key, geometry::Ring&, const char* doc) {
     const json corner = {{"type", "array"},
-                         {"items", limited("number", allowed::map_coordinate)},
+                         {"items", limited("number", methods::allowed::map_coordinate)},
                          {"minItems", 2},
                          {"maxItems", 2}};
     add(key, {{"type", "array"}, {"items", corner}, {"minItems", 3}, {"x-unit", "m"}}, doc,
-        Need::required);
+        methods::Need::required);
   }
 
   template <class T>
-  void object(const char* key, T&, Need need, const char* doc) {
+  void object(const char* key, T&, methods::Need need, const char* doc) {
     add(key, schema_of<T>(), doc, need);
   }
 
   template <class T>
   void optional(const char* key, std::optional<T>&, const char* doc) {
     json schema = schema_of<T>();
-    if constexpr (std::is_same_v<T, Snow>)  // for a part the defaults are the scene's snow
+    if constexpr (std::is_same_v<T,
+                                 material::Snow>)  // for a part the defaults are the scene's snow
       for (auto& [name, property] : schema["properties"].items()) property.erase("default");
     add(key, schema, doc);
   }
 
   template <class T>
-  void list(const char* key, std::vector<T>&, const Range& count, const char* doc) {
+  void list(const char* key, std::vector<T>&, const methods::Range& count, const char* doc) {
     add(key,
         {{"type", "array"},
          {"items", schema_of<T>()},
@@ -122,24 +125,24 @@ class SchemaWriter {
         doc, count.need);
   }
 
-  void method_ahead(const char*, MethodChoice&) {}
+  void read_method_first(const char*, methods::MethodChoice&) {}
   /// Every part is described.
-  bool shows(const MethodChoice&, Part part) {
-    taken_by(part);
+  bool shows(const methods::MethodChoice&, methods::Part part) {
+    only_for_methods_with(part);
     return true;
   }
-  void taken_by(Part part) {
+  void only_for_methods_with(methods::Part part) {
     methods_ = json::array();
-    for (const MethodDescriptor* method : all_methods())
+    for (const methods::MethodDescriptor* method : methods::all_methods())
       if (method->info().takes.has(part)) methods_.push_back(method->info().name);
   }
 
-  void method(const char* key, const char* settings_key, MethodChoice&, const char* doc,
+  void method(const char* key, const char* settings_key, methods::MethodChoice&, const char* doc,
               const char* settings_doc) {
     json names = json::array(), alternatives = json::array();
-    for (const MethodDescriptor* method : all_methods()) {
+    for (const methods::MethodDescriptor* method : methods::all_methods()) {
       json schema = {{"title", method->info().name}, {"description", method->info().doc}};
-      schema.update(write(definitions_, MethodChoice(*method)));
+      schema.update(write(definitions_, methods::MethodChoice(*method)));
       names.push_back(method->info().name);
       alternatives.push_back(std::move(schema));
     }
@@ -161,7 +164,7 @@ class SchemaWriter {
   /// Always true: every kind is described, each in an object of its own.
   bool variant(const char* name, const char* doc) {
     end_variant();
-    add(variant_key_.c_str(), {{"const", name}}, variant_doc_, Need::required);
+    add(variant_key_.c_str(), {{"const", name}}, variant_doc_, methods::Need::required);
     variant_name_ = name;
     variant_what_ = doc;
     return true;
@@ -191,9 +194,10 @@ class SchemaWriter {
     variants_.push_back(std::move(schema));
   }
 
-  void add(const char* key, const json& schema, std::string doc, Need need = Need::optional) {
-    if (need == Need::required) required_.push_back(key);
-    if (need == Need::required_in_3d) doc += " (required in 3D)";
+  void add(const char* key, const json& schema, std::string doc,
+           methods::Need need = methods::Need::optional) {
+    if (need == methods::Need::required) required_.push_back(key);
+    if (need == methods::Need::required_in_3d) doc += " (required in 3D)";
     json property = {{"description", doc}};
     property.update(schema);
     if (!methods_.empty()) property["x-methods"] = std::move(methods_);
@@ -203,7 +207,7 @@ class SchemaWriter {
     properties_[key] = std::move(property);
   }
 
-  static json limited(const char* type, const Range& range, const std::string& unit = "") {
+  static json limited(const char* type, const methods::Range& range, const std::string& unit = "") {
     json schema = {{"type", type}};
     if (std::isfinite(range.min))
       schema[range.open_min ? "exclusiveMinimum" : "minimum"] = range.min;
@@ -222,8 +226,8 @@ class SchemaWriter {
 
   static json entries(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-  static json with_default(json schema, json value, Need need) {
-    if (need == Need::optional) schema["default"] = std::move(value);
+  static json with_default(json schema, json value, methods::Need need) {
+    if (need == methods::Need::optional) schema["default"] = std::move(value);
     return schema;
   }
 
@@ -253,4 +257,4 @@ class SchemaWriter {
   std::string variant_key_, variant_doc_, variant_name_, variant_what_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::scene

@@ -5,7 +5,7 @@
 
 #include "snowshed/core/angles.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 namespace {
 
 using Box = Eigen::AlignedBox3d;
@@ -107,4 +107,4 @@ std::optional<double> shape_volume(const ShapeSpec& shape, int dimension) {
   return std::nullopt;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::scene

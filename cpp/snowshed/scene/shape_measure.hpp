@@ -5,7 +5,7 @@
 
 #include "snowshed/scene/scene.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 
 /// Axis-aligned box around the shape, infinite for a plane; none if it depends on a file.
 std::optional<Eigen::AlignedBox3d> shape_bounds(const ShapeSpec& shape);
@@ -14,4 +14,4 @@ std::optional<Eigen::AlignedBox3d> shape_bounds(const ShapeSpec& shape);
 /// for unions, whose parts may overlap, and for differences.
 std::optional<double> shape_volume(const ShapeSpec& shape, int dimension);
 
-}  // namespace snowshed
+}  // namespace snowshed::scene

@@ -4,12 +4,15 @@
 #include <map>
 #include <set>
 
-#include "snowshed/scene/assemble.hpp"
+#include "snowshed/scene/distinct_snows.hpp"
+#include "snowshed/scene/event_bodies.hpp"
 #include "snowshed/scene/locator.hpp"
+#include "snowshed/scene/obstacle_specs.hpp"
+#include "snowshed/scene/panel_frame.hpp"
 #include "snowshed/scene/scene_json.hpp"
 #include "snowshed/scene/shape_measure.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 namespace {
 
 class SceneRules {
@@ -33,7 +36,7 @@ class SceneRules {
                                         path_and_value(scene_.events.max_time) + " s)");
     if (scene_.terrain) check_terrain(*scene_.terrain);
     scene_.numerics->validate(view_of(scene_));
-    if (scene_.numerics.takes(Part::bodies) && !scene_.slab && scene_.bodies.empty())
+    if (scene_.numerics.takes(methods::Part::bodies) && !scene_.slab && scene_.bodies.empty())
       fail(scene_, "there is no snow; give " + path_of(scene_, scene_.slab) + " or " +
                        path_of(scene_, scene_.bodies));
   }
@@ -94,7 +97,7 @@ class SceneRules {
     Scene single_layer = scene_;
     single_layer.slab->layers.clear();
     single_layer.slab->thickness = always + max_thickness;
-    return assemble_slab(single_layer, 1).front().shape;
+    return slab_bodies(single_layer, 1).front().shape;
   }
 
   void check_event(const int& event) const {
@@ -105,10 +108,10 @@ class SceneRules {
   }
 
   void check_snows() const {
-    const std::size_t snows = assemble_snows(scene_).size();
-    if (snows > max_materials)
+    const std::size_t snows = distinct_snows(scene_).size();
+    if (snows > material::max_materials)
       fail(scene_, std::to_string(snows) + " different snows in slab and bodies; at most " +
-                       std::to_string(max_materials) + " are allowed");
+                       std::to_string(material::max_materials) + " are allowed");
   }
 
   void check_fits(const double& slab, const double& panel) const {
@@ -151,7 +154,7 @@ class SceneRules {
   /// Names must differ, because results identify obstacles by them.
   void check_names() const {
     std::set<std::string> names;
-    for (const auto& obstacle : assemble_obstacles(scene_)) {
+    for (const auto& obstacle : obstacle_specs(scene_)) {
       if (obstacle.name.empty() || names.insert(obstacle.name).second) continue;
       const auto last = std::find_if(
           scene_.obstacles.rbegin(), scene_.obstacles.rend(),
@@ -171,36 +174,38 @@ class SceneRules {
 
   /// Checks that the method supports the scene's snow, events and output.
   void check_snow_and_events() const {
-    const MethodInfo& method = scene_.numerics->info();
+    const methods::MethodInfo& method = scene_.numerics->info();
     const std::string name = "the method " + quote(method.name);
     const auto refuse_own = [&](const auto& part) {
-      if (part.snow && !method.takes.has(Part::snow))
+      if (part.snow && !method.takes.has(methods::Part::snow))
         fail(*part.snow, name + " takes the snow of its settings");
     };
     for (const BodySpec& body : scene_.bodies) refuse_own(body);
     if (scene_.slab)
       for (const Layer& layer : scene_.slab->layers) refuse_own(layer);
-    const bool reseeds = scene_.events.between == Between::reseed && scene_.events.count > 1;
-    if (reseeds && method.takes.has(Part::bodies) && !method.takes.has(Part::seeding))
+    const bool reseeds =
+        scene_.events.between == methods::Between::reseed && scene_.events.count > 1;
+    if (reseeds && method.takes.has(methods::Part::bodies) &&
+        !method.takes.has(methods::Part::seeding))
       fail(scene_.events.between, name + " does not support \"reseed\"; use \"carry\"");
     if (scene_.output.energy && method.energies.empty())
       fail(scene_.output.energy, name + " has no energy balance");
   }
 
-  void check_terrain(const TerrainSpec& terrain) const {
+  void check_terrain(const methods::TerrainSpec& terrain) const {
     const bool from_map = !terrain.thickness_file.empty();
-    for (const AreaSpec& area : terrain.release) {
+    for (const methods::AreaSpec& area : terrain.release) {
       check_area(area);
       if (!from_map) check_thickness(area, terrain);
     }
-    for (const AreaSpec& area : terrain.entrainment) {
+    for (const methods::AreaSpec& area : terrain.entrainment) {
       check_area(area);
       check_thickness(area, terrain);
     }
-    for (const ResistanceSpec& area : terrain.resistance) check_area(area);
+    for (const methods::ResistanceSpec& area : terrain.resistance) check_area(area);
   }
 
-  void check_thickness(const AreaSpec& area, const TerrainSpec& terrain) const {
+  void check_thickness(const methods::AreaSpec& area, const methods::TerrainSpec& terrain) const {
     if (area.thickness > terrain.max_thickness)
       fail(area.thickness, show(area.thickness) + " m of snow; at most " +
                                show(terrain.max_thickness) +
@@ -211,12 +216,12 @@ class SceneRules {
   template <class Area>
   void check_area(const Area& area) const {
     check_ring(area.outline);
-    for (const HoleSpec& hole : area.holes) check_ring(hole.outline);
+    for (const methods::HoleSpec& hole : area.holes) check_ring(hole.outline);
   }
 
-  void check_ring(const Ring& ring) const {
-    if (twice_signed_area(ring) == 0.0) fail(ring, "encloses no area");
-    if (crosses_itself(ring)) fail(ring, "crosses or touches itself");
+  void check_ring(const geometry::Ring& ring) const {
+    if (geometry::twice_signed_area(ring) == 0.0) fail(ring, "encloses no area");
+    if (geometry::crosses_itself(ring)) fail(ring, "crosses or touches itself");
   }
 
   template <class T>
@@ -235,7 +240,7 @@ class SceneRules {
   }
 
   void check_shape(const ShapeSpec& shape, int depth) const {
-    constexpr int max_depth = 16;  // well inside the JSON parser's limit and any stack
+    constexpr int max_depth = 16;  // far below the limits of the JSON parser and of any stack
     if (depth > max_depth)
       fail(shape, "shapes are nested more than " + std::to_string(max_depth) + " deep");
     const bool has_axis = shape.type == "cylinder" || shape.type == "capsule";
@@ -246,7 +251,7 @@ class SceneRules {
     for (const auto& part : shape.shapes) check_shape(part, depth + 1);
   }
 
-  void check_seeding(const Seeding& seeding) const {
+  void check_seeding(const methods::Seeding& seeding) const {
     const double given = seeding.particles_per_voxel;
     const double min_count = in_3d() ? 6.0 : 4.0;  // thesis A.3.2
     if (given != 0.0 && given < min_count && !seeding.allow_sparse)
@@ -261,24 +266,24 @@ class SceneRules {
 
 }  // namespace
 
-void check_parts(const Scene& scene, const MethodInfo& method) {
+void check_parts(const Scene& scene, const methods::MethodInfo& method) {
   const auto check = [&](const auto& part, bool given, bool taken) {
     if (given && !taken)
       throw InputError(path_of(scene, part),
                        "the method " + quote(method.name) + " takes no such part");
   };
-  check(scene.panel, scene.panel.has_value(), method.takes.has(Part::panel));
-  check(scene.slab, scene.slab.has_value(), method.takes.has(Part::slab));
-  check(scene.ground, scene.ground.has_value(), method.takes.has(Part::ground));
-  check(scene.obstacles, !scene.obstacles.empty(), method.takes.has(Part::obstacles));
-  check(scene.bodies, !scene.bodies.empty(), method.takes.has(Part::bodies));
-  check(scene.domain, scene.domain.has_value(), method.takes.has(Part::domain));
-  check(scene.terrain, scene.terrain.has_value(), method.takes.has(Part::terrain));
-  check(scene.sample, scene.sample.has_value(), method.takes.has(Part::sample));
-  check(scene.loading, !scene.loading.empty(), method.takes.has(Part::sample));
-  check(scene.cone, scene.cone.has_value(), method.takes.has(Part::sample));
+  check(scene.panel, scene.panel.has_value(), method.takes.has(methods::Part::panel));
+  check(scene.slab, scene.slab.has_value(), method.takes.has(methods::Part::slab));
+  check(scene.ground, scene.ground.has_value(), method.takes.has(methods::Part::ground));
+  check(scene.obstacles, !scene.obstacles.empty(), method.takes.has(methods::Part::obstacles));
+  check(scene.bodies, !scene.bodies.empty(), method.takes.has(methods::Part::bodies));
+  check(scene.domain, scene.domain.has_value(), method.takes.has(methods::Part::domain));
+  check(scene.terrain, scene.terrain.has_value(), method.takes.has(methods::Part::terrain));
+  check(scene.sample, scene.sample.has_value(), method.takes.has(methods::Part::sample));
+  check(scene.loading, !scene.loading.empty(), method.takes.has(methods::Part::sample));
+  check(scene.cone, scene.cone.has_value(), method.takes.has(methods::Part::sample));
 }
 
 void check_rules(const Scene& scene) { SceneRules(scene).check(); }
 
-}  // namespace snowshed
+}  // namespace snowshed::scene

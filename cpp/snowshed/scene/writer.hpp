@@ -6,7 +6,7 @@
 
 #include "snowshed/scene/describe.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 
 class Writer {
  public:
@@ -20,43 +20,47 @@ class Writer {
   }
 
   void version(const char* key, int number, const char*) { json_[key] = number; }
-  void number(const char* key, double& value, const char*, const Range&, const char*) {
+  void number(const char* key, double& value, const char*, const methods::Range&, const char*) {
     json_[key] = value;
   }
   void number_instead(const char* key, std::optional<double>& value, const char* other, const char*,
-                      const Range&, const char*) {
+                      const methods::Range&, const char*) {
     if (!value) return;
     json_.erase(other);
     json_[key] = *value;
   }
   template <class Int>
-  void integer(const char* key, Int& value, const Range&, const char*) {
+  void integer(const char* key, Int& value, const methods::Range&, const char*) {
     json_[key] = value;
   }
   void flag(const char* key, bool& value, const char*) { json_[key] = value; }
   void text(const char* key, std::string& value, const char*) { json_[key] = value; }
   void file(const char* key, std::string& value, const char*) { json_[key] = value; }
-  void choice(const char* key, const Choice& value, const char*) { json_[key] = value.name(); }
+  void choice(const char* key, const methods::Choice& value, const char*) {
+    json_[key] = value.name();
+  }
 
-  void vector(const char* key, Vec3& v, const char*, const Range&, const char*) { put(key, v); }
+  void vector(const char* key, Vec3& v, const char*, const methods::Range&, const char*) {
+    put(key, v);
+  }
   void direction(const char* key, Vec3& v, const char*) { put(key, v); }
   void axis(const char* key, Vec3& v, const char*) {
     if (dimension_ == 3) put(key, v);
   }
-  void spin(const char* key, Vec3& v, const char*, const Range&, const char*) {
+  void spin(const char* key, Vec3& v, const char*, const methods::Range&, const char*) {
     if (dimension_ == 3)
       put(key, v);
     else
       json_[key] = v.y();
   }
 
-  void outline(const char* key, Ring& ring, const char*) {
+  void outline(const char* key, geometry::Ring& ring, const char*) {
     auto& corners = json_[key] = nlohmann::ordered_json::array();
-    for (const Point2& p : ring) corners.push_back({p[0], p[1]});
+    for (const geometry::Point2& p : ring) corners.push_back({p[0], p[1]});
   }
 
   template <class T>
-  void object(const char* key, T& value, Need, const char*) {
+  void object(const char* key, T& value, methods::Need, const char*) {
     json_[key] = write(value, dimension_);
   }
   template <class T>
@@ -64,18 +68,20 @@ class Writer {
     if (value) json_[key] = write(*value, dimension_);
   }
   template <class T>
-  void list(const char* key, std::vector<T>& items, const Range&, const char*) {
+  void list(const char* key, std::vector<T>& items, const methods::Range&, const char*) {
     auto& array = json_[key] = nlohmann::ordered_json::array();
     for (auto& item : items) array.push_back(write(item, dimension_));
   }
 
-  void method_ahead(const char*, MethodChoice&) {}
-  bool shows(const MethodChoice& method, Part part) const { return method.takes(part); }
-  void taken_by(Part) {}
+  void read_method_first(const char*, methods::MethodChoice&) {}
+  bool shows(const methods::MethodChoice& method, methods::Part part) const {
+    return method.takes(part);
+  }
+  void only_for_methods_with(methods::Part) {}
 
   /// Leaves out the default method: its scenes and their hashes equal those of versions without a
   /// choice of method.
-  void method(const char* key, const char* settings_key, MethodChoice& method, const char*,
+  void method(const char* key, const char* settings_key, methods::MethodChoice& method, const char*,
               const char*) {
     if (!method.is_default()) json_[key] = method->info().name;
     json_[settings_key] = write(method, dimension_);
@@ -101,4 +107,4 @@ class Writer {
   nlohmann::ordered_json json_ = nlohmann::ordered_json::object();
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::scene

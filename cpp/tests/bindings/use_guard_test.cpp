@@ -11,7 +11,7 @@ namespace {
 using Access = Guarded<std::vector<int>>::Access;
 
 /// ThreadSanitizer reports every change that another thread could see half done.
-TEST(UseGuard, LetsOneThreadInAtATime) {
+TEST(UseGuard, AdmitsOneThreadAtATime) {
   Guarded<std::vector<int>> guarded(std::vector<int>(100, 0));
   constexpr int threads = 3, calls = 2000;
   std::vector<int> done(threads, 0), refused(threads, 0);
@@ -38,7 +38,7 @@ TEST(UseGuard, LetsOneThreadInAtATime) {
   EXPECT_EQ(values, std::vector<int>(100, all));
 }
 
-TEST(UseGuard, LetsACallReadWithinItselfButNotChange) {
+TEST(UseGuard, NestedCallsMayReadButNotChange) {
   Guarded<int> guarded(1);
   guarded.use("run", Guarded<int>::Access::change, [&](int&) {
     EXPECT_EQ(guarded.use("look", Guarded<int>::Access::read, [](int n) { return n; }), 1);

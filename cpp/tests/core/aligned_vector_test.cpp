@@ -28,7 +28,7 @@ TEST(AlignedVector, SharedMemoryOutlivesTheVector) {
   EXPECT_EQ(after.get()[99999], 8);
 }
 
-TEST(AlignedVector, HasNothingToShareBeforeItHasMemory) {
+TEST(AlignedVector, AnEmptyVectorSharesNothing) {
   EXPECT_EQ(share(AlignedVector<float>()), nullptr);
 }
 

@@ -15,14 +15,14 @@ class AllocationFault {
   AllocationFault(const AllocationFault&) = delete;
   AllocationFault& operator=(const AllocationFault&) = delete;
 
-  /// Whether the n-th call has come.
+  /// Whether the n-th call was made.
   static bool happened();
 };
 
-enum class FaultOutcome { no_fault, failed, done_without };
+enum class FaultOutcome { no_fault, failed, recovered };
 
 /// Makes a call during which the n-th allocation fails. The call may end before that allocation,
-/// throw std::bad_alloc, or do without the memory.
+/// throw std::bad_alloc, or recover from the failure.
 FaultOutcome with_allocation_fault(std::int64_t n, const std::function<void()>& call);
 
 }  // namespace snowshed

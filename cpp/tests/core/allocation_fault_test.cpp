@@ -14,7 +14,7 @@
 namespace snowshed {
 namespace {
 
-std::atomic<std::int64_t> allocations_left{0};  // until one fails; below 1 none fails
+std::atomic<std::int64_t> allocations_left{0};  // until the failure; 0: none planned, -1: over
 
 void* allocate(std::size_t bytes, std::size_t alignment) {
   if (allocations_left > 0 && --allocations_left == 0) {
@@ -23,8 +23,8 @@ void* allocate(std::size_t bytes, std::size_t alignment) {
   }
   void* p = nullptr;
   if (posix_memalign(&p, alignment, bytes > 0 ? bytes : 1) != 0) throw std::bad_alloc();
-  // In every test of this program, floating-point numbers are NaN until they are written. Memory
-  // that happens to hold zeros would hide that they are read too early.
+  // In all tests of this program, floating-point numbers are NaN until they are written. Zeros
+  // would hide reads of memory that has not been written.
   std::memset(p, 0xff, bytes);
   return p;
 }
@@ -42,7 +42,7 @@ FaultOutcome with_allocation_fault(std::int64_t n, const std::function<void()>& 
   } catch (const std::bad_alloc&) {
     return FaultOutcome::failed;
   }
-  return AllocationFault::happened() ? FaultOutcome::done_without : FaultOutcome::no_fault;
+  return AllocationFault::happened() ? FaultOutcome::recovered : FaultOutcome::no_fault;
 }
 
 }  // namespace snowshed
@@ -61,21 +61,21 @@ void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::fre
 namespace snowshed {
 namespace {
 
-TEST(FreshMemory, HoldsNoNumbers) {
+TEST(AllocationFault, FreshMemoryHoldsNan) {
   AlignedVector<double> values(3);
   for (const double value : values) EXPECT_TRUE(std::isnan(value));
 }
 
-TEST(AllocationFault, LetsTheNthAllocationFailAndNoOther) {
-  std::vector<std::vector<int>> made(4);
+TEST(AllocationFault, OnlyTheNthAllocationFails) {
+  std::vector<std::vector<int>> blocks(4);
   AlignedVector<float> aligned;
   const AllocationFault fault(3);
-  made[0].resize(10);
+  blocks[0].resize(10);
   EXPECT_FALSE(AllocationFault::happened());
   aligned.resize(10);
-  EXPECT_THROW(made[1].resize(10), std::bad_alloc);
+  EXPECT_THROW(blocks[1].resize(10), std::bad_alloc);
   EXPECT_TRUE(AllocationFault::happened());
-  made[1].resize(10);
+  blocks[1].resize(10);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 namespace snowshed {
 namespace {
 
-TEST(CompensatedSum, KeepsWhatRoundingTakes) {
+TEST(CompensatedSum, KeepsSmallTermsBesideLargeOnes) {
   const std::vector<double> values{1, 1e100, 1, -1e100};
   EXPECT_EQ(compensated_sum(values.data(), values.size()), 2);
 }
@@ -17,7 +17,7 @@ TEST(CompensatedSum, DoesNotDriftWithTheNumberOfTerms) {
   EXPECT_EQ(compensated_sum(values.data(), values.size()), 100'000);
 }
 
-TEST(CompensatedSum, OfNothingIsZero) { EXPECT_EQ(compensated_sum(nullptr, 0), 0); }
+TEST(CompensatedSum, AnEmptySumIsZero) { EXPECT_EQ(compensated_sum(nullptr, 0), 0); }
 
 }  // namespace
 }  // namespace snowshed

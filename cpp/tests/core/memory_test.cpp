@@ -7,14 +7,14 @@
 namespace snowshed {
 namespace {
 
-/// ThreadSanitizer keeps a shadow of all memory, some four times as large.
+/// ThreadSanitizer shadows all memory with about four times as much.
 #ifdef __SANITIZE_THREAD__
 constexpr std::uint64_t bytes_per_byte = 6;
 #else
 constexpr std::uint64_t bytes_per_byte = 2;
 #endif
 
-TEST(Memory, PeakGrowsByWhatIsTouched) {
+TEST(Memory, PeakGrowsByTheTouchedMemory) {
   constexpr std::uint64_t size = 64 << 20;
   const std::uint64_t before = peak_resident_bytes();
   {
@@ -27,7 +27,7 @@ TEST(Memory, PeakGrowsByWhatIsTouched) {
   EXPECT_LT(after, before + bytes_per_byte * size);
 }
 
-TEST(Memory, AvailableIsPartOfPhysical) {
+TEST(Memory, AvailableMemoryIsAtMostThePhysicalMemory) {
   EXPECT_GT(physical_memory_bytes(), 256u << 20);
   EXPECT_GT(available_memory_bytes(), 1u << 20);
   EXPECT_LE(available_memory_bytes(), physical_memory_bytes());

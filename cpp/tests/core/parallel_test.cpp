@@ -29,7 +29,7 @@ TEST(Parallel, EveryIterationRunsOnce) {
     }
 }
 
-TEST(Parallel, ThrowsWhatTheFirstIterationThatThrowsThrew) {
+TEST(Parallel, ThrowsTheErrorOfTheFirstFailingIteration) {
   const auto thrown_by = [](const auto& loop) {
     try {
       loop([](std::ptrdiff_t i) {
@@ -47,7 +47,7 @@ TEST(Parallel, ThrowsWhatTheFirstIterationThatThrowsThrew) {
     }
 }
 
-TEST(Parallel, TakesAsManyThreadsAsOpenMpWouldUnlessToldHowMany) {
+TEST(Parallel, UsesTheThreadsOfOpenMpUnlessANumberIsGiven) {
   const int before = omp_get_max_threads();
   omp_set_num_threads(3);  // as OMP_NUM_THREADS would
   EXPECT_EQ(threads_to_use(0), 3);
@@ -74,12 +74,13 @@ void race_of_loops() {
   parallel_pieces(2, PieceLoop{33, 11, write}, PieceLoop{33, 11, write});
 }
 
-/// ThreadSanitizer must see races between iterations, or its silence means nothing.
+/// ThreadSanitizer must detect races between iterations; otherwise its silence means nothing.
 TEST(ParallelDeathTest, ARaceBetweenIterationsIsReported) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
-  constexpr int reported = 66;  // ThreadSanitizer's exit code
-  EXPECT_EXIT((race(), std::exit(0)), testing::ExitedWithCode(reported), "data race");
-  EXPECT_EXIT((race_of_loops(), std::exit(0)), testing::ExitedWithCode(reported), "data race");
+  constexpr int race_exit_code = 66;  // ThreadSanitizer's exit code
+  EXPECT_EXIT((race(), std::exit(0)), testing::ExitedWithCode(race_exit_code), "data race");
+  EXPECT_EXIT((race_of_loops(), std::exit(0)), testing::ExitedWithCode(race_exit_code),
+              "data race");
 }
 #endif
 

@@ -12,7 +12,7 @@ TEST(Random, GivesThePublishedSequence) {
   EXPECT_EQ(random.next(), 9817491932198370423u);
 }
 
-TEST(Random, UniformFillsTheOpenUnitInterval) {
+TEST(Random, UniformNumbersFillTheOpenUnitInterval) {
   Random random(1);
   double sum = 0, squares = 0;
   constexpr int samples = 100000;

@@ -10,14 +10,14 @@ namespace snowshed {
 namespace {
 
 template <class T>
-class LaneMath : public testing::Test {
+class SimdMath : public testing::Test {
  protected:
   static constexpr double epsilon = std::numeric_limits<T>::epsilon();
 
   /// Largest relative error of f against `exact` on random arguments with the given sign, from lo
   /// to hi, whose logarithms are uniformly distributed.
   template <class F, class G>
-  static double worst(double lo, double hi, double sign, F f, G exact) {
+  static double max_error(double lo, double hi, double sign, F f, G exact) {
     Random random(1);
     double error = 0;
     for (int i = 0; i < 50000; ++i) {
@@ -26,35 +26,35 @@ class LaneMath : public testing::Test {
         x[l] = T(sign * lo * std::pow(hi / lo, random.uniform()));
       const SimdPack<T> y = f(x);
       for (int l = 0; l < simd_width<T>; ++l) {
-        const long double wanted = exact(static_cast<long double>(x[l]));
-        error = std::max(error, double(std::abs((y[l] - wanted) / wanted)));
+        const long double expected = exact(static_cast<long double>(x[l]));
+        error = std::max(error, double(std::abs((y[l] - expected) / expected)));
       }
     }
     return error;
   }
 };
 using Scalars = testing::Types<float, double>;
-TYPED_TEST_SUITE(LaneMath, Scalars);
+TYPED_TEST_SUITE(SimdMath, Scalars);
 
 long double exact_log1p(long double x) { return std::log1p(x); }
 long double exact_expm1(long double x) { return std::expm1(x); }
 
-TYPED_TEST(LaneMath, Log1pIsRightToAFewUnitsInTheLastPlace) {
+TYPED_TEST(SimdMath, Log1pIsAccurateToAFewUnitsInTheLastPlace) {
   using V = SimdPack<TypeParam>;
   const auto f = [](const V& x) { return log1p(x); };
-  EXPECT_LT(this->worst(1e-25, 1e30, 1, f, exact_log1p), 4 * this->epsilon);
-  EXPECT_LT(this->worst(1e-25, 0.9999, -1, f, exact_log1p), 4 * this->epsilon);
+  EXPECT_LT(this->max_error(1e-25, 1e30, 1, f, exact_log1p), 4 * this->epsilon);
+  EXPECT_LT(this->max_error(1e-25, 0.9999, -1, f, exact_log1p), 4 * this->epsilon);
 }
 
-TYPED_TEST(LaneMath, Expm1IsRightToAFewUnitsInTheLastPlace) {
+TYPED_TEST(SimdMath, Expm1IsAccurateToAFewUnitsInTheLastPlace) {
   using V = SimdPack<TypeParam>;
   const auto f = [](const V& x) { return expm1(x); };
   const double limit = sizeof(TypeParam) == 4 ? 86 : 707;
-  EXPECT_LT(this->worst(1e-30, limit, 1, f, exact_expm1), 6 * this->epsilon);
-  EXPECT_LT(this->worst(1e-30, limit, -1, f, exact_expm1), 6 * this->epsilon);
+  EXPECT_LT(this->max_error(1e-30, limit, 1, f, exact_expm1), 6 * this->epsilon);
+  EXPECT_LT(this->max_error(1e-30, limit, -1, f, exact_expm1), 6 * this->epsilon);
 }
 
-TYPED_TEST(LaneMath, SmallArgumentsAreReturnedExactly) {
+TYPED_TEST(SimdMath, SmallArgumentsAreReturnedExactly) {
   for (double x : {0.0, 1e-20, -1e-20, 1e-30}) {
     const auto v = broadcast<SimdPack<TypeParam>>(TypeParam(x));
     EXPECT_EQ(log1p(v)[0], TypeParam(x));
@@ -62,14 +62,14 @@ TYPED_TEST(LaneMath, SmallArgumentsAreReturnedExactly) {
   }
 }
 
-TYPED_TEST(LaneMath, Expm1StaysFiniteForAnyArgument) {
+TYPED_TEST(SimdMath, Expm1StaysFiniteForAnyArgument) {
   using V = SimdPack<TypeParam>;
   const auto huge = broadcast<V>(TypeParam(1e30));
   EXPECT_TRUE(std::isfinite(expm1(huge)[0]));
   EXPECT_EQ(expm1(V(-huge))[0], TypeParam(-1));
 }
 
-TYPED_TEST(LaneMath, ExpAndLogAreInverse) {
+TYPED_TEST(SimdMath, ExpAndLogAreInverse) {
   using T = TypeParam;
   for (double x : {-0.5, -0.01, 1e-6, 0.02, 0.7, 5.0}) {
     const auto v = broadcast<SimdPack<T>>(T(x));

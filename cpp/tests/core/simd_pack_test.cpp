@@ -8,9 +8,9 @@ namespace snowshed {
 namespace {
 
 template <class T>
-class LanesOf : public testing::Test {};
+class SimdPackTest : public testing::Test {};
 using Scalars = testing::Types<float, double>;
-TYPED_TEST_SUITE(LanesOf, Scalars);
+TYPED_TEST_SUITE(SimdPackTest, Scalars);
 
 template <class T>
 SimdPack<T> ramp(T start) {
@@ -19,7 +19,7 @@ SimdPack<T> ramp(T start) {
   return v;
 }
 
-TYPED_TEST(LanesOf, LoadsOfTailsRepeatTheFirstValueAndReadNothingElse) {
+TYPED_TEST(SimdPackTest, PartialLoadsRepeatTheFirstValueAndReadNoFurther) {
   using T = TypeParam;
   for (int n = 1; n <= simd_width<T>; ++n) {
     std::vector<T> values;  // exactly n: a read past the end shows under a sanitizer
@@ -29,7 +29,7 @@ TYPED_TEST(LanesOf, LoadsOfTailsRepeatTheFirstValueAndReadNothingElse) {
   }
 }
 
-TYPED_TEST(LanesOf, StoresOfTailsLeaveTheRestAlone) {
+TYPED_TEST(SimdPackTest, PartialStoresLeaveTheRestUnchanged) {
   using T = TypeParam;
   for (int n = 0; n <= simd_width<T>; ++n) {
     std::vector<T> values(simd_width<T> + 1, T(-1));
@@ -38,7 +38,7 @@ TYPED_TEST(LanesOf, StoresOfTailsLeaveTheRestAlone) {
   }
 }
 
-TEST(Lanes, TransposesEachBlockOfFewerPacksThanLanes) {
+TEST(SimdPack, FewerRowsThanLanesAreTransposedInBlocks) {
   typedef double Wide __attribute__((vector_size(8 * sizeof(double))));
   Wide rows[4];
   for (int i = 0; i < 4; ++i)
@@ -48,7 +48,7 @@ TEST(Lanes, TransposesEachBlockOfFewerPacksThanLanes) {
     for (int l = 0; l < 8; ++l) EXPECT_EQ(rows[i][l], 10 * (l % 4) + l / 4 * 4 + i);
 }
 
-TYPED_TEST(LanesOf, SelectsMinimaMaximaAndRoots) {
+TYPED_TEST(SimdPackTest, FunctionsActOnEachLane) {
   using T = TypeParam;
   using V = SimdPack<T>;
   const V a = ramp(T(-1)), b = broadcast<V>(T(0.5));
@@ -68,7 +68,7 @@ TYPED_TEST(LanesOf, SelectsMinimaMaximaAndRoots) {
   EXPECT_FALSE(any(a < T(-1)));
 }
 
-TYPED_TEST(LanesOf, ScalarsHaveTheSameFunctions) {
+TYPED_TEST(SimdPackTest, ScalarsHaveTheSameFunctions) {
   using T = TypeParam;
   EXPECT_EQ(select(true, T(1), T(2)), T(1));
   EXPECT_EQ(largest(T(3)), T(3));

@@ -14,12 +14,12 @@ TEST(Stopwatch, NeverRunsFast) {
   EXPECT_GE(stopwatch.restart(), 0.020);
 }
 
-TEST(Stopwatch, StartsAgainFromZero) {
-  const Stopwatch whole;
+TEST(Stopwatch, RestartsFromZero) {
+  const Stopwatch total;
   Stopwatch part;
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
   part.restart();
-  EXPECT_LE(part.seconds() + 0.020, whole.seconds());
+  EXPECT_LE(part.seconds() + 0.020, total.seconds());
 }
 
 }  // namespace

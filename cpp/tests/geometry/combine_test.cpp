@@ -3,7 +3,7 @@
 #include "geometry/geometry_testing.hpp"
 #include "snowshed/geometry/primitives.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 using namespace geometry_testing;
@@ -11,7 +11,7 @@ using namespace geometry_testing;
 const Shape large_ball = make_sphere({0, 0, 0}, 1.0);
 const Shape small_ball = make_sphere({1, 0, 0}, 0.5);
 
-TEST(Union, IsTheNearerOfItsOperands) {
+TEST(Combine, AUnionHasTheSmallestDistance) {
   const Shape both = unite({large_ball, small_ball});
   Random random(5);
   for (int n = 0; n < 200; ++n) {
@@ -26,7 +26,7 @@ TEST(Union, IsTheNearerOfItsOperands) {
   expect_normal_is_gradient(*both, 2.0);
 }
 
-TEST(Difference, LeavesTheFirstWithoutTheOthers) {
+TEST(Combine, ADifferenceExcludesTheOtherSolids) {
   const Shape bitten = subtract(large_ball, {small_ball, make_sphere({0, 0, 1}, 0.5)});
   Random random(6);
   for (int n = 0; n < 500; ++n) {
@@ -42,7 +42,7 @@ TEST(Difference, LeavesTheFirstWithoutTheOthers) {
   expect_bounds_hold(*bitten, 1.5);
 }
 
-TEST(Transform, RotatesThenTranslates) {
+TEST(Combine, ATransformRotatesThenTranslates) {
   const Mat3 quarter = rotation_about_y(pi / 2);  // turns the x axis to -z
   const Shape rod = make_box(Vec3(2, 0, 0), Vec3(2, 0.2, 0.2));
   const Shape moved = transform(rod, quarter, {10, 0, 0});
@@ -55,7 +55,7 @@ TEST(Transform, RotatesThenTranslates) {
   EXPECT_LT((moved->oriented_box()->center - Vec3(10, 0, -2)).norm(), 1e-12);
 }
 
-TEST(Transform, KeepsASolidThatIsUnboundedAlongYBoundedInItsPlane) {
+TEST(Combine, RotatedPlaneSolidsStayBoundedInTheirPlane) {
   const Shape box = make_box(Vec3::Zero(), Vec3(2, infinity, 1));
   const Bounds bounds = transform(box, rotation_about_y(pi / 2), Vec3::Zero())->bounds();
   EXPECT_NEAR(bounds.max.x(), 0.5, 1e-12);
@@ -63,7 +63,7 @@ TEST(Transform, KeepsASolidThatIsUnboundedAlongYBoundedInItsPlane) {
   EXPECT_EQ(bounds.max.y(), infinity);
 }
 
-TEST(Dilate, MovesTheSurfaceOutward) {
+TEST(Combine, DilationMovesTheSurfaceOutward) {
   const Shape grown = dilate(make_box(Vec3::Zero(), Vec3::Ones()), 0.25);
   EXPECT_DOUBLE_EQ(grown->distance({2, 0, 0}), 1.25);
   EXPECT_DOUBLE_EQ(grown->bounds().max.y(), 0.75);
@@ -73,4 +73,4 @@ TEST(Dilate, MovesTheSurfaceOutward) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::geometry

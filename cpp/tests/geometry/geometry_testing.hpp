@@ -30,8 +30,8 @@ inline Mat3 random_rotation(Random& random) {
 
 /// Expects that the normal is a unit vector and the gradient of the distance at random points. Few
 /// points lie so close to the medial axis that the gradient differs.
-inline void expect_normal_is_gradient(const LevelSet& shape, double half, double tolerance = 1e-5,
-                                      double h = 1e-6) {
+inline void expect_normal_is_gradient(const geometry::LevelSet& shape, double half,
+                                      double tolerance = 1e-5, double h = 1e-6) {
   Random random(7);
   int off = 0;
   constexpr int samples = 2000;
@@ -49,9 +49,9 @@ inline void expect_normal_is_gradient(const LevelSet& shape, double half, double
 }
 
 /// Expects that every point with a negative distance lies within the bounds.
-inline void expect_bounds_hold(const LevelSet& shape, double half) {
+inline void expect_bounds_hold(const geometry::LevelSet& shape, double half) {
   Random random(8);
-  const Bounds bounds = shape.bounds();
+  const geometry::Bounds bounds = shape.bounds();
   int inside = 0;
   for (int n = 0; n < 5000; ++n) {
     const Vec3 x = random_point(random, half);

@@ -6,10 +6,10 @@
 
 #include "geometry/terrain_testing.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
-TEST(HeightField, APlaceIsACellAndTheWayFromItsCorner) {
+TEST(HeightField, APositionIsACellAndAnOffset) {
   const CellPosition p = find_cell(2.25, 1.5, 4, 3);
   EXPECT_EQ(p.column, 2);
   EXPECT_EQ(p.row, 1);
@@ -30,7 +30,7 @@ TEST(HeightField, ResamplingKeepsAQuadraticSurface) {
       ASSERT_NEAR(fine.height(i, j), surface(2.0 * i, 2.0 * j), 1e-10);
 }
 
-TEST(HeightField, ResamplingKeepsHolesAndWhatIsKnownAroundThem) {
+TEST(HeightField, ResamplingKeepsHolesAndKnownNeighbours) {
   HeightField f = terrain_of(9, 9, 1.0, [](double x, double) { return x; });
   f.heights[f.index(4, 4)] = std::nan("");
   const HeightField fine = resampled(f, 0.5);
@@ -39,4 +39,4 @@ TEST(HeightField, ResamplingKeepsHolesAndWhatIsKnownAroundThem) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -2,7 +2,7 @@
 
 #include "geometry/geometry_testing.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 using namespace geometry_testing;
@@ -51,4 +51,4 @@ TEST(LevelSet, DefaultNormalKeepsItsAccuracyFarFromTheOrigin) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::geometry

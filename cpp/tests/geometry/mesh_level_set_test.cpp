@@ -4,7 +4,7 @@
 #include "snowshed/geometry/primitives.hpp"
 #include "snowshed/sampling/voxel_set.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 using namespace geometry_testing;
@@ -51,19 +51,19 @@ TEST(MeshLevelSet, TessellatedSphereMatchesTheSphere) {
     ASSERT_GT(mesh->normal(x).dot(x.normalized()), 0.98);
   }
   EXPECT_NEAR(mesh->inradius(), 1.0, 2 * sagitta);
-  EXPECT_NEAR(measure(*mesh, 3, 0.1) / (4 * pi / 3), 1, 5e-3);
+  EXPECT_NEAR(sampling::measure(*mesh, 3, 0.1) / (4 * pi / 3), 1, 5e-3);
 }
 
-TEST(MeshLevelSet, NormalOnTheSurfaceIsThatOfTheFace) {
+TEST(MeshLevelSet, NormalsOnTheSurfaceAverageTheAdjacentFaces) {
   const Shape mesh = make_mesh(box_mesh({0, 0, 0}, {1, 1, 1}));
   EXPECT_LT((mesh->normal({0.3, 0.4, 1}) - Vec3::UnitZ()).norm(), 1e-12);
   EXPECT_LT((mesh->normal({1, 1, 1}) - Vec3::Ones().normalized()).norm(), 1e-12);
   EXPECT_LT((mesh->normal({1, 0.5, 1}) - Vec3(1, 0, 1).normalized()).norm(), 1e-12);
 }
 
-TEST(MeshLevelSet, ThinPlateKnowsItsThickness) {
+TEST(MeshLevelSet, InradiusOfAThinPlateIsHalfItsThickness) {
   EXPECT_NEAR(make_mesh(box_mesh({0, 0, 0}, {5, 3, 0.01}))->inradius(), 0.005, 1e-8);
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -5,7 +5,7 @@
 #include "snowshed/geometry/primitives.hpp"
 #include "snowshed/sampling/voxel_set.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 using namespace geometry_testing;
@@ -16,7 +16,7 @@ Shape section_of(const TriangleMesh& mesh) {
   return make_mesh(surfaces.front());
 }
 
-TEST(MeshSection, OfABoxIsARectangleWhereverTheBoxEnds) {
+TEST(MeshSection, ABoxHasARectangularSectionWhereverItEnds) {
   const Shape rectangle = make_box(Vec3(0.5, 0, 1), Vec3(1, infinity, 2));
   for (const auto& [low, high] :
        {std::pair{-0.5, 0.5}, {0.0, 1.0}, {-1.0, 0.0}, {-1e-9, 1.0}, {1e-9, 1.0}, {-0.01, 0.01}}) {
@@ -33,12 +33,12 @@ TEST(MeshSection, OfABoxIsARectangleWhereverTheBoxEnds) {
         ASSERT_LT((normal - rectangle->normal(x)).norm(), 1e-6);
       }
     }
-    EXPECT_NEAR(measure(*section, 2, 0.05), 2, 1e-9);
+    EXPECT_NEAR(sampling::measure(*section, 2, 0.05), 2, 1e-9);
     EXPECT_NEAR(section->inradius(), 0.5, 1e-6);
   }
 }
 
-TEST(MeshSection, OfABallIsADisc) {
+TEST(MeshSection, ABallHasACircularSection) {
   const double radius = 1.0;
   TriangleMesh ball = sphere_mesh(radius, 64);
   for (const double shift : {0.0, 0.3, -0.6}) {
@@ -48,20 +48,20 @@ TEST(MeshSection, OfABallIsADisc) {
     const Shape section = section_of(moved);
     EXPECT_NEAR(section->distance({0, 0, 2}), 2 - expected, 3e-3);
     EXPECT_NEAR(section->distance({0, 0, 0}), -expected, 3e-3);
-    EXPECT_NEAR(measure(*section, 2, 0.02) / (pi * expected * expected), 1, 5e-3);
+    EXPECT_NEAR(sampling::measure(*section, 2, 0.02) / (pi * expected * expected), 1, 5e-3);
   }
 }
 
-TEST(MeshSection, OfASolidThatTouchesThePlaneOnBothSidesIsTheLarger) {
-  // A wide box behind the plane and a narrow one before it, as one surface of two shells.
+TEST(MeshSection, TheLargerOfTwoSolidsThatTouchThePlaneCounts) {
+  // Two shells: a wide box behind the plane and a narrow one in front of it.
   const std::vector<TriangleMesh> both = {box_mesh({0, 0, 0}, {4, 1, 1}),
                                           box_mesh({6, -1, 0}, {7, 0, 1})};
   const auto surfaces = sections_at_y0(both, "m");
   ASSERT_EQ(surfaces.size(), 1u);
-  EXPECT_NEAR(measure(*make_mesh(surfaces.front()), 2, 0.05), 4, 1e-9);
+  EXPECT_NEAR(sampling::measure(*make_mesh(surfaces.front()), 2, 0.05), 4, 1e-9);
 }
 
-TEST(MeshSection, RefusesWhatMissesThePlane) {
+TEST(MeshSection, RefusesMeshesThatMissThePlane) {
   expect_input_error([] { sections_at_y0({box_mesh({0, 2, 0}, {1, 3, 1})}, "a.stl"); },
                      "a.stl: the mesh lies between y = 2 and 3 m");
   EXPECT_NO_THROW(
@@ -69,4 +69,4 @@ TEST(MeshSection, RefusesWhatMissesThePlane) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -7,7 +7,7 @@
 #include "snowshed/geometry/primitives.hpp"
 #include "snowshed/sampling/voxel_set.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 using namespace geometry_testing;
@@ -36,7 +36,7 @@ TriangleMesh cubes(const std::vector<Cube>& parts) {
 struct Solid {
   Shape shape;
   std::vector<std::string> notes;
-  double volume() const { return measure(*shape, 3, 0.25); }
+  double volume() const { return sampling::measure(*shape, 3, 0.25); }
 };
 
 Solid solid_of(const TriangleMesh& mesh) {
@@ -47,9 +47,9 @@ Solid solid_of(const TriangleMesh& mesh) {
   return {unite(std::move(shapes)), std::move(solid.notes)};
 }
 
-const Vec3 zero = Vec3::Zero(), one = Vec3::Ones();
+const Vec3 zero = Vec3::Zero(), ones = Vec3::Ones();
 
-TEST(MeshShells, OneShellStaysAsItIs) {
+TEST(MeshShells, ASingleShellIsUnchanged) {
   const TriangleMesh ball = sphere_mesh(1, 6);
   const ShellSolid solid = solid_of_shells(ball, "m");
   ASSERT_EQ(solid.layers.size(), 1u);
@@ -59,28 +59,28 @@ TEST(MeshShells, OneShellStaysAsItIs) {
 }
 
 TEST(MeshShells, TurnsInwardTrianglesOutward) {
-  const ShellSolid solid = solid_of_shells(cubes({{zero, one, true}}), "m");
+  const ShellSolid solid = solid_of_shells(cubes({{zero, ones, true}}), "m");
   EXPECT_NEAR(enclosed_volume(solid.layers.front()), 1, 1e-12);
   EXPECT_TRUE(solid.notes.empty());  // the convention of the file
 }
 
-TEST(MeshShells, TurnsEachShellForItself) {
+TEST(MeshShells, TurnsEachShellSeparately) {
   for (const bool first : {false, true})
     for (const bool second : {false, true}) {
-      const Solid both = solid_of(cubes({{zero, one, first}, {{2, 0, 0}, {3, 2, 1}, second}}));
+      const Solid both = solid_of(cubes({{zero, ones, first}, {{2, 0, 0}, {3, 2, 1}, second}}));
       EXPECT_NEAR(both.volume(), 3, 1e-9) << first << second;
       EXPECT_EQ(both.notes.size(), first != second ? 1u : 0u);
       EXPECT_NEAR(both.shape->distance({1.5, 0.5, 0.5}), 0.5, 1e-12);
     }
 }
 
-// Two shells of equal size enclose no volume together if one of them is turned.
-TEST(MeshShells, OppositeTwinsAreTwoSolids) {
-  EXPECT_NEAR(solid_of(cubes({{zero, one}, {{2, 0, 0}, {3, 1, 1}, true}})).volume(), 2, 1e-9);
+// The signed volumes of these shells cancel.
+TEST(MeshShells, EqualShellsOfOppositeSenseAreTwoSolids) {
+  EXPECT_NEAR(solid_of(cubes({{zero, ones}, {{2, 0, 0}, {3, 1, 1}, true}})).volume(), 2, 1e-9);
 }
 
-TEST(MeshShells, ShellsThatTurnTheOtherWayAreCavities) {
-  const Cube outer{{-2, -2, -2}, {2, 2, 2}}, cavity{-one, one, true}, core{-one / 2, one / 2};
+TEST(MeshShells, EnclosedShellsOfOppositeSenseAreCavities) {
+  const Cube outer{{-2, -2, -2}, {2, 2, 2}}, cavity{-ones, ones, true}, core{-ones / 2, ones / 2};
   const Solid hollow = solid_of(cubes({outer, cavity})),
               cored = solid_of(cubes({outer, cavity, core}));
   EXPECT_NEAR(hollow.volume(), 64 - 8, 1e-9);
@@ -90,7 +90,7 @@ TEST(MeshShells, ShellsThatTurnTheOtherWayAreCavities) {
   EXPECT_TRUE(cored.notes.empty());
 }
 
-TEST(MeshShells, ThreeLevelsInAnySense) {
+TEST(MeshShells, ThreeNestedShellsFollowTheirWindingNumbers) {
   const auto level = [](double half, bool inward) {
     return Cube{-half * Vec3::Ones(), half * Vec3::Ones(), inward};
   };
@@ -121,20 +121,20 @@ TEST(MeshShells, OverlappingShellsAreUnited) {
   }
 }
 
-TEST(MeshShells, SolidsThatTouchAreTwo) {
+TEST(MeshShells, TouchingSolidsAreSeparate) {
   // They touch at a face that both divide along the same diagonal, at an edge, or at a corner.
   for (const Vec3& shift : {Vec3(1, 0, 0), Vec3(1, 0, 1), Vec3(1, 1, 1)}) {
-    const TriangleMesh mesh = cubes({{zero, one}, {shift, shift + one}});
+    const TriangleMesh mesh = cubes({{zero, ones}, {shift, shift + ones}});
     EXPECT_EQ(connected_shells(mesh).size(), 2u);
     const Solid both = solid_of(mesh);
     EXPECT_NEAR(both.volume(), 2, 1e-9);
     EXPECT_LT(both.shape->distance({0.5, 0.5, 0.5}), -0.4);
-    EXPECT_LT(both.shape->distance(shift + one / 2), -0.4);
+    EXPECT_LT(both.shape->distance(shift + ones / 2), -0.4);
   }
 }
 
-TEST(MeshShells, SheetsAreLeftOut) {
-  TriangleMesh mesh = cubes({{zero, one}});
+TEST(MeshShells, OmitsSheetsWithoutVolume) {
+  TriangleMesh mesh = cubes({{zero, ones}});
   TriangleMesh sheet;
   sheet.vertices = {{3, 0, 0}, {4, 0, 0}, {3, 1, 0}};
   sheet.triangles = {{0, 1, 2}, {0, 2, 1}};
@@ -146,7 +146,7 @@ TEST(MeshShells, SheetsAreLeftOut) {
   expect_input_error([&] { solid_of_shells(sheet, "sheet.stl"); }, "sheet.stl: the mesh encloses");
 }
 
-TEST(MeshShells, RefusesASurfaceThatRunsThroughItself) {
+TEST(MeshShells, RefusesSelfIntersectingSurfaces) {
   // A tube along a path that crosses itself: its end runs through its beginning.
   TriangleMesh mesh;
   const std::vector<Vec3> path{{-2, 0, 0}, {2, 0, 0}, {2, 0, 2}, {0, 0, 2}, {0, 0, -2}};
@@ -169,4 +169,4 @@ TEST(MeshShells, RefusesASurfaceThatRunsThroughItself) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::geometry

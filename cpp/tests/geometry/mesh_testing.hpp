@@ -9,8 +9,8 @@
 
 namespace snowshed::geometry_testing {
 
-inline TriangleMesh box_mesh(const Vec3& min, const Vec3& max) {
-  TriangleMesh mesh;
+inline geometry::TriangleMesh box_mesh(const Vec3& min, const Vec3& max) {
+  geometry::TriangleMesh mesh;
   for (int corner = 0; corner < 8; ++corner)
     mesh.vertices.emplace_back((corner & 1 ? max : min).x(), (corner & 2 ? max : min).y(),
                                (corner & 4 ? max : min).z());
@@ -20,8 +20,8 @@ inline TriangleMesh box_mesh(const Vec3& min, const Vec3& max) {
 }
 
 /// Returns a ball of `rings` x 2 `rings` facets whose vertices lie on the sphere.
-inline TriangleMesh sphere_mesh(double radius, std::uint32_t rings) {
-  TriangleMesh mesh;
+inline geometry::TriangleMesh sphere_mesh(double radius, std::uint32_t rings) {
+  geometry::TriangleMesh mesh;
   const std::uint32_t sides = 2 * rings;
   mesh.vertices = {{0, 0, -radius}, {0, 0, radius}};
   for (std::uint32_t i = 1; i < rings; ++i)

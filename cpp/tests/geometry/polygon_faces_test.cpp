@@ -5,7 +5,7 @@
 #include "geometry/mesh_testing.hpp"
 #include "snowshed/geometry/orientation.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 using namespace geometry_testing;
@@ -103,7 +103,7 @@ TEST(PolygonFaces, TrianglesCoverTheFaceOnce) {
         }
 }
 
-/// The prism over an outline, its ends as polygons and its sides as quads.
+/// Prism over an outline; its ends are polygons, its sides quads.
 TriangleMesh prism(const Outline2& outline, std::size_t start) {
   TriangleMesh mesh;
   const auto n = std::uint32_t(outline.points.size());
@@ -122,7 +122,7 @@ TriangleMesh prism(const Outline2& outline, std::size_t start) {
   return mesh;
 }
 
-TEST(PolygonFaces, OfAPrismAreClosed) {
+TEST(PolygonFaces, PrismsAreClosed) {
   for (const Outline2& outline : outlines()) {
     if (std::string(outline.name).find("touch") != std::string::npos) continue;
     for (std::size_t start = 0; start < std::min<std::size_t>(12, outline.points.size()); ++start) {
@@ -144,7 +144,7 @@ TEST(PolygonFaces, RefusesOutlinesThatCrossThemselves) {
   expect_input_error([&] { FaceCutter("a.obj").append(face, star); }, "crosses itself");
 }
 
-// A hostile file must not take minutes: the comparisons of a file are counted.
+// The comparisons per file are limited, so that a hostile file cannot take minutes.
 TEST(PolygonFaces, RefusesTooManyCornersOfConcaveFaces) {
   TriangleMesh mesh;
   Face face;
@@ -162,4 +162,4 @@ TEST(PolygonFaces, RefusesTooManyCornersOfConcaveFaces) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::geometry

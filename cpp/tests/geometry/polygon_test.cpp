@@ -4,27 +4,27 @@
 
 #include <cmath>
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 const Ring square{{0, 0}, {4, 0}, {4, 4}, {0, 4}};
 const Ring clockwise{{0, 4}, {4, 4}, {4, 0}, {0, 0}};
 
-TEST(Polygon, ContainsWhatLiesWithinAndInNoHole) {
+TEST(Polygon, ContainsPointsInsideExceptInHoles) {
   const Polygon p{square, {{{1, 1}, {2, 1}, {2, 2}, {1, 2}}}};
   EXPECT_TRUE(contains(p, {3, 3}));
   EXPECT_FALSE(contains(p, {1.5, 1.5}));
   EXPECT_FALSE(contains(p, {5, 1}));
 }
 
-TEST(Polygon, APointLevelWithACornerCountsOnce) {
+TEST(Polygon, ContainmentIsRightLevelWithACorner) {
   const Ring diamond{{0, -1}, {1, 0}, {0, 1}, {-1, 0}};
   EXPECT_TRUE(contains(diamond, {0.5, 0}));
   EXPECT_FALSE(contains(diamond, {-2, 0}));
   EXPECT_FALSE(contains(diamond, {2, 0}));
 }
 
-TEST(Polygon, AreaHasTheSignOfTheDirection) {
+TEST(Polygon, SignedAreaOfClockwiseRingsIsNegative) {
   EXPECT_DOUBLE_EQ(twice_signed_area(square), 32);
   EXPECT_DOUBLE_EQ(twice_signed_area(clockwise), -32);
 }
@@ -40,7 +40,7 @@ TEST(Polygon, AreaWithinRectanglesAddsUp) {
   EXPECT_EQ(area_within(u, {2.5, 3}, {3.5, 4}), 0.0);
 }
 
-TEST(Polygon, WidenedByItsDistanceWhateverTheDirection) {
+TEST(Polygon, WidensRingsOfEitherSense) {
   for (const Ring& ring : {square, clockwise}) {
     const Ring wide = widened(ring, 0.5);
     ASSERT_EQ(wide.size(), 4u);
@@ -48,7 +48,7 @@ TEST(Polygon, WidenedByItsDistanceWhateverTheDirection) {
   }
 }
 
-TEST(Polygon, ASharpCornerIsCutOff) {
+TEST(Polygon, WideningCutsSharpCornersOff) {
   const Ring needle{{0, 0}, {10, 0.5}, {0, 1}};
   double reach = 0;
   for (const Point2& p : widened(needle, 0.1)) reach = std::max(reach, p[0]);
@@ -56,11 +56,11 @@ TEST(Polygon, ASharpCornerIsCutOff) {
   EXPECT_LT(reach, 10.0 + 4 * 0.1 + 1e-9);  // a full mitre would reach 2 m farther
 }
 
-TEST(Polygon, SeesEdgesThatCross) {
+TEST(Polygon, DetectsEdgesThatCross) {
   EXPECT_FALSE(crosses_itself(square));
   EXPECT_TRUE(crosses_itself({{0, 0}, {4, 4}, {4, 0}, {0, 4}}));
   EXPECT_TRUE(crosses_itself({{0, 0}, {4, 0}, {4, 4}, {2, 0}, {0, 4}}));  // touches
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::geometry

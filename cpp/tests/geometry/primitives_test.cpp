@@ -2,12 +2,12 @@
 
 #include "geometry/geometry_testing.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 using namespace geometry_testing;
 
-void expect_sound(const Shape& shape) {
+void expect_normals_and_bounds(const Shape& shape) {
   expect_normal_is_gradient(*shape, 2.0);
   expect_bounds_hold(*shape, 2.0);
 }
@@ -33,10 +33,11 @@ TEST(Box, DistanceMatchesClosedForms) {
   EXPECT_DOUBLE_EQ(box->inradius(), 1);
 }
 
-TEST(Box, IsSoundInAnyOrientation) {
-  expect_sound(make_box(Vec3(0.2, -0.1, 0.3), Vec3(1.0, 1.5, 0.6)));
+TEST(Box, HasNormalsAndBoundsInAnyOrientation) {
+  expect_normals_and_bounds(make_box(Vec3(0.2, -0.1, 0.3), Vec3(1.0, 1.5, 0.6)));
   Random random(3);
-  expect_sound(make_box(OrientedBox{{0.1, 0.2, 0.1}, random_rotation(random), {0.5, 0.7, 0.3}}));
+  expect_normals_and_bounds(
+      make_box(OrientedBox{{0.1, 0.2, 0.1}, random_rotation(random), {0.5, 0.7, 0.3}}));
 }
 
 TEST(Box, MayBeUnboundedAlongY) {
@@ -58,7 +59,7 @@ TEST(Sphere, DistanceMatchesTheClosedForm) {
     EXPECT_NEAR(sphere->distance(x), (x - Vec3(1, 0, 0)).norm() - 0.5, 1e-15);
   }
   EXPECT_NEAR(sphere->normal({1, 0, 0}).norm(), 1, 1e-15);
-  expect_sound(sphere);
+  expect_normals_and_bounds(sphere);
 }
 
 TEST(Cylinder, DistanceMatchesClosedForms) {
@@ -73,9 +74,9 @@ TEST(Cylinder, DistanceMatchesClosedForms) {
               1e-15);  // on the axis any radial direction will do
 }
 
-TEST(Cylinder, IsSoundInAnyOrientation) {
+TEST(Cylinder, HasNormalsAndBoundsInAnyOrientation) {
   const Shape cylinder = make_cylinder({-0.6, 0.2, -0.4}, {0.7, 0.5, 0.6}, 0.5);
-  expect_sound(cylinder);
+  expect_normals_and_bounds(cylinder);
   const Vec3 u = Vec3(1.3, 0.3, 1.0).normalized();
   const double reach = (1.3 / 2) + 0.5 * std::sqrt(1 - u.x() * u.x());
   EXPECT_NEAR(cylinder->bounds().max.x(), 0.05 + reach, 1e-12);
@@ -88,7 +89,7 @@ TEST(Capsule, DistanceMatchesClosedForms) {
   EXPECT_DOUBLE_EQ(capsule->distance({4, 4, 0}), 4.75);
   EXPECT_DOUBLE_EQ(capsule->inradius(), 0.25);
   EXPECT_NEAR(capsule->normal({0, 0, 0}).x(), 0, 1e-15);
-  expect_sound(make_capsule({-0.6, 0.2, -0.4}, {0.7, 0.5, 0.6}, 0.5));
+  expect_normals_and_bounds(make_capsule({-0.6, 0.2, -0.4}, {0.7, 0.5, 0.6}, 0.5));
 }
 
 class TiltedPlate : public ::testing::Test {
@@ -100,7 +101,7 @@ class TiltedPlate : public ::testing::Test {
   const Shape plate = make_plate(top, n, 2.0, 1.0, 0.1);
 };
 
-TEST_F(TiltedPlate, FaceLiesWhereItShould) {
+TEST_F(TiltedPlate, HangsBelowItsFace) {
   EXPECT_NEAR(plate->distance(top), 0, 1e-15);
   EXPECT_NEAR(plate->distance(top + 0.3 * n), 0.3, 1e-12);
   EXPECT_NEAR(plate->distance(top + 1.5 * t - 0.05 * n), 0.5, 1e-12);
@@ -115,17 +116,17 @@ TEST_F(TiltedPlate, FaceLiesWhereItShould) {
   expect_bounds_hold(*plate, 2.0);
 }
 
-TEST_F(TiltedPlate, InnerNormalIsNeverThatOfAnEdge) {
+TEST_F(TiltedPlate, InnerNormalsPointToTheFacesNotTheEdges) {
   const Vec3 at_edge = top + 0.9999 * t;
   EXPECT_LT((plate->normal(at_edge - 0.01 * n) - n).norm(), 1e-12);
   EXPECT_LT((plate->normal(at_edge - 0.09 * n) + n).norm(), 1e-12);
   EXPECT_LT((plate->normal(top - 0.4999 * Vec3::UnitY() - 0.01 * n) - n).norm(), 1e-12);
 }
 
-TEST_F(TiltedPlate, OuterNormalIsThatOfTheBox) {
+TEST_F(TiltedPlate, OuterNormalsFollowTheBox) {
   EXPECT_LT((plate->normal(top + 1.1 * t - 0.05 * n) - t).norm(), 1e-12);
   EXPECT_LT((plate->normal(top + 1.3 * t + 0.4 * n) - (0.6 * t + 0.8 * n)).norm(), 1e-12);
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::geometry

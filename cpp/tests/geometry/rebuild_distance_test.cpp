@@ -2,7 +2,7 @@
 
 #include "geometry/geometry_testing.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 using namespace geometry_testing;
@@ -32,16 +32,16 @@ void expect_ball(const GridSamples& ball, double tolerance) {
   }
 }
 
-TEST(RebuildDistance, BeyondTheBand) {
+TEST(RebuildDistance, RestoresDistancesBeyondTheBand) {
   GridSamples ball = clamped_ball(3 * spacing);
-  const std::vector<float> cut = ball.values;
+  const std::vector<float> clamped = ball.values;
   rebuild_distance(ball, 0.999 * 3 * spacing, "ball");
   expect_ball(ball, 0.2 * spacing);
-  for (std::size_t n = 0; n < cut.size(); ++n)
-    ASSERT_TRUE(ball.values[n] == cut[n] || std::abs(cut[n]) > 2.9f * float(spacing));
+  for (std::size_t n = 0; n < clamped.size(); ++n)
+    ASSERT_TRUE(ball.values[n] == clamped[n] || std::abs(clamped[n]) > 2.9f * float(spacing));
 }
 
-TEST(RebuildDistance, AllOver) {
+TEST(RebuildDistance, RestoresAllDistancesFromTheSurface) {
   GridSamples ball = clamped_ball(0.5 * spacing);
   rebuild_distance(ball, 0, "ball");
   expect_ball(ball, 0.35 * spacing);  // near the surface, because only its crossings are known
@@ -54,4 +54,4 @@ TEST(RebuildDistance, NeedsASurface) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::geometry

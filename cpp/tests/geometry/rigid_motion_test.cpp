@@ -2,7 +2,7 @@
 
 #include "geometry/geometry_testing.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 using namespace geometry_testing;
@@ -17,7 +17,7 @@ MotionSpec tumbling() {
   return spec;
 }
 
-TEST(RigidMotion, RestsBeforeItStartsAndStaysPutWhenItEnds) {
+TEST(RigidMotion, RestsBeforeItsStartAndAfterItsEnd) {
   const RigidMotion motion(tumbling());
   const Vec3 x(3, 1, 1);
   EXPECT_LT((motion.to_body(x, 0.5) - x).norm(), 1e-15);
@@ -38,7 +38,7 @@ TEST(RigidMotion, VelocityIsTheTimeDerivativeOfAMaterialPoint) {
   EXPECT_LT((motion.to_body(x, t) - material).norm(), 1e-12);
 }
 
-TEST(RigidMotion, QuarterTurnAboutAMovingPivot) {
+TEST(RigidMotion, TurnsAboutAMovingPivot) {
   MotionSpec spec;
   spec.velocity = {2, 0, 0};
   spec.angular_velocity = {0, pi / 2, 0};  // turns the x axis towards -z
@@ -49,4 +49,4 @@ TEST(RigidMotion, QuarterTurnAboutAMovingPivot) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -4,7 +4,7 @@
 #include "snowshed/geometry/combine.hpp"
 #include "snowshed/geometry/primitives.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 using namespace geometry_testing;
@@ -30,7 +30,7 @@ GridSamples clipped(GridSamples s, double inside, double outside) {
 
 const Vec3 low(-1.02, -1.01, -1.03), high(1.1, 1.1, 1.1);
 
-TEST(SampleChecks, CutOffDistancesAreRebuilt) {
+TEST(SampleChecks, ClippedDistancesAreRebuilt) {
   const Shape solids[] = {
       make_box(Vec3(0.1, 0, 0), Vec3(0.9, 0.8, 0.7)), make_sphere(Vec3(0, 0.1, 0), 0.6),
       unite({make_box(Vec3(0, 0, -0.3), Vec3(1.4, 1.2, 0.3)), make_sphere(Vec3(0, 0, 0.2), 0.4)})};
@@ -41,19 +41,20 @@ TEST(SampleChecks, CutOffDistancesAreRebuilt) {
                                             {10.0, 4 * step},
                                             {2 * step, 10.0}}) {
         const GridSamples full = samples_of(solid, low, high, flat);
-        GridSamples cut = clipped(full, inside, outside);
+        GridSamples repaired = clipped(full, inside, outside);
         std::vector<std::string> notes;
-        repair_distances(cut, "g", &notes);
+        repair_distances(repaired, "g", &notes);
         ASSERT_EQ(notes.size(), 1u) << inside << " " << outside;
-        EXPECT_NE(notes.front().find("cut off"), std::string::npos);
+        EXPECT_NE(notes.front().find("clipped"), std::string::npos);
         for (std::size_t n = 0; n < full.values.size(); ++n) {
-          ASSERT_EQ(cut.values[n] < 0, full.values[n] < 0);
-          ASSERT_NEAR(cut.values[n], full.values[n], 0.5 * step + 0.2 * std::abs(full.values[n]));
+          ASSERT_EQ(repaired.values[n] < 0, full.values[n] < 0);
+          ASSERT_NEAR(repaired.values[n], full.values[n],
+                      0.5 * step + 0.2 * std::abs(full.values[n]));
         }
       }
 }
 
-TEST(SampleChecks, FullDistancesStayAsTheyAre) {
+TEST(SampleChecks, ExactDistancesAreUnchanged) {
   // A slab whose middle lies on samples, or between them; a plane; nothing outside.
   const Shape solids[] = {make_box(Vec3(0.03, 0, -0.03), Vec3(0.8, 3, 0.3)),
                           make_box(Vec3(0.03, 0, -0.005), Vec3(0.8, 3, 0.3)),
@@ -62,27 +63,27 @@ TEST(SampleChecks, FullDistancesStayAsTheyAre) {
   for (const Shape& solid : solids)
     for (const bool flat : {false, true}) {
       const GridSamples full = samples_of(solid, low, high, flat);
-      GridSamples same = full;
+      GridSamples repaired = full;
       std::vector<std::string> notes;
-      repair_distances(same, "g", &notes);
+      repair_distances(repaired, "g", &notes);
       EXPECT_TRUE(notes.empty()) << notes.front();
-      EXPECT_EQ(same.values, full.values);
+      EXPECT_EQ(repaired.values, full.values);
     }
 }
 
-TEST(SampleChecks, ValuesOfAnotherUnitAreRebuilt) {
+TEST(SampleChecks, DistancesInAnotherUnitAreRebuilt) {
   const GridSamples full = samples_of(make_sphere(Vec3(0, 0.1, 0), 0.6), low, high, false);
   GridSamples scaled = full;
   for (float& v : scaled.values) v *= 0.1f;
   std::vector<std::string> notes;
   repair_distances(scaled, "g", &notes);
   ASSERT_EQ(notes.size(), 1u);
-  EXPECT_NE(notes.front().find("another unit"), std::string::npos);
+  EXPECT_NE(notes.front().find("is the unit wrong?"), std::string::npos);
   for (std::size_t n = 0; n < full.values.size(); ++n)
     ASSERT_NEAR(scaled.values[n], full.values[n], 0.7 * step);
 }
 
-TEST(SampleChecks, TheOtherSignIsRefused) {
+TEST(SampleChecks, InvertedSignsAreRefused) {
   const Shape solids[] = {make_box(Vec3::Zero(), Vec3(0.8, 0.8, 0.7)),
                           make_sphere(Vec3(0.2, 0.1, 0), 0.5),
                           make_box(Vec3(0, 0, -1), Vec3(0.8, 0.8, 1)),  // stands on the bottom
@@ -98,7 +99,7 @@ TEST(SampleChecks, TheOtherSignIsRefused) {
     }
 }
 
-TEST(SampleChecks, SolidsThatFillTheGridAreNotRefused) {
+TEST(SampleChecks, SolidsMayFillTheGrid) {
   const Shape solids[] = {make_plane(Vec3(0, 0, 0.9), Vec3::UnitZ()),   // deep ground
                           make_plane(Vec3(0, 0, 0.2), -Vec3::UnitZ()),  // a ceiling
                           make_box(Vec3::Zero(), Vec3(9, 9, 1.9)),      // a slab
@@ -108,7 +109,7 @@ TEST(SampleChecks, SolidsThatFillTheGridAreNotRefused) {
       EXPECT_NO_THROW(require_distances(samples_of(solid, low, high, flat), "g"));
 }
 
-TEST(SampleChecks, TheSectionIsThatOfTheSamplesBesideThePlane) {
+TEST(SampleChecks, TheSectionMatchesTheSolidAtThePlane) {
   const Shape ball = make_sphere(Vec3(0, 0.02, 0), 0.6);
   const GridSamples s = samples_of(ball, low, high, false), section = samples_at_y0(s, "g");
   const Shape grid = make_sampled_grid(section, "g");
@@ -131,4 +132,4 @@ TEST(SampleChecks, TheSectionIsThatOfTheSamplesBesideThePlane) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -7,7 +7,7 @@
 #include "snowshed/geometry/primitives.hpp"
 #include "snowshed/sampling/voxel_set.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 using namespace geometry_testing;
@@ -46,7 +46,7 @@ TEST(SampledGrid, ApproachesTheSphere) {
     ASSERT_GT(grid->normal(x).dot(ball->normal(x)), 0.999);
   }
   EXPECT_NEAR(grid->inradius(), 0.6, 0.05);
-  EXPECT_NEAR(measure(*grid, 3, 0.05) / measure(*ball, 3, 0.05), 1, 0.01);
+  EXPECT_NEAR(sampling::measure(*grid, 3, 0.05) / sampling::measure(*ball, 3, 0.05), 1, 0.01);
   expect_bounds_hold(*grid, 1.0);
   EXPECT_LT(grid->bounds().max.x(), 0.8);
 }
@@ -65,20 +65,20 @@ TEST(SampledGrid, EndsAtTheBorderOfTheGrid) {
         {0, 0, 0}, 0.1, {5, along_y, 5}, std::vector<float>(25 * along_y, -1)};
     const Shape grid = make_sampled_grid(all_inside, "g");
     const int dimension = along_y == 1 ? 2 : 3;
-    EXPECT_NEAR(measure(*grid, dimension, 0.02), std::pow(0.4, dimension), 1e-3);
+    EXPECT_NEAR(sampling::measure(*grid, dimension, 0.02), std::pow(0.4, dimension), 1e-3);
     EXPECT_NEAR(grid->inradius(), 0.2, 1e-6);
     EXPECT_GT(grid->distance({0.5, 0.2, 0.2}), 0.09);
     EXPECT_LE(grid->bounds().max.x(), 0.4 + 1e-12);
   }
 }
 
-TEST(SampledGrid, OneSampleAlongYMeansConstantInY) {
+TEST(SampledGrid, ASingleSampleAlongYMeansConstantInY) {
   const Shape ball = make_sphere({0, 0, 0}, 0.5);
   const Shape grid = make_sampled_grid(sampled(*ball, {-1, 0, -1}, 0.1, {21, 1, 21}), "g");
   EXPECT_EQ(grid->distance({0.3, 50, 0.2}), grid->distance({0.3, 0, 0.2}));
   EXPECT_EQ(grid->normal({0.45, 3, 0}).y(), 0);
   EXPECT_EQ(grid->bounds().max.y(), std::numeric_limits<double>::infinity());
-  EXPECT_NEAR(measure(*grid, 2, 0.05) / (pi * 0.25), 1, 0.02);
+  EXPECT_NEAR(sampling::measure(*grid, 2, 0.05) / (pi * 0.25), 1, 0.02);
 }
 
 TEST(SampledGrid, BoundsHoldWhereTheSolidReachesTheEdgeOfTheGrid) {
@@ -89,7 +89,7 @@ TEST(SampledGrid, BoundsHoldWhereTheSolidReachesTheEdgeOfTheGrid) {
   expect_bounds_hold(*grid, 2.0);
 }
 
-TEST(SampledGrid, RefusesWhatIsNoSignedDistance) {
+TEST(SampledGrid, RefusesInvalidSamples) {
   const auto check = [](const GridSamples& s, const std::string& expected) {
     expect_input_error([&] { make_sampled_grid(s, "g.npy"); }, expected);
   };
@@ -114,4 +114,4 @@ TEST(SampledGrid, RefusesWhatIsNoSignedDistance) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -3,7 +3,7 @@
 
 #include "snowshed/geometry/height_field.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 /// Returns the terrain whose nodes have the heights `height(x, y)`, all in metres.
 template <class F>
@@ -17,4 +17,4 @@ HeightField terrain_of(int columns, int rows, double cell, F height) {
   return f;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

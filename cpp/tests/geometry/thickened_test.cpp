@@ -7,7 +7,7 @@
 #include "snowshed/geometry/primitives.hpp"
 #include "snowshed/geometry/sampled_grid.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 using namespace geometry_testing;
@@ -20,7 +20,8 @@ Vec3 random_in(Random& random, double size, int dimension) {
   return x;
 }
 
-/// Expects that the solid agrees with another at random points outside, except for a share of them.
+/// Expects that both distances agree at random points beyond the surface, except for a share of
+/// them.
 void expect_same(const LevelSet& shape, const LevelSet& expected, int dimension, double size,
                  double tolerance, double share_off = 0.0) {
   Random random(21);
@@ -35,8 +36,8 @@ void expect_same(const LevelSet& shape, const LevelSet& expected, int dimension,
   EXPECT_LE(off, share_off * samples);
 }
 
-/// Expects that the thickened solid holds the given one and reaches no farther than it must, and
-/// that no chord between its surfaces is shorter than it should be.
+/// Expects that the thickened solid contains the given one, extends beyond it by at most half the
+/// thickness, and has no thin parts.
 void expect_thick(const Shape& given, int dimension, double size) {
   const ThickSolid solid = thickened(given, half, dimension);
   ASSERT_TRUE(solid.thickening);
@@ -57,7 +58,7 @@ Shape box2(double x, double z, double width, double height) {
   return make_box(Vec3(x, 0, z), Vec3(width, infinity, height));
 }
 
-TEST(Thickened, LeavesWhatIsThickAlone) {
+TEST(Thickened, ThickSolidsAreUnchanged) {
   const Shape boxes = unite({box2(0, 0, 1, 1), box2(0.9, 0.3, 1, 0.4), box2(0, 0.7, 0.4, 0.5)});
   const Shape slotted =
       subtract(box2(0, 0, 2, 1), {box2(0, 0.4, 0.05, 0.8), box2(0.6, 0, 0.3, 0.3)});
@@ -70,18 +71,18 @@ TEST(Thickened, LeavesWhatIsThickAlone) {
   for (const Shape& shape : solids) EXPECT_EQ(thickened(shape, half, 3).shape, shape);
 }
 
-TEST(Thickened, LeavesCornersOfThickPartsAlone) {
+TEST(Thickened, CornersOfThickPartsAreUnchanged) {
   for (const double degrees : {45.0, 60.0, 75.0, 90.0, 110.0, 150.0}) {
     const double a = radians(degrees);
     const Vec3 normal(-std::sin(a), 0, std::cos(a));
-    // A box that a plane through its lower left corner cuts.
+    // A box, cut by a plane through its lower left corner.
     const Shape wedge = subtract(box2(0.5, 0.5, 1, 1), {make_plane(Vec3::Zero(), -normal)});
     const Shape cut = degrees < 90 ? wedge : subtract(box2(0.5, 0.5, 1, 1), {box2(1, 1, 0.4, 0.4)});
     EXPECT_EQ(thickened(cut, half, 2).shape, cut) << degrees;
   }
 }
 
-TEST(Thickened, ThinPlatesGrowAsDilatedOnesDo) {
+TEST(Thickened, ThinPlatesGrowLikeDilatedPlates) {
   for (const double thickness : {0.15, 0.05, 0.002, 1e-4})
     for (const double turn : {0.0, 0.35, 1.2})
       for (const int dimension : {2, 3}) {
@@ -173,14 +174,14 @@ TEST(Thickened, OnlyThinPartsGrow) {
   expect_thick(gutter, 2, 1);
 }
 
-TEST(Thickened, LayersThatAreThickTogetherStayAsTheyAre) {
+TEST(Thickened, LayersThatAreThickTogetherAreUnchanged) {
   std::vector<Shape> layers;
   for (int k = 0; k < 12; ++k) layers.push_back(box2(0, 0.05 * k, 2, 0.05));
   const Shape stack = unite(layers);
   EXPECT_EQ(thickened(stack, half, 2).shape, stack);
 }
 
-TEST(Thickened, OfGridsAndOfPlanes) {
+TEST(Thickened, ThinGridsAndLayersBetweenPlanesGrow) {
   const Shape plate = make_box(Vec3::Zero(), Vec3(1, 1, 0.06));
   GridSamples s{Vec3(-0.8, -0.8, -0.4), 0.02, {81, 81, 41}, {}};
   s.for_each([&](std::size_t i, std::size_t j, std::size_t k) {
@@ -197,7 +198,7 @@ TEST(Thickened, OfGridsAndOfPlanes) {
   }
 }
 
-TEST(Thickened, KnowsItsThicknessWhereItIs) {
+TEST(Thickened, HalfThicknessDependsOnThePosition) {
   const Shape shelf =
       thickened(unite({box2(0, 0, 1, 1.6), box2(0.9, 0.3, 1, 0.02)}), half, 2).shape;
   EXPECT_DOUBLE_EQ(shelf->half_thickness({1, 0, 0.35}), half);
@@ -205,4 +206,4 @@ TEST(Thickened, KnowsItsThicknessWhereItIs) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::geometry

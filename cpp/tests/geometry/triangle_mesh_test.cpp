@@ -2,14 +2,14 @@
 
 #include "geometry/mesh_testing.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 using namespace geometry_testing;
 
 TriangleMesh cube() { return box_mesh({0, 0, 0}, {1, 1, 1}); }
 
-TEST(TriangleMesh, EnclosedVolume) {
+TEST(TriangleMesh, EnclosesTheVolumeOfItsSolid) {
   EXPECT_NEAR(enclosed_volume(box_mesh({9, 9, 9}, {10, 11, 12})), 6, 1e-12);
   EXPECT_NEAR(enclosed_volume(sphere_mesh(1, 40)), 4 * pi / 3, 0.02);
 }
@@ -31,7 +31,7 @@ TEST(TriangleMesh, MergesIdenticalVertices) {
   require_closed(soup, "m");
 }
 
-TEST(TriangleMesh, CancelsTrianglesThatTurnOppositeWays) {
+TEST(TriangleMesh, CancelsTrianglesOfOppositeSense) {
   TriangleMesh both = box_mesh({0, 0, 0}, {1, 1, 1});
   const TriangleMesh other = box_mesh({1, 0, 0}, {2, 1, 1});
   for (const Triangle& t : other.triangles)
@@ -50,7 +50,7 @@ TEST(TriangleMesh, CancelsTrianglesThatTurnOppositeWays) {
   ASSERT_EQ(twice.triangles.size(), 1u);
 }
 
-TEST(TriangleMesh, RefusesWhatIsNotClosed) {
+TEST(TriangleMesh, RefusesOpenAndInvalidMeshes) {
   const auto check = [](TriangleMesh mesh, const std::string& expected) {
     expect_input_error([&] { require_closed(mesh, "m.stl"); }, expected);
     expect_input_error([&] { require_closed(mesh, "m.stl"); }, "m.stl");
@@ -77,4 +77,4 @@ TEST(TriangleMesh, RefusesWhatIsNotClosed) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::geometry

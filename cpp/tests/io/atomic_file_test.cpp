@@ -8,12 +8,12 @@
 #include "io/temporary_folder.hpp"
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed {
+namespace snowshed::io {
 namespace {
 
 using AtomicFileTest = TemporaryFolder;
 
-/// Lets no file grow beyond `bytes` within its scope, as on a full disk.
+/// Within its scope no file can grow beyond `bytes`, as on a full disk.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) {
@@ -58,7 +58,7 @@ TEST_F(AtomicFileTest, LeavesNothingWithoutCommit) {
   EXPECT_EQ(number_of_files(), 0u);
 }
 
-TEST_F(AtomicFileTest, ReplacesAnOlderFileAsAWhole) {
+TEST_F(AtomicFileTest, ReplacesTheWholeOlderFile) {
   write_atomic(path("a"), "a long older content");
   write_atomic(path("a"), "new");
   EXPECT_EQ(content(path("a")), "new");
@@ -104,7 +104,7 @@ TEST_F(AtomicFileTest, DoesNotReplaceAFolder) {
   EXPECT_EQ(number_of_files(), 1u);
 }
 
-TEST_F(AtomicFileTest, OfALinkTheFileIsReplacedThatItNames) {
+TEST_F(AtomicFileTest, ALinkStaysAndItsTargetIsReplaced) {
   std::filesystem::create_directories(path("elsewhere"));
   write_atomic(path("elsewhere") / "a", "older");
   std::filesystem::create_symlink("elsewhere/a", path("link"));
@@ -113,13 +113,14 @@ TEST_F(AtomicFileTest, OfALinkTheFileIsReplacedThatItNames) {
   EXPECT_EQ(content(path("elsewhere") / "a"), "new");
 }
 
-TEST_F(AtomicFileTest, RemovesOnlyWhatAKilledProcessLeft) {
-  const char* left = ".partial-0123456789abcdef-a";
-  for (const char* name : {left, ".partial-0123456789abcdef", ".partial-mine", "a.partial", "a"})
+TEST_F(AtomicFileTest, RemovesOnlyLeftoversOfKilledProcesses) {
+  const char* leftover = ".partial-0123456789abcdef-a";
+  for (const char* name :
+       {leftover, ".partial-0123456789abcdef", ".partial-mine", "a.partial", "a"})
     write_atomic(path(name), "x");
   std::filesystem::create_symlink("a", path(".partial-fedcba9876543210-a"));
   remove_leftovers(path("."));
-  EXPECT_FALSE(std::filesystem::exists(path(left)));
+  EXPECT_FALSE(std::filesystem::exists(path(leftover)));
   EXPECT_EQ(number_of_files(), 5u);
   EXPECT_NO_THROW(remove_leftovers(path("missing")));
 }
@@ -133,4 +134,4 @@ TEST_F(AtomicFileTest, WritesDevicesDirectly) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::io

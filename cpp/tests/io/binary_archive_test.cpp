@@ -11,7 +11,7 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/memory.hpp"
 
-namespace snowshed {
+namespace snowshed::io {
 namespace {
 
 class BinaryArchiveTest : public TemporaryFolder {
@@ -39,10 +39,10 @@ class BinaryArchiveTest : public TemporaryFolder {
     return message_of<InputError>([&] { load(bytes); });
   }
 
-  /// Returns the sample with a number replaced and a valid checksum, as after a manipulation.
+  /// Returns the sample with a number replaced and a valid checksum, as if it were manipulated.
   template <class T>
   std::string forged(std::size_t offset, T value) const {
-    return snowshed::forged(sample(), offset, value);
+    return snowshed::io::forged(sample(), offset, value);
   }
 
  private:
@@ -54,7 +54,7 @@ class BinaryArchiveTest : public TemporaryFolder {
 constexpr std::size_t sections_at = 12, length_at = 16, type_at = 24, name_length_at = 28,
                       count_at = 32, bytes_at = 40, name_at = 48;
 
-TEST_F(BinaryArchiveTest, ReturnsWhatWasAdded) {
+TEST_F(BinaryArchiveTest, ReturnsTheAddedSections) {
   const BinaryReader reader = load(sample());
   EXPECT_EQ(reader.names(), (std::vector<std::string>{"scene", "speed", "index", "none"}));
   EXPECT_EQ(reader.text("scene"), "{ }");
@@ -121,16 +121,16 @@ TEST_F(BinaryArchiveTest, KeepsAnEmptyArchive) {
   EXPECT_TRUE(BinaryReader::load(path("a")).names().empty());
 }
 
-TEST_F(BinaryArchiveTest, SameContentSameBytes) { EXPECT_EQ(write_sample(), sample()); }
+TEST_F(BinaryArchiveTest, EqualContentGivesEqualBytes) { EXPECT_EQ(write_sample(), sample()); }
 
-TEST_F(BinaryArchiveTest, RefusesNamesTwiceOrEmpty) {
+TEST_F(BinaryArchiveTest, RefusesRepeatedAndEmptyNames) {
   BinaryWriter writer;
   writer.add_value("a", 1.0);
   EXPECT_THROW(writer.add_value("a", 2.0), std::invalid_argument);
   EXPECT_THROW(writer.add_value("", 2.0), std::invalid_argument);
 }
 
-TEST_F(BinaryArchiveTest, FindsTruncationAtEveryByte) {
+TEST_F(BinaryArchiveTest, DetectsTruncationAtEveryByte) {
   const std::string bytes = sample();
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     const std::string message = load_error(bytes.substr(0, size));
@@ -139,7 +139,7 @@ TEST_F(BinaryArchiveTest, FindsTruncationAtEveryByte) {
   }
 }
 
-TEST_F(BinaryArchiveTest, FindsEveryFlippedBit) {
+TEST_F(BinaryArchiveTest, DetectsEveryFlippedBit) {
   const std::string bytes = sample();
   for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
     std::string flipped = bytes;
@@ -148,11 +148,11 @@ TEST_F(BinaryArchiveTest, FindsEveryFlippedBit) {
   }
 }
 
-TEST_F(BinaryArchiveTest, FindsBytesTooMany) {
+TEST_F(BinaryArchiveTest, DetectsExcessBytes) {
   EXPECT_NE(load_error(sample() + "12345678").find("corrupted"), std::string::npos);
 }
 
-TEST_F(BinaryArchiveTest, SaysWhatIsWrongAndWhere) {
+TEST_F(BinaryArchiveTest, ErrorsNameOffsetAndCause) {
   const std::string file = path("damaged").string();
   EXPECT_EQ(load_error("solid snow, not an archive"), file + ": byte 0: not a snowshed archive");
   EXPECT_EQ(load_error(forged(8, std::uint32_t{9})),
@@ -180,17 +180,17 @@ TEST_F(BinaryArchiveTest, RefusesForgedTypesAndNames) {
     EXPECT_NE(load_error(forged(name_length_at, length)).find("section name"), std::string::npos);
 }
 
-TEST_F(BinaryArchiveTest, RefusesASectionTwice) {
+TEST_F(BinaryArchiveTest, RefusesRepeatedSections) {
   std::string bytes = sample();
   bytes.replace(name_at, 5, "speed");
   EXPECT_NE(load_error(with_valid_sum(bytes)).find("'speed' occurs twice"), std::string::npos);
 }
 
-TEST_F(BinaryArchiveTest, ManySectionsTakeTimeInProportion) {
+TEST_F(BinaryArchiveTest, ReadingTimeIsProportionalToTheSections) {
   constexpr std::uint32_t sections = 100'000;  // comparing all pairs would take minutes
   std::string bytes = sample().substr(0, type_at);
   for (std::uint32_t i = 0; i < sections; ++i) {
-    const std::uint32_t header[] = {6, 8, 0, 0, 0, 0};  // no elements of one byte
+    const std::uint32_t header[] = {6, 8, 0, 0, 0, 0};  // a section of bytes without elements
     bytes.append(reinterpret_cast<const char*>(header), sizeof header);
     bytes.append(std::to_string(10'000'000 + i));
   }
@@ -200,7 +200,7 @@ TEST_F(BinaryArchiveTest, ManySectionsTakeTimeInProportion) {
   EXPECT_EQ(load(with_valid_sum(bytes + "checksum")).names().size(), sections);
 }
 
-TEST_F(BinaryArchiveTest, FindsNumbersThatAreNotFinite) {
+TEST_F(BinaryArchiveTest, DetectsNonFiniteNumbers) {
   load(sample()).require_finite();
   BinaryWriter writer;
   writer.add("count", std::vector<std::uint64_t>(2, ~std::uint64_t{0}));  // NaN if read as a double
@@ -263,7 +263,7 @@ TEST_F(BinaryArchiveTest, RefusesFilesLargerThanMemory) {
   EXPECT_THROW(BinaryReader::load(path("sparse")), InputError);
 }
 
-TEST_F(BinaryArchiveTest, ReadsNoFurtherThanTheHeaderOfAFileOfAnotherLength) {
+TEST_F(BinaryArchiveTest, ReadsOnlyTheHeaderOfAFileOfWrongLength) {
   write_plainly(path("sparse"), sample());
   std::error_code error;
   std::filesystem::resize_file(path("sparse"), std::uintmax_t{1} << 30, error);
@@ -281,4 +281,4 @@ TEST_F(BinaryArchiveTest, SavingToAFullDiskIsAFileError) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::io

@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace snowshed {
+namespace snowshed::io {
 namespace {
 
 using Words = std::array<std::uint64_t, 3>;
@@ -24,19 +24,19 @@ TEST(Checksum, DoesNotDependOnThePieces) {
   EXPECT_EQ(checksum.value(), sum(words));
 }
 
-TEST(Checksum, SeesOrderLengthAndZeros) {
+TEST(Checksum, DependsOnOrderLengthAndZeros) {
   EXPECT_NE(sum({1, 2, 3}), sum({2, 1, 3}));
   EXPECT_NE(sum({0, 0, 0}), Checksum().value());
   EXPECT_NE(sum({0, 0, 1}), sum({0, 0, 0}));
 }
 
-TEST(Checksum, IsPartOfTheFileFormat) { EXPECT_EQ(sum({1, 2, 3}), 0xc07b167c3203d34u); }
+TEST(Checksum, HasTheValueOfTheFileFormat) { EXPECT_EQ(sum({1, 2, 3}), 0xc07b167c3203d34u); }
 
-TEST(Crc32, IsThatOfZlib) {
+TEST(Crc32, MatchesZlib) {
   Crc32 sum;
   sum.update("123456789", 9);
   EXPECT_EQ(sum.value(), 0xcbf43926u);  // the check value of the catalogue of CRCs
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::io

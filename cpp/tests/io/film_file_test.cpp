@@ -10,7 +10,7 @@
 #include "io/temporary_folder.hpp"
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed {
+namespace snowshed::io {
 namespace {
 
 using FilmFileTest = TemporaryFolder;
@@ -45,17 +45,17 @@ FilmFrame some_frame(int number) {
   return frame;
 }
 
-void expect_same(const FilmFrame& one, const FilmFrame& other) {
-  EXPECT_EQ(one.time, other.time);
-  EXPECT_EQ(one.ids, other.ids);
-  EXPECT_EQ(one.events, other.events);
-  EXPECT_EQ(one.materials, other.materials);
-  EXPECT_EQ(one.radii, other.radii);
-  EXPECT_EQ(one.positions, other.positions);
-  EXPECT_EQ(one.values, other.values);
+void expect_same(const FilmFrame& frame, const FilmFrame& expected) {
+  EXPECT_EQ(frame.time, expected.time);
+  EXPECT_EQ(frame.ids, expected.ids);
+  EXPECT_EQ(frame.events, expected.events);
+  EXPECT_EQ(frame.materials, expected.materials);
+  EXPECT_EQ(frame.radii, expected.radii);
+  EXPECT_EQ(frame.positions, expected.positions);
+  EXPECT_EQ(frame.values, expected.values);
 }
 
-TEST_F(FilmFileTest, ReadsWhatWasWritten) {
+TEST_F(FilmFileTest, ReadsTheWrittenFrames) {
   FilmWriter writer(path("film.bin"), small_header());
   for (int k = 0; k < 9; ++k) writer.append(some_frame(k));
   FilmReader reader(path("film.bin"));
@@ -63,16 +63,16 @@ TEST_F(FilmFileTest, ReadsWhatWasWritten) {
   for (int k = 0; k < 9; ++k) expect_same(reader.next(), some_frame(k));
 }
 
-TEST_F(FilmFileTest, GoesOnToTheSameBytes) {
-  FilmWriter whole(path("whole.bin"), small_header());
-  for (int k = 0; k < 9; ++k) whole.append(some_frame(k));
-  FilmWriter begun(path("film.bin"), small_header());
-  for (int k = 0; k < 7; ++k) begun.append(some_frame(k));
-  auto later = FilmWriter::reopen(path("film.bin"),
-                                  [](const FilmFrameInfo& frame) { return frame.time < 0.45; });
-  ASSERT_EQ(later.frames().size(), 5u);
-  for (int k = 5; k < 9; ++k) later.append(some_frame(k));
-  EXPECT_EQ(content(path("film.bin")), content(path("whole.bin")));
+TEST_F(FilmFileTest, AReopenedFilmGetsTheSameBytes) {
+  FilmWriter reference(path("reference.bin"), small_header());
+  for (int k = 0; k < 9; ++k) reference.append(some_frame(k));
+  FilmWriter interrupted(path("film.bin"), small_header());
+  for (int k = 0; k < 7; ++k) interrupted.append(some_frame(k));
+  auto reopened = FilmWriter::reopen(path("film.bin"),
+                                     [](const FilmFrameInfo& frame) { return frame.time < 0.45; });
+  ASSERT_EQ(reopened.frames().size(), 5u);
+  for (int k = 5; k < 9; ++k) reopened.append(some_frame(k));
+  EXPECT_EQ(content(path("film.bin")), content(path("reference.bin")));
 }
 
 bool all(const FilmFrameInfo&) { return true; }
@@ -87,7 +87,7 @@ void write_bytes(const std::filesystem::path& file, const std::string& bytes) {
   std::ofstream(file, std::ios::binary) << bytes;
 }
 
-TEST_F(FilmFileTest, ACompleteFilmIsGoneOnWithAndClosedAgain) {
+TEST_F(FilmFileTest, AClosedFilmCanBeExtendedAndClosedAgain) {
   write_film(path("a.bin"), 4).close();
   const std::string closed = content(path("a.bin"));
   FilmWriter again = FilmWriter::reopen(path("a.bin"), all);
@@ -107,32 +107,32 @@ TEST_F(FilmFileTest, ReopeningChangesNothingUntilAFrameIsWritten) {
   EXPECT_EQ(content(path("a.bin")), before);
 }
 
-TEST_F(FilmFileTest, RefusesAnyByteThatWasChanged) {
+TEST_F(FilmFileTest, RefusesAnyChangedByte) {
   write_film(path("a.bin"), 3).close();
-  const std::string sound = content(path("a.bin"));
-  for (std::size_t at = 0; at < sound.size(); ++at) {
-    std::string bytes = sound;
+  const std::string intact = content(path("a.bin"));
+  for (std::size_t at = 0; at < intact.size(); ++at) {
+    std::string bytes = intact;
     bytes[at] = char(bytes[at] ^ (1 << at % 8));
     write_bytes(path("b.bin"), bytes);
     EXPECT_THROW(FilmReader(path("b.bin")), InputError) << at;
   }
 }
 
-TEST_F(FilmFileTest, IsNotClosedWhereItIsCutOff) {
+TEST_F(FilmFileTest, ATruncatedFilmIsNotClosed) {
   write_film(path("a.bin"), 2).close();
-  const std::string sound = content(path("a.bin"));
-  for (std::size_t size = FilmReader(path("a.bin")).end_of(0); size < sound.size(); ++size) {
-    write_bytes(path("b.bin"), sound.substr(0, size));
+  const std::string intact = content(path("a.bin"));
+  for (std::size_t size = FilmReader(path("a.bin")).end_of(0); size < intact.size(); ++size) {
+    write_bytes(path("b.bin"), intact.substr(0, size));
     const FilmReader reader(path("b.bin"));
     EXPECT_FALSE(reader.closed());
     EXPECT_EQ(reader.is_complete(), reader.end_of(reader.frames().size()) == size) << size;
   }
 }
 
-TEST_F(FilmFileTest, GoesOnWithTheMarkedFramesOnlyWhateverFollowsThem) {
+TEST_F(FilmFileTest, ReopensAtTheMarkWhateverFollowsIt) {
   const FilmMark mark = write_film(path("a.bin"), 3).mark();
-  const std::string begun = content(path("a.bin"));
-  write_bytes(path("a.bin"), begun + std::string(500, '\0'));
+  const std::string interrupted = content(path("a.bin"));
+  write_bytes(path("a.bin"), interrupted + std::string(500, '\0'));
   EXPECT_THROW(FilmReader(path("a.bin")), InputError);
   EXPECT_THROW(FilmWriter::reopen(path("a.bin"), all), InputError);
   FilmWriter::reopen(path("a.bin"), all, mark).append(some_frame(3));
@@ -140,7 +140,7 @@ TEST_F(FilmFileTest, GoesOnWithTheMarkedFramesOnlyWhateverFollowsThem) {
   EXPECT_EQ(content(path("a.bin")), content(path("b.bin")));
 }
 
-TEST_F(FilmFileTest, RefusesAFilmThatIsNotTheMarkedOne) {
+TEST_F(FilmFileTest, RefusesAFilmThatDoesNotMatchTheMark) {
   const FilmMark mark = write_film(path("a.bin"), 3).mark();
   write_film(path("b.bin"), 2);
   EXPECT_THROW(FilmWriter::reopen(path("b.bin"), all, mark), InputError);
@@ -161,7 +161,7 @@ TEST_F(FilmFileTest, AFrameThatCannotBeWrittenChangesNothing) {
   for (int k = 0; k < 2; ++k) expect_same(reader.next(), some_frame(k));
 }
 
-TEST_F(FilmFileTest, RefusesWhatIsNoFileOrTooLargeBeforeReadingIt) {
+TEST_F(FilmFileTest, RefusesDevicesMissingFilesAndHugeFiles) {
   EXPECT_THROW(FilmReader("/dev/zero"), InputError);
   EXPECT_THROW(FilmReader(path("nothing.bin")), InputError);
   FilmWriter(path("film.bin"), small_header());
@@ -169,7 +169,7 @@ TEST_F(FilmFileTest, RefusesWhatIsNoFileOrTooLargeBeforeReadingIt) {
   EXPECT_THROW(FilmReader(path("film.bin")), InputError);
 }
 
-TEST(FilmCodec, RefusesOrReadsAnyBytes) {
+TEST(FilmCodec, DecodesOrRefusesAnyBytes) {
   std::mt19937 random(3);
   for (int k = 0; k < 20000; ++k) {
     std::vector<std::uint8_t> bytes(random() % 60);
@@ -184,7 +184,7 @@ TEST(FilmCodec, RefusesOrReadsAnyBytes) {
   }
 }
 
-TEST(FilmQuantity, IsExactToAStepOrToAHundredth) {
+TEST(FilmQuantity, IsAccurateToAStepOrOnePercent) {
   const FilmQuantity quantity{"pressure", "Pa", "Pressure", 100.0};
   for (const double value : {0.0, 40.0, -3000.0, 2e5, 1e9})
     EXPECT_NEAR(quantity.value(quantity.code(value)), value, 51 + 0.009 * std::abs(value));
@@ -192,4 +192,4 @@ TEST(FilmQuantity, IsExactToAStepOrToAHundredth) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::io

@@ -5,12 +5,12 @@
 #include "io/temporary_folder.hpp"
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed {
+namespace snowshed::io {
 namespace {
 
 using FolderLockTest = TemporaryFolder;
 
-TEST_F(FolderLockTest, IsHeldByOneAtATime) {
+TEST_F(FolderLockTest, HasOneHolderAtATime) {
   std::filesystem::create_directories(path("a"));
   FolderLock first(path("a"));
   EXPECT_EQ(message_of<InputError>([&] { FolderLock(path("a")); }),
@@ -21,10 +21,10 @@ TEST_F(FolderLockTest, IsHeldByOneAtATime) {
   EXPECT_NO_THROW(FolderLock(path("a")));
 }
 
-TEST_F(FolderLockTest, NamesAFolderThatIsNotThere) {
+TEST_F(FolderLockTest, NamesAMissingFolder) {
   EXPECT_EQ(message_of<FileError>([&] { FolderLock(path("missing")); }),
             path("missing").string() + ": No such file or directory");
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::io

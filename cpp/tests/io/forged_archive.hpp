@@ -1,4 +1,4 @@
-// Archives that were changed on purpose and have a valid checksum.
+// Manipulated archives with a valid checksum.
 #pragma once
 
 #include <cstring>
@@ -6,7 +6,7 @@
 
 #include "snowshed/io/checksum.hpp"
 
-namespace snowshed {
+namespace snowshed::io {
 
 /// Returns `bytes` with a valid checksum.
 inline std::string with_valid_sum(std::string bytes) {
@@ -30,4 +30,4 @@ inline std::size_t data_of(const std::string& bytes, std::string name) {
   return bytes.find(name) + 8;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::io

@@ -6,12 +6,12 @@
 #include "io/temporary_folder.hpp"
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed {
+namespace snowshed::io {
 namespace {
 
 using PvdSeriesTest = TemporaryFolder;
 
-TEST_F(PvdSeriesTest, IsWholeAfterEveryAppend) {
+TEST_F(PvdSeriesTest, IsCompleteAfterEveryAppend) {
   PvdSeries series(path("snow.pvd"));
   EXPECT_FALSE(std::filesystem::exists(path("snow.pvd")));
   series.append(0.0, "snow_0.vtp");
@@ -39,7 +39,7 @@ TEST_F(PvdSeriesTest, ReopensExactly) {
   EXPECT_EQ(reopened.entries()[0].file, "a & \"b\".vtp");
 }
 
-TEST_F(PvdSeriesTest, ReopensWithoutEntriesFromATimeOn) {
+TEST_F(PvdSeriesTest, ReopeningDropsLaterEntries) {
   PvdSeries series(path("snow.pvd"));
   for (const double time : {0.0, 0.1, 0.2, 0.3}) series.append(time, "s.vtp");
   PvdSeries resumed = PvdSeries::reopen(path("snow.pvd"), 0.2);
@@ -53,13 +53,13 @@ TEST_F(PvdSeriesTest, ReopensWithoutEntriesFromATimeOn) {
 TEST_F(PvdSeriesTest, AChangedFileIsRefused) {
   PvdSeries series(path("snow.pvd"));
   for (const double time : {0.0, 0.1, 0.2}) series.append(time, "s.vtp");
-  const std::string sound = content(path("snow.pvd"));
-  for (std::size_t at = 0; at < sound.size(); ++at) {
-    std::string bytes = sound;
+  const std::string intact = content(path("snow.pvd"));
+  for (std::size_t at = 0; at < intact.size(); ++at) {
+    std::string bytes = intact;
     bytes[at] = bytes[at] == '3' ? '4' : '3';
     std::ofstream(path("snow.pvd")) << bytes;
-    // If the word before the checksum is changed, the file has no checksum, as older files.
-    if (at < sound.find("<!--") || at >= sound.find("checksum ") + 9)
+    // Without the word before the checksum, the file counts as an older one without a checksum.
+    if (at < intact.find("<!--") || at >= intact.find("checksum ") + 9)
       EXPECT_THROW(PvdSeries::reopen(path("snow.pvd")), InputError) << at;
   }
 }
@@ -68,7 +68,7 @@ TEST_F(PvdSeriesTest, AnAbsentFileIsAnEmptySeries) {
   EXPECT_TRUE(PvdSeries::reopen(path("absent.pvd"), 1.0).entries().empty());
 }
 
-TEST_F(PvdSeriesTest, AFileWithoutEndIsRefused) {
+TEST_F(PvdSeriesTest, EndlessFilesAreRefused) {
   std::filesystem::create_symlink("/dev/zero", path("snow.pvd"));
   EXPECT_THROW(PvdSeries::reopen(path("snow.pvd")), InputError);
 }
@@ -81,7 +81,7 @@ TEST_F(PvdSeriesTest, RefusesTimesOutOfOrder) {
                std::invalid_argument);
 }
 
-TEST_F(PvdSeriesTest, RefusesWhatIsNoSeries) {
+TEST_F(PvdSeriesTest, RefusesInvalidFiles) {
   const std::string head = "<VTKFile>\n";
   for (const std::string line :
        {"<DataSet file=\"a\"/>", "<DataSet timestep=\"1\"/>",
@@ -96,4 +96,4 @@ TEST_F(PvdSeriesTest, RefusesWhatIsNoSeries) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::io

@@ -9,7 +9,7 @@
 #include <iterator>
 #include <string>
 
-namespace snowshed {
+namespace snowshed::io {
 
 class TemporaryFolder : public testing::Test {
  protected:
@@ -54,4 +54,4 @@ std::string message_of(Action&& action) {
   return {};
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::io

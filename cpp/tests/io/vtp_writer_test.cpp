@@ -6,7 +6,7 @@
 #include "io/temporary_folder.hpp"
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed {
+namespace snowshed::io {
 namespace {
 
 using VtpWriterTest = TemporaryFolder;
@@ -17,11 +17,11 @@ std::string attribute(const std::string& element, const std::string& name) {
   return element.substr(start, element.find('"', start) - start);
 }
 
-/// Returns a block as VTK reads it: at the offset in the element with this name.
+/// Returns a block as VTK reads it: at the offset that the element with this name gives.
 template <class T>
 std::vector<T> block(const std::string& file, const std::string& name) {
-  const std::size_t found = file.find("Name=\"" + name + "\"");
-  const std::size_t start = file.rfind('<', found);
+  const std::size_t name_at = file.find("Name=\"" + name + "\"");
+  const std::size_t start = file.rfind('<', name_at);
   const std::string element = file.substr(start, file.find('>', start) - start);
   const std::string marker = "encoding=\"raw\">\n_";
   const std::size_t data =
@@ -56,7 +56,7 @@ TEST_F(VtpWriterTest, KeepsDoublePositions) {
   EXPECT_EQ(block<double>(file, "position"), (std::vector<double>{0.1, 0.2, 0.3}));
 }
 
-TEST_F(VtpWriterTest, WritesNoPointsAtAll) {
+TEST_F(VtpWriterTest, WritesFilesWithoutPoints) {
   write_vtp(path("a.vtp"), Points{}, {{"event", 1, std::vector<std::int32_t>{}}});
   EXPECT_TRUE(block<float>(content(path("a.vtp")), "position").empty());
 }
@@ -67,7 +67,7 @@ TEST_F(VtpWriterTest, EscapesNames) {
             std::string::npos);
 }
 
-TEST_F(VtpWriterTest, RefusesArraysOfAnotherLength) {
+TEST_F(VtpWriterTest, RefusesArraysOfWrongLength) {
   const Points points(2);
   for (const int components : {-1, 0, 2})
     EXPECT_THROW(write_vtp(path("a.vtp"), points, {{"v", components, std::vector<float>(3)}}),
@@ -75,9 +75,9 @@ TEST_F(VtpWriterTest, RefusesArraysOfAnotherLength) {
   EXPECT_EQ(number_of_files(), 0u);
 }
 
-TEST_F(VtpWriterTest, NamesTheFileThatCannotBeWritten) {
+TEST_F(VtpWriterTest, AMissingFolderIsAFileError) {
   EXPECT_THROW(write_vtp(path("missing") / "a.vtp", Points{}, {}), FileError);
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::io

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace snowshed {
+namespace snowshed::io {
 namespace {
 
 TEST(XmlText, EscapesAndRestores) {
@@ -14,4 +14,4 @@ TEST(XmlText, EscapesAndRestores) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::io

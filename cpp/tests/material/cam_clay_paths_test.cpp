@@ -8,7 +8,7 @@
 #include "material/cam_clay_testing.hpp"
 #include "snowshed/core/random.hpp"
 
-namespace snowshed {
+namespace snowshed::material {
 namespace {
 
 using namespace cam_clay_testing;
@@ -20,7 +20,7 @@ using Tensor = Eigen::Matrix<double, D, D>;
 template <class T, int D>
 MaterialState<D> by_returns(const LawConstants& constants, MaterialState<D> start,
                             const std::vector<Tensor<D>>& path, int n) {
-  const CamClay<T> snow = material<T>(constants, D);
+  const CamClay<T> snow = law_of<T>(constants, D);
   const double bulk = double(snow.elastic.bulk), mu = double(snow.elastic.mu);
   T ev = T(start.ev);
   Tensor<D> e = start.strain;
@@ -117,26 +117,30 @@ class CamClayPaths : public testing::Test {
 using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
 TYPED_TEST_SUITE(CamClayPaths, Dimensions);
 
-TYPED_TEST(CamClayPaths, IsotropicCompaction) {
+TYPED_TEST(CamClayPaths, IsotropicCompactionConverges) {
   this->check(Paths<TypeParam::value>::isotropic_compaction());
 }
-TYPED_TEST(CamClayPaths, Oedometric) { this->check(Paths<TypeParam::value>::oedometric()); }
-TYPED_TEST(CamClayPaths, DrainedTriaxial) {
+TYPED_TEST(CamClayPaths, OedometricCompressionConverges) {
+  this->check(Paths<TypeParam::value>::oedometric());
+}
+TYPED_TEST(CamClayPaths, DrainedTriaxialCompressionConverges) {
   this->check(Paths<TypeParam::value>::drained_triaxial());
 }
-TYPED_TEST(CamClayPaths, ConstantVolumeShear) {
+TYPED_TEST(CamClayPaths, ConstantVolumeShearConverges) {
   this->check(Paths<TypeParam::value>::constant_volume_shear());
 }
-TYPED_TEST(CamClayPaths, DilatingShear) { this->check(Paths<TypeParam::value>::dilating_shear()); }
-TYPED_TEST(CamClayPaths, Unloading) { this->check(Paths<TypeParam::value>::unloading()); }
-TYPED_TEST(CamClayPaths, Tension) { this->check(Paths<TypeParam::value>::tension()); }
-TYPED_TEST(CamClayPaths, TensionToFullSoftening) {
+TYPED_TEST(CamClayPaths, DilatingShearConverges) {
+  this->check(Paths<TypeParam::value>::dilating_shear());
+}
+TYPED_TEST(CamClayPaths, UnloadingConverges) { this->check(Paths<TypeParam::value>::unloading()); }
+TYPED_TEST(CamClayPaths, TensionConverges) { this->check(Paths<TypeParam::value>::tension()); }
+TYPED_TEST(CamClayPaths, TensionToFullSofteningConverges) {
   this->check(Paths<TypeParam::value>::tension_to_full_softening());
 }
-TYPED_TEST(CamClayPaths, RecompactionOfStrengthlessSnow) {
+TYPED_TEST(CamClayPaths, RecompactionOfStrengthlessSnowConverges) {
   this->check(Paths<TypeParam::value>::recompaction());
 }
-TYPED_TEST(CamClayPaths, RandomPolylines) {
+TYPED_TEST(CamClayPaths, RandomPathsConverge) {
   constexpr int D = TypeParam::value;
   Random random(7);
   for (int i = 0; i < 4; ++i) {
@@ -161,7 +165,7 @@ TEST(CamClay, IsotropicCompactionFollowsTheHardeningLaw) {
   // p = p0(e_v), and the elastic and plastic volume changes add up to the imposed strain. Together
   // these are one equation for e_v.
   const RateEquations rate(calibrated, 3);
-  const double ev0 = material<double>(calibrated).initial_plastic_strain(7e3), imposed = -0.1;
+  const double ev0 = law_of<double>(calibrated).initial_plastic_strain(7e3), imposed = -0.1;
   const auto end = by_returns<double, 3>(calibrated, {Eigen::Matrix3d::Zero(), ev0},
                                          {Paths<3>::isotropic(imposed)}, 100);
   double low = ev0 + imposed, high = ev0;  // p0 falls, the elastic pressure rises with e_v
@@ -173,4 +177,4 @@ TEST(CamClay, IsotropicCompactionFollowsTheHardeningLaw) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::material

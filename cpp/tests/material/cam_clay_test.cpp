@@ -8,15 +8,15 @@
 #include "material/cam_clay_testing.hpp"
 #include "snowshed/core/random.hpp"
 
-namespace snowshed {
+namespace snowshed::material {
 namespace {
 
 using namespace cam_clay_testing;
 
 // --- hardening --------------------------------------------------------------------------------
 
-TEST(CamClayHardening, FollowsTheHyperbolicSine) {
-  const auto snow = material<double>(calibrated);
+TEST(CamClayHardening, P0IsAHyperbolicSine) {
+  const auto snow = law_of<double>(calibrated);
   const double bulk = 1e6 / (3 - 6 * 0.3);
   for (double ev : {-3.0, -0.5, -0.084, -1e-3, -1e-9})
     EXPECT_NEAR(snow.preconsolidation(ev), bulk * std::sinh(-0.1 * ev),
@@ -25,8 +25,8 @@ TEST(CamClayHardening, FollowsTheHyperbolicSine) {
   EXPECT_EQ(snow.preconsolidation(0.3), 0.0);
 }
 
-TEST(CamClayHardening, SlopeIsItsDerivative) {
-  const auto snow = material<double>({1e6, 0.2, 0.5, 0.2, 2.0});
+TEST(CamClayHardening, SlopeIsTheDerivativeOfP0) {
+  const auto snow = law_of<double>({1e6, 0.2, 0.5, 0.2, 2.0});
   for (double ev : {-1.0, -0.1, -1e-2}) {
     double slope;
     snow.preconsolidation(ev, slope);
@@ -38,17 +38,17 @@ TEST(CamClayHardening, SlopeIsItsDerivative) {
   EXPECT_EQ(slope, 0.0);
 }
 
-TEST(CamClayHardening, InitialStrainGivesTheWantedPressure) {
+TEST(CamClayHardening, InitialStrainGivesTheRequestedP0) {
   // xi = 0.1, p0 = 7 kPa, E = 1 MPa: 8.4 % of dilation removes all strength.
-  EXPECT_NEAR(material<double>(calibrated).initial_plastic_strain(7e3), -0.084, 5e-5);
+  EXPECT_NEAR(law_of<double>(calibrated).initial_plastic_strain(7e3), -0.084, 5e-5);
   for (double xi : {1e-3, 0.1, 1.0, 50.0})
     for (double p0 : {0.0, 1e-3, 7e3, 1e6}) {
-      const auto snow = material<double>({1e6, 0.3, 0.5, 0.2, xi});
+      const auto snow = law_of<double>({1e6, 0.3, 0.5, 0.2, xi});
       EXPECT_NEAR(snow.preconsolidation(snow.initial_plastic_strain(p0)), p0, 1e-13 * p0);
     }
 }
 
-// --- one return -------------------------------------------------------------------------------
+// --- single returns ---------------------------------------------------------------------------
 
 /// A trial state and the state to which it returned.
 struct Return {
@@ -67,14 +67,14 @@ std::ostream& operator<<(std::ostream& out, const Return& r) {
 /// Expects that a return satisfies, to the round-off of T, the equations of backward Euler with
 /// associative flow: yield condition, flow rule, volume balance, and dissipation.
 template <class T>
-void expect_sound(const Return& r) {
+void expect_backward_euler(const Return& r) {
   LawConstants s = r.snow;
   s.slope = std::max(s.slope, 1e-4);  // as CamClay::from
   const double eps = std::numeric_limits<T>::epsilon();
   const RateEquations snow(s, r.dimension);
   const double p0 = snow.p0(r.ev), d = r.ev - r.ev_old;
   const double m2 = s.slope * s.slope, a = 1 + 2 * s.cohesion;
-  // Round-off of the numbers the result is made from: stress, and e_v through p0.
+  // Round-off of the stresses, and of e_v through p0.
   const double stress = std::abs(r.p_trial) + p0 + snow.bulk * (std::abs(r.ev) + std::abs(d)) +
                         std::abs(snow.p0_slope(r.ev)) * (std::abs(r.ev) + std::abs(r.ev_old));
   const double tolerance = 16 * eps * stress;
@@ -121,7 +121,7 @@ Return returned(const LawConstants& snow, int dimension, double p, double q, dou
   Return r{snow, dimension, rounded<T>(p), rounded<T>(q), rounded<T>(ev), 0, 0, 0};
   PQ<T> s{T(r.p_trial), T(r.q_trial)};
   T e = T(r.ev_old);
-  material<T>(snow, dimension).return_map(s, e);
+  law_of<T>(snow, dimension).return_map(s, e);
   r.p = double(s.p), r.q = double(s.q), r.ev = double(e);
   return r;
 }
@@ -145,9 +145,10 @@ Return random_trial(Random& random) {
   r.ev_old = std::max(-1 / r.snow.hardening, initial) +
              pick(random, {0, 0, 1e-9, 1e-3, 0.1, 0.5}) * (random.uniform() - 0.5);
   // Elastic strains of the trial, from tiny ones to the largest for which p0 is a finite float.
-  const double largest = std::min(10.0, 30 / r.snow.hardening);
+  const double max_strain = std::min(10.0, 30 / r.snow.hardening);
   const auto strain = [&] {
-    return pick(random, {0, 1, 1, 1}) * std::min(largest, std::pow(10.0, 9 * random.uniform() - 8));
+    return pick(random, {0, 1, 1, 1}) *
+           std::min(max_strain, std::pow(10.0, 9 * random.uniform() - 8));
   };
   r.p_trial = snow.bulk * strain() * (random.uniform() < 0.5 ? -1 : 1);
   r.q_trial = 3 * snow.mu * strain();
@@ -159,29 +160,29 @@ class CamClayReturn : public testing::Test {};
 using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(CamClayReturn, Scalars);
 
-TYPED_TEST(CamClayReturn, IsSoundForRandomTrials) {
+TYPED_TEST(CamClayReturn, SatisfiesBackwardEulerForRandomTrials) {
   Random random(3);
   for (int i = 0; i < 100000 && !this->HasFailure(); ++i) {
     const Return t = random_trial(random);
-    expect_sound<TypeParam>(
+    expect_backward_euler<TypeParam>(
         returned<TypeParam>(t.snow, t.dimension, t.p_trial, t.q_trial, t.ev_old));
   }
 }
 
-TYPED_TEST(CamClayReturn, IsSoundOnTheCentreLine) {
+TYPED_TEST(CamClayReturn, SatisfiesBackwardEulerOnTheCenterLine) {
   Random random(4);
   for (int i = 0; i < 1000 && !this->HasFailure(); ++i) {
     const Return t = random_trial(random);
     const double p0 = RateEquations(t.snow, t.dimension).p0(t.ev_old);
-    const double centre = (1 - t.snow.cohesion) * p0 / 2;
+    const double center = (1 - t.snow.cohesion) * p0 / 2;
     for (double shear : {0.0, 0.1, 1.0, 1.001, 1e3})
-      expect_sound<TypeParam>(
-          returned<TypeParam>(t.snow, t.dimension, centre, shear * p0, t.ev_old));
+      expect_backward_euler<TypeParam>(
+          returned<TypeParam>(t.snow, t.dimension, center, shear * p0, t.ev_old));
   }
 }
 
-TYPED_TEST(CamClayReturn, LeavesElasticTrialsAlone) {
-  const double p0 = 7e3, ev = material<double>(calibrated).initial_plastic_strain(p0);
+TYPED_TEST(CamClayReturn, ElasticTrialsAreUnchanged) {
+  const double p0 = 7e3, ev = law_of<double>(calibrated).initial_plastic_strain(p0);
   for (double p : {-0.19 * p0, 0.0, 0.4 * p0, 0.99 * p0}) {
     const Return r = returned<TypeParam>(calibrated, 3, p, 1e-3 * p0, ev);
     EXPECT_EQ(r.p, r.p_trial);
@@ -190,9 +191,9 @@ TYPED_TEST(CamClayReturn, LeavesElasticTrialsAlone) {
   }
 }
 
-TYPED_TEST(CamClayReturn, KeepsTheVolumeOnTheCentreLine) {
+TYPED_TEST(CamClayReturn, KeepsTheVolumeOnTheCenterLine) {
   // Purely deviatoric flow: q falls to the critical state, p and e_v stay.
-  const double p0 = 7e3, ev = material<double>(calibrated).initial_plastic_strain(p0);
+  const double p0 = 7e3, ev = law_of<double>(calibrated).initial_plastic_strain(p0);
   const Return r = returned<TypeParam>(calibrated, 3, 0.4 * p0, 3 * p0, ev);
   const double eps = std::numeric_limits<TypeParam>::epsilon();
   EXPECT_NEAR(r.p, 0.4 * p0, 10 * eps * p0);
@@ -200,7 +201,7 @@ TYPED_TEST(CamClayReturn, KeepsTheVolumeOnTheCentreLine) {
   EXPECT_NEAR(r.q, 0.5 * 1.2 * p0 / (2 * std::sqrt(1.4)), 1e3 * eps * p0);
 }
 
-TYPED_TEST(CamClayReturn, SnowWithoutStrengthKeepsNoStressAndItsVolume) {
+TYPED_TEST(CamClayReturn, SnowWithoutStrengthOpensAndClosesWithoutStress) {
   // With p0 = 0, a particle opens freely in tension or shear, and e_v grows by the opening.
   const double bulk = RateEquations(calibrated, 3).bulk;
   const Return open = returned<TypeParam>(calibrated, 3, -0.01 * bulk, 500.0, 0.02);
@@ -219,16 +220,16 @@ TYPED_TEST(CamClayReturn, SnowWithoutStrengthKeepsNoStressAndItsVolume) {
   EXPECT_NEAR(closed.p, RateEquations(calibrated, 3).p0(closed.ev), 1e-5 * closed.p);
 }
 
-TYPED_TEST(CamClayReturn, TensionBeyondTheStrengthSoftensToNothingInOneReturn) {
+TYPED_TEST(CamClayReturn, ExcessTensionSoftensToZeroInOneReturn) {
   const double bulk = RateEquations(calibrated, 3).bulk;
-  const double ev = material<double>(calibrated).initial_plastic_strain(7e3);  // -0.084
+  const double ev = law_of<double>(calibrated).initial_plastic_strain(7e3);  // -0.084
   const Return r = returned<TypeParam>(calibrated, 3, -0.2 * bulk, 0.1 * bulk, ev);
   EXPECT_EQ(r.p, 0.0);
   EXPECT_EQ(r.q, 0.0);
   EXPECT_NEAR(r.ev, ev + 0.2, 1e-7);
 }
 
-TEST(CamClay, ReturnsToTheNearestPointOfASmoothPath) {
+TEST(CamClay, ReturnsToTheOriginOnlyIfItsPathMissesTheSurface) {
   // If softening is gentler than the elastic bulk modulus (beta xi < 1), a trial may return to the
   // origin only if no point of the surface lies on its path.
   Random random(5);
@@ -271,7 +272,7 @@ void expect_packs_agree(double tolerance) {
       s.q[l] = T(scalar[l].q_trial);
       ev[l] = T(scalar[l].ev_old);
     }
-    material<T>(common.snow, common.dimension).return_map(s, ev);
+    law_of<T>(common.snow, common.dimension).return_map(s, ev);
     for (int l = 0; l < W; ++l) {
       const Return& r = scalar[l];
       const double stress = std::abs(r.p_trial) + r.q_trial +
@@ -283,11 +284,11 @@ void expect_packs_agree(double tolerance) {
   }
 }
 
-TEST(CamClay, PacksReturnAsScalarsDo) {
-  // Only exp and log differ, by some units in the last place. A steep surface amplifies that.
+TEST(CamClay, PacksReturnLikeScalars) {
+  // Only exp and log differ, by some units in the last place; a steep surface amplifies this.
   expect_packs_agree<double>(1e-13);
   expect_packs_agree<float>(3e-5);
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::material

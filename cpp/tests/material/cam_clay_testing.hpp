@@ -9,12 +9,12 @@
 
 namespace snowshed::cam_clay_testing {
 
-inline constexpr LawConstants calibrated{1e6, 0.3, 0.5, 0.2, 0.1};
+inline constexpr material::LawConstants calibrated{1e6, 0.3, 0.5, 0.2, 0.1};
 
 template <class T>
-CamClay<T> material(const LawConstants& s, int dimension = 3) {
-  return CamClay<T>::from(s.youngs_modulus, s.poissons_ratio, s.slope, s.cohesion, s.hardening,
-                          dimension);
+material::CamClay<T> law_of(const material::LawConstants& s, int dimension = 3) {
+  return material::CamClay<T>::from(s.youngs_modulus, s.poissons_ratio, s.slope, s.cohesion,
+                                    s.hardening, dimension);
 }
 
 }  // namespace snowshed::cam_clay_testing

@@ -1,5 +1,5 @@
-// The law of snow with a crack band and a relaxation time: how it softens, its return mapping, and
-// how stress relaxes.
+// The law of snow with a crack band and a relaxation time: softening, return mapping and
+// relaxation.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "material/cam_clay_testing.hpp"
 #include "snowshed/core/random.hpp"
 
-namespace snowshed {
+namespace snowshed::material {
 namespace {
 
 using namespace cam_clay_testing;
@@ -25,16 +25,16 @@ RegularisedCamClay<T> banded(double softening, const LawConstants& s = calibrate
   return law;
 }
 
-TEST(CrackBandLaw, SoftensSoManyTimesFasterOnceSnowHasDilated) {
-  const double begin = material<double>(calibrated).initial_plastic_strain(strength);
+TEST(CrackBandLaw, DilatedSnowSoftensFasterByTheFactor) {
+  const double begin = law_of<double>(calibrated).initial_plastic_strain(strength);
   for (const double s : {0.25, 0.5, 1.0, 4.0}) {
     const auto law = banded<double>(s);
     for (const double ev : {-2.0, -0.2, begin})  // compacted: (1.2.7)
-      EXPECT_DOUBLE_EQ(law.preconsolidation(ev), material<double>(calibrated).preconsolidation(ev));
-    // Shares of the dilation at which strength is lost, -e_0/s.
+      EXPECT_DOUBLE_EQ(law.preconsolidation(ev), law_of<double>(calibrated).preconsolidation(ev));
+    // Fractions of the dilation -e_0/s, at which all strength is lost.
     for (const double part : {0.1, 0.5, 0.9})
       EXPECT_NEAR(law.preconsolidation(begin - part * begin / s),
-                  material<double>(calibrated).preconsolidation(begin - part * begin),
+                  law_of<double>(calibrated).preconsolidation(begin - part * begin),
                   1e-9 * strength);
     EXPECT_EQ(law.preconsolidation(begin - 1.001 * begin / s), 0.0);
     double slope;
@@ -45,9 +45,9 @@ TEST(CrackBandLaw, SoftensSoManyTimesFasterOnceSnowHasDilated) {
   }
 }
 
-/// A return of random trials satisfies the yield condition, the volume balance and the flow rule.
+/// Expects that the returns of random trials satisfy the yield condition and the volume balance.
 template <class T>
-void expect_sound_returns() {
+void expect_valid_returns() {
   const double eps = std::numeric_limits<T>::epsilon();
   Random random(17);
   int yielded = 0, dilated = 0;
@@ -87,14 +87,14 @@ void expect_sound_returns() {
   EXPECT_GT(dilated, 2000);
 }
 
-TEST(CrackBandLaw, ReturnsAreSound) {
-  expect_sound_returns<double>();
-  expect_sound_returns<float>();
+TEST(CrackBandLaw, ReturnsSatisfyYieldConditionAndVolumeBalance) {
+  expect_valid_returns<double>();
+  expect_valid_returns<float>();
 }
 
-TEST(CrackBandLaw, OfOneIsCamClayBitForBit) {
+TEST(CrackBandLaw, AFactorOfOneIsCamClayBitForBit) {
   Random random(5);
-  const auto plain = material<float>(calibrated);
+  const auto plain = law_of<float>(calibrated);
   const auto law = banded<float>(1.0);
   for (int i = 0; i < 20000; ++i) {
     PQ<float> a{float(4e4 * (random.uniform() - 0.5)), float(3e4 * random.uniform())}, b = a;
@@ -107,31 +107,31 @@ TEST(CrackBandLaw, OfOneIsCamClayBitForBit) {
   }
 }
 
-/// Snow that is held at its strain relaxes towards the yield surface: n steps of dt leave
-/// (tau / (dt + tau))^n of the overstress, which short steps bring to exp(-t / tau).
+/// Snow at constant strain relaxes towards the yield surface: n steps of dt leave
+/// (tau / (dt + tau))^n of the overstress, which approaches exp(-t / tau) for short steps.
 TEST(Relaxation, OverstressDecaysExponentially) {
   constexpr double tau = 1e-4, time = 1.5e-4;
   const auto law = banded<double>(1.0);
   const double ev = law.initial_plastic_strain(strength);
   // At the centre of the ellipse the flow has no volume, so q alone relaxes.
-  const double centre = 0.5 * (1 - 0.2) * strength;
-  PQ<double> on_surface{centre, 3 * strength};
-  double ev_there = ev;
-  ASSERT_TRUE(law.return_map(on_surface, ev_there));
+  const double center = 0.5 * (1 - 0.2) * strength;
+  PQ<double> on_surface{center, 3 * strength};
+  double ev_on_surface = ev;
+  ASSERT_TRUE(law.return_map(on_surface, ev_on_surface));
   for (const int steps : {50, 500}) {
     const double dt = time / steps, overstress = tau / (dt + tau);
-    PQ<double> s{centre, 3 * strength};
+    PQ<double> s{center, 3 * strength};
     double ev_now = ev;
     for (int n = 0; n < steps; ++n) law.return_map(s, ev_now, overstress);
-    const double left = (s.q - on_surface.q) / (3 * strength - on_surface.q);
-    EXPECT_NEAR(left, std::pow(overstress, steps), 1e-6);
-    EXPECT_NEAR(left, std::exp(-time / tau), 0.5 * dt / tau);
-    EXPECT_NEAR(s.p, centre, 1e-6 * strength);
+    const double remaining = (s.q - on_surface.q) / (3 * strength - on_surface.q);
+    EXPECT_NEAR(remaining, std::pow(overstress, steps), 1e-6);
+    EXPECT_NEAR(remaining, std::exp(-time / tau), 0.5 * dt / tau);
+    EXPECT_NEAR(s.p, center, 1e-6 * strength);
   }
 }
 
-/// A return that ends midway keeps the volume balance, and lies between the trial and the surface.
-TEST(Relaxation, APartOfTheWayBackKeepsTheVolume) {
+/// A partial return keeps the volume balance, and lies between the trial and the surface.
+TEST(Relaxation, PartialReturnsKeepTheVolumeBalance) {
   Random random(3);
   const auto law = banded<double>(0.5);
   int yielded = 0;
@@ -151,4 +151,4 @@ TEST(Relaxation, APartOfTheWayBackKeepsTheVolume) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::material

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace snowshed {
+namespace snowshed::material {
 namespace {
 
 TEST(Elasticity, UniaxialStressGivesYoungsModulusAndPoissonsRatio) {
@@ -15,7 +15,7 @@ TEST(Elasticity, UniaxialStressGivesYoungsModulusAndPoissonsRatio) {
   }
 }
 
-TEST(Elasticity, BulkModulusIsThatOfTheDimension) {
+TEST(Elasticity, BulkModulusDependsOnTheDimension) {
   const double E = 1e6, nu = 0.3;
   EXPECT_NEAR(Elasticity<double>::from(E, nu, 3).bulk, E / (3 * (1 - 2 * nu)), 1e-6);
   // Plane strain: p = -(tau_xx + tau_zz)/2 = -(lambda + mu) tr(e).
@@ -23,4 +23,4 @@ TEST(Elasticity, BulkModulusIsThatOfTheDimension) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::material

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace snowshed {
+namespace snowshed::material {
 
 struct LawConstants {
   double youngs_modulus, poissons_ratio, slope, cohesion, hardening;
@@ -195,4 +195,4 @@ class RateEquations {
   LawConstants snow_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::material

@@ -10,7 +10,7 @@
 // A vector type as template argument loses its alignment, which does not matter here.
 #pragma GCC diagnostic ignored "-Wignored-attributes"
 
-namespace snowshed {
+namespace snowshed::material {
 namespace {
 
 // The reference is computed in long double, so that its own rounding is negligible.
@@ -19,14 +19,14 @@ using Matrix = Eigen::Matrix<long double, D, D>;
 
 /// Returns f of a symmetric matrix, computed from its eigenvalues.
 template <int D, class F>
-Matrix<D> of_eigenvalues(const Matrix<D>& a, F f) {
+Matrix<D> matrix_function(const Matrix<D>& a, F f) {
   const Eigen::SelfAdjointEigenSolver<Matrix<D>> eigen(a);
   Eigen::Matrix<long double, D, 1> w = eigen.eigenvalues();
   for (int i = 0; i < D; ++i) w[i] = f(w[i]);
   return eigen.eigenvectors() * w.asDiagonal() * eigen.eigenvectors().transpose();
 }
 
-/// Returns the tensor in one lane of a pack, or the only one of a scalar.
+/// Returns the tensor in a lane of packs, or the tensor itself if its components are scalars.
 template <class V, int D>
 Matrix<D> lane(const Sym<V, D>& a, int l) {
   Matrix<D> m;
@@ -78,14 +78,14 @@ class SymTensor : public testing::Test {
   /// Returns the largest error over random tensors of that norm, relative to the norm of the
   /// result.
   template <class F, class G>
-  static double worst(double norm, F f, G exact) {
+  static double max_error(double norm, F f, G exact) {
     Random random(2);
     double error = 0;
     for (int i = 0; i < 300; ++i) {
       const Sym<V, D> a = random_tensor(random, norm), b = f(a);
       for (int l = 0; l < lanes; ++l) {
-        const Matrix<D> wanted = of_eigenvalues<D>(lane(a, l), exact);
-        error = std::max(error, double((lane(b, l) - wanted).norm() / wanted.norm()));
+        const Matrix<D> expected = matrix_function<D>(lane(a, l), exact);
+        error = std::max(error, double((lane(b, l) - expected).norm() / expected.norm()));
       }
     }
     return error;
@@ -105,7 +105,7 @@ constexpr double norms[] = {1e-12, 1e-6, 1e-3, 0.0499, 0.0501, 0.0999, 0.1001, 0
 
 TYPED_TEST(SymTensor, HenckyStrainIsHalfTheLogarithm) {
   for (double norm : norms)
-    EXPECT_LT(this->worst(
+    EXPECT_LT(this->max_error(
                   norm, [](const auto& a) { return hencky_strain(a); },
                   [](long double x) { return std::log1p(x) / 2; }),
               16 * this->epsilon)
@@ -114,7 +114,7 @@ TYPED_TEST(SymTensor, HenckyStrainIsHalfTheLogarithm) {
 
 TYPED_TEST(SymTensor, CauchyGreenIsTheExponential) {
   for (double norm : {1e-12, 1e-6, 1e-3, 0.0499, 0.0501, 0.0999, 0.1001, 0.3, 0.9, 3.0})
-    EXPECT_LT(this->worst(
+    EXPECT_LT(this->max_error(
                   norm, [](const auto& a) { return cauchy_green_minus_identity(a); },
                   [](long double x) { return std::expm1(2 * x); }),
               32 * this->epsilon)
@@ -132,20 +132,20 @@ TYPED_TEST(SymTensor, LogarithmUndoesExponential) {
     }
 }
 
-TYPED_TEST(SymTensor, EqualEigenvaluesAndZeroAreNoTrouble) {
+TYPED_TEST(SymTensor, HandlesEqualEigenvaluesAndZero) {
   using V = typename TypeParam::Value;
   using T = Scalar<V>;
   for (double x : {0.0, 1e-3, 0.5, -0.5}) {
     Sym<V, TypeParam::D> a{};
     for (int k = 0; k < TypeParam::D; ++k) a.c[k] = broadcast<V>(T(x));
     const auto e = lane(hencky_strain(a), 0);
-    const Matrix<TypeParam::D> wanted =
+    const Matrix<TypeParam::D> expected =
         std::log1p(static_cast<long double>(T(x))) / 2 * Matrix<TypeParam::D>::Identity();
-    EXPECT_LE(double((e - wanted).norm()), 4 * this->epsilon * std::abs(x));
+    EXPECT_LE(double((e - expected).norm()), 4 * this->epsilon * std::abs(x));
   }
 }
 
-TYPED_TEST(SymTensor, InvariantsAreThoseOfTheMatrix) {
+TYPED_TEST(SymTensor, InvariantsMatchTheMatrix) {
   Random random(4);
   const auto a = this->random_tensor(random, 1.0);
   for (int l = 0; l < this->lanes; ++l) {
@@ -164,4 +164,4 @@ TYPED_TEST(SymTensor, InvariantsAreThoseOfTheMatrix) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::material

@@ -7,11 +7,11 @@
 
 #include "snowshed/core/random.hpp"
 
-namespace snowshed {
+namespace snowshed::particles {
 namespace {
 
 /// Ids with bits in every digit of the sort, each once.
-TEST(OrderById, IsThatOfASort) {
+TEST(IdOrder, MatchesASort) {
   Random random(3);
   for (const std::size_t count : {0u, 1u, 2u, 5000u}) {
     std::vector<std::uint32_t> ids(count), expected(count);
@@ -26,10 +26,10 @@ TEST(OrderById, IsThatOfASort) {
 }
 
 /// Ids of a forged checkpoint may be equal; the order still contains every particle once.
-TEST(OrderById, KeepsParticlesOfTheSameId) {
+TEST(IdOrder, ContainsParticlesWithEqualIds) {
   const std::vector<std::uint32_t> ids{7, 7, 0, 4294967295u, 7};
   EXPECT_EQ(order_by_id(ids.data(), ids.size()), (std::vector<std::uint32_t>{2, 0, 1, 4, 3}));
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::particles

@@ -4,12 +4,12 @@
 
 #include "geometry/geometry_testing.hpp"
 
-namespace snowshed {
+namespace snowshed::particles {
 namespace {
 
 using namespace geometry_testing;
 
-void expect_all_found(const std::vector<Vec3>& points, double edge) {
+void expect_all_near_visited(const std::vector<Vec3>& points, double edge) {
   const PointGrid grid(points, edge);
   for (const Vec3& x : points) {
     std::set<std::uint32_t> near;
@@ -30,28 +30,28 @@ TEST(PointGrid, FindsEveryPointWithinAnEdge) {
     x = random_point(random, 1.0);
     x.y() = 0;
   }
-  expect_all_found(points, 0.3);
-  expect_all_found(flat, 0.1);
+  expect_all_near_visited(points, 0.3);
+  expect_all_near_visited(flat, 0.1);
 }
 
-TEST(PointGrid, NoPointsNoVisits) {
+TEST(PointGrid, AnEmptyGridVisitsNothing) {
   const PointGrid grid({}, 1.0);
   grid.for_each_near(Vec3::Zero(), [](std::uint32_t, const Vec3&) { FAIL(); });
 }
 
-TEST(PointGrid, IsGivenUpWhileItSorts) {
+TEST(PointGrid, StopsDuringTheSort) {
   Random random(21);
   std::vector<Vec3> points(50000);
   for (Vec3& x : points) x = random_point(random, 1.0);
-  int asked = 0;
-  const auto never = [&] { return ++asked, false; };
+  int calls = 0;
+  const auto never = [&] { return ++calls, false; };
   PointGrid(points, 0.05, never);
-  EXPECT_GT(asked, 100);  // sorting makes more than ten comparisons per point
-  for (int turn : {1, asked / 2, asked}) {
-    int left = turn;
-    EXPECT_THROW(PointGrid(points, 0.05, [&] { return --left == 0; }), Stopped);
+  EXPECT_GT(calls, 100);  // sorting makes more than ten comparisons per point
+  for (int turn : {1, calls / 2, calls}) {
+    int remaining = turn;
+    EXPECT_THROW(PointGrid(points, 0.05, [&] { return --remaining == 0; }), Stopped);
   }
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::particles

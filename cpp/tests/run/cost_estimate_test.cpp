@@ -13,41 +13,41 @@
 #include "snowshed/scene/presets.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
-namespace snowshed {
+namespace snowshed::run {
 namespace {
 
 constexpr double g = 9.81;
 const double sine = std::sin(radians(40)), cosine = std::cos(radians(40));
 
 /// The first time step of a scene at rest, s.
-double first_time_step(const Scene& scene) { return estimate_cost(scene).time_step; }
+double first_time_step(const scene::Scene& scene) { return estimate_cost(scene).time_step; }
 
 /// Motion of the snow of a scene, and its cost.
-struct Estimate : CostEstimate, SnowMotion {
-  using CostEstimate::event_time;
+struct Estimate : methods::CostEstimate, methods::SnowMotion {
+  using methods::CostEstimate::event_time;
 };
-Estimate estimate(const Scene& scene) {
-  return {estimate_cost(scene), estimate_motion(resolve(scene))};
+Estimate estimate(const scene::Scene& scene) {
+  return {estimate_cost(scene), estimate_motion(scene::resolve(scene))};
 }
 
-TEST(CostEstimate, ParticlesOfTheLaboratorySlab) {
+TEST(CostEstimate, CountsTheParticlesOfTheLaboratorySlab) {
   // 0.245 x 0.142 x 0.02 m of 0.01 m voxels with 8 particles each
-  const CostEstimate result = estimate_cost(preset_scene("lab-40"));
+  const methods::CostEstimate result = estimate_cost(scene::preset_scene("lab-40"));
   ASSERT_EQ(result.particles.size(), 5u);
   EXPECT_EQ(result.particles[0], std::round(0.245 * 0.142 * 0.02 * 1e6 * 8));
   EXPECT_EQ(result.particles[0], 5566.0);
   EXPECT_EQ(result.total_particles, 5 * 5566.0);
 }
 
-TEST(CostEstimate, ParticlesOfThePlaneScene) {
+TEST(CostEstimate, CountsTheParticlesOfThePlaneScene) {
   // 2 x 0.05 m of 0.01 m pixels with 6 particles each
-  EXPECT_EQ(estimate_cost(preset_scene("geometry")).particles[0], 6000.0);
+  EXPECT_EQ(estimate_cost(scene::preset_scene("geometry")).particles[0], 6000.0);
 }
 
 TEST(CostEstimate, ParticlesFollowTheBodiesOfEachEvent) {
-  Scene scene = preset_scene("geometry");
+  scene::Scene scene = scene::preset_scene("geometry");
   scene.events.count = 2;
-  BodySpec& body = scene.bodies.emplace_back();
+  scene::BodySpec& body = scene.bodies.emplace_back();
   body.event = 2;
   body.shape.type = "box";
   body.shape.size = {0.1, 0, 0.1};
@@ -55,21 +55,21 @@ TEST(CostEstimate, ParticlesFollowTheBodiesOfEachEvent) {
   EXPECT_EQ(estimate_cost(scene, {1234, 12}).total_particles, 1246.0);
 }
 
-TEST(CostEstimate, TimeStepOfTheCalibratedSnow) {
+TEST(CostEstimate, TimeStepOfTheCalibratedSnowMatchesItsFormula) {
   // E 1 MPa, nu 0.3: lambda = 576923, mu = 384615 Pa
-  const Scene lab = preset_scene("lab-40");
+  const scene::Scene lab = scene::preset_scene("lab-40");
   const double stiffness = 3 * 576923.0769 + 2 * 384615.3846;
   EXPECT_NEAR(first_time_step(lab), 0.9 * 0.01 * std::sqrt(2 * 210 / (6 * stiffness)), 1e-12);
   EXPECT_NEAR(first_time_step(lab), 4.762e-5, 1e-8);
-  EXPECT_NEAR(first_time_step(preset_scene("geometry")), 5.430e-5, 1e-8);
-  Scene fine = lab;
-  fine.numerics.as<mpm::Settings>().dx = 0.005;
-  fine.numerics.as<mpm::Settings>().courant_factor = 0.45;
+  EXPECT_NEAR(first_time_step(scene::preset_scene("geometry")), 5.430e-5, 1e-8);
+  scene::Scene fine = lab;
+  fine.numerics.as<methods::mpm::Settings>().dx = 0.005;
+  fine.numerics.as<methods::mpm::Settings>().courant_factor = 0.45;
   EXPECT_NEAR(first_time_step(fine), first_time_step(lab) / 4, 1e-15);
 }
 
-TEST(CostEstimate, TheRearSlidesTheWholePanelAndFalls) {
-  Scene scene = preset_scene("lab-40");
+TEST(CostEstimate, TheRearSlidesAlongTheWholePanelAndFalls) {
+  scene::Scene scene = scene::preset_scene("lab-40");
   scene.panel->friction = 0.3;
   const double acceleration = g * (sine - 0.3 * cosine);
   const double slide = std::sqrt(2 * 0.245 / acceleration);
@@ -82,20 +82,20 @@ TEST(CostEstimate, TheRearSlidesTheWholePanelAndFalls) {
   EXPECT_NEAR(result.fall_time, fall, 1e-12);
   const double impact = std::sqrt(std::pow(acceleration * slide, 2) + 2 * g * 0.33);
   EXPECT_NEAR(result.event_time, slide + fall + impact / g, 1e-12);
-  const double way = 0.245 + fall * (acceleration * slide + g * fall / 2);
-  EXPECT_NEAR(result.distance, way, 1e-12);
-  const double for_the_way = 2 * way / (0.01 * 0.9);  // 0.6 % more
-  EXPECT_EQ(result.steps, 5 * std::ceil(result.event_time / result.time_step + for_the_way));
+  const double distance = 0.245 + fall * (acceleration * slide + g * fall / 2);
+  EXPECT_NEAR(result.distance, distance, 1e-12);
+  const double steps_for_distance = 2 * distance / (0.01 * 0.9);  // 0.6 % more
+  EXPECT_EQ(result.steps, 5 * std::ceil(result.event_time / result.time_step + steps_for_distance));
   EXPECT_EQ(result.scattering, 1.0);
 }
 
-TEST(CostEstimate, OlderSnowIsAwakeOnlyInPart) {
-  Scene scene = preset_scene("lab-40");
-  scene.numerics.as<mpm::Settings>().sleep_speed = 0.0;
+TEST(CostEstimate, OlderSnowIsAwakePartOfTheTime) {
+  scene::Scene scene = scene::preset_scene("lab-40");
+  scene.numerics.as<methods::mpm::Settings>().sleep_speed = 0.0;
   const Estimate awake = estimate(scene);
   const double steps = awake.steps / 5, slab = awake.particles[0];
   EXPECT_NEAR(awake.updates, steps * slab * (1 + 2 + 3 + 4 + 5), 1.0);
-  scene.numerics.as<mpm::Settings>().sleep_speed = 0.02;
+  scene.numerics.as<methods::mpm::Settings>().sleep_speed = 0.02;
   const Estimate asleep = estimate(scene);
   EXPECT_LT(asleep.first_landing, asleep.sliding_time + asleep.fall_time);
   const double share = 0.5 * (1 - asleep.first_landing / asleep.event_time);
@@ -103,7 +103,7 @@ TEST(CostEstimate, OlderSnowIsAwakeOnlyInPart) {
 }
 
 TEST(CostEstimate, HigherFallsTakeLongerToSettle) {
-  Scene scene = preset_scene("geometry");
+  scene::Scene scene = scene::preset_scene("geometry");
   const auto settling = [&scene] {
     const Estimate f = estimate(scene);
     return f.event_time - f.sliding_time - f.fall_time;
@@ -114,8 +114,8 @@ TEST(CostEstimate, HigherFallsTakeLongerToSettle) {
   EXPECT_GT(high, settling());
 }
 
-TEST(CostEstimate, TheGroundsTiltLengthensTheFall) {
-  Scene scene = preset_scene("geometry");
+TEST(CostEstimate, ATiltedGroundLengthensTheFall) {
+  scene::Scene scene = scene::preset_scene("geometry");
   scene.panel->friction = 0.0;
   const double level = estimate(scene).fall_time;
   scene.ground->tilt = 30.0;
@@ -128,21 +128,21 @@ TEST(CostEstimate, TheGroundsTiltLengthensTheFall) {
 }
 
 TEST(CostEstimate, EnoughFrictionHoldsTheSlab) {
-  Scene scene = preset_scene("lab-40");
+  scene::Scene scene = scene::preset_scene("lab-40");
   scene.panel->friction = 0.84;  // tan 40 = 0.8391
   EXPECT_FALSE(estimate(scene).slides);
   EXPECT_EQ(estimate(scene).event_time, 0.25);
   scene.panel->friction = 0.838;
   EXPECT_TRUE(estimate(scene).slides);
   scene.panel->friction = 0.0;
-  scene.panel->condition = Condition::sticky;
+  scene.panel->condition = methods::Condition::sticky;
   EXPECT_FALSE(estimate(scene).slides);
 }
 
-TEST(CostEstimate, BodiesFallFromTheirCentre) {
-  Scene scene;
+TEST(CostEstimate, BodiesFallFromTheirCenter) {
+  scene::Scene scene;
   scene.ground.emplace();
-  BodySpec& body = scene.bodies.emplace_back();
+  scene::BodySpec& body = scene.bodies.emplace_back();
   body.shape.type = "sphere";
   body.shape.radius = 0.1;
   body.shape.center = {0, 0, 2};
@@ -153,12 +153,12 @@ TEST(CostEstimate, BodiesFallFromTheirCentre) {
 
 /// In 0.5 s at 1000 m/s2 without ground, a run took 19115 steps, and an update took sixteen times
 /// the work of one in the slab.
-TEST(CostEstimate, SnowThatNeverLandsFliesApartFaster) {
-  Scene scene = preset_scene("lab-50");
+TEST(CostEstimate, SnowThatNeverLandsScatters) {
+  scene::Scene scene = scene::preset_scene("lab-50");
   scene.panel->friction = 0.3;
   scene.ground.reset();
   scene.gravity = 1000.0;
-  scene.numerics.as<mpm::Settings>().dx = 0.02;
+  scene.numerics.as<methods::mpm::Settings>().dx = 0.02;
   scene.events.count = 1;
   scene.events.max_time = 0.5;
   const Estimate result = estimate(scene);
@@ -171,7 +171,7 @@ TEST(CostEstimate, SnowThatNeverLandsFliesApartFaster) {
 }
 
 TEST(CostEstimate, NoEventOutlastsItsLimit) {
-  Scene scene = preset_scene("geometry");
+  scene::Scene scene = scene::preset_scene("geometry");
   scene.events.max_time = 0.6;
   EXPECT_EQ(estimate(scene).event_time, 0.6);
   scene.gravity = 0.0;
@@ -182,20 +182,20 @@ TEST(CostEstimate, NoEventOutlastsItsLimit) {
 }
 
 TEST(CostEstimate, DoublesNeedTwiceTheMemory) {
-  Scene scene = preset_scene("lab-40");
+  scene::Scene scene = scene::preset_scene("lab-40");
   const double single = estimate(scene).bytes;
   EXPECT_GT(single, 150.0 * 27830);
   EXPECT_LT(single, 300.0 * 27830);
-  scene.numerics.as<mpm::Settings>().precision = mpm::Precision::float64;
+  scene.numerics.as<methods::mpm::Settings>().precision = methods::mpm::Precision::float64;
   EXPECT_NEAR(estimate(scene).bytes, 2 * single, 1e-6 * single);
 }
 
 TEST(CostEstimate, AbsurdScenesAreEstimatedAndRefused) {
-  Scene scene = preset_scene("lab-40");
-  scene.numerics.as<mpm::Settings>().dx = 1e-9;
+  scene::Scene scene = scene::preset_scene("lab-40");
+  scene.numerics.as<methods::mpm::Settings>().dx = 1e-9;
   EXPECT_GT(estimate(scene).total_particles, 1e20);
   EXPECT_THROW(check_memory(estimate(scene).bytes), InputError);
-  scene.numerics.as<mpm::Settings>().dx = std::numeric_limits<double>::denorm_min();
+  scene.numerics.as<methods::mpm::Settings>().dx = std::numeric_limits<double>::denorm_min();
   EXPECT_THROW(check_memory(estimate(scene).bytes), InputError);
 }
 
@@ -214,33 +214,33 @@ TEST(CostEstimate, MemoryErrorsNameBothNumbers) {
 }
 
 TEST(CostEstimate, OverlappingObstaclesNeedMemoryAtEachNode) {
-  Scene scene = preset_scene("lab-40");
+  scene::Scene scene = scene::preset_scene("lab-40");
   const double without = estimate(scene).bytes;
-  ObstacleSpec sphere;
+  scene::ObstacleSpec sphere;
   sphere.shape.type = "sphere";
   sphere.shape.radius = 0.2;
   scene.obstacles.assign(10000, sphere);
   const double together = estimate(scene).bytes;
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i)
     scene.obstacles[i].shape.center.x() = double(i);
-  const double apart = estimate(scene).bytes;
+  const double separate = estimate(scene).bytes;
   EXPECT_GT(together, 100 * without);
-  EXPECT_LT(apart, without + 2e7);
+  EXPECT_LT(separate, without + 2e7);
 }
 
-TEST(CostEstimate, ScatteredSnowNeedsMoreOfTheGrid) {
-  Scene scene = preset_scene("lab-40");
+TEST(CostEstimate, ScatteredSnowNeedsMoreGridMemory) {
+  scene::Scene scene = scene::preset_scene("lab-40");
   scene.slab.reset();
   scene.panel.reset();
-  BodySpec grain;
+  scene::BodySpec grain;
   grain.shape.type = "sphere";
   grain.shape.radius = 0.006;
   scene.bodies.assign(500, grain);
-  const double many = estimate(scene).bytes;
+  const double scattered = estimate(scene).bytes;
   scene.bodies.resize(1);
   scene.bodies[0].shape.radius *= std::cbrt(500.0);
-  EXPECT_GT(many, 2 * estimate(scene).bytes);
+  EXPECT_GT(scattered, 2 * estimate(scene).bytes);
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::run

@@ -9,10 +9,10 @@
 #include "run/simulation_testing.hpp"
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed {
+namespace snowshed::run {
 namespace {
 
-class EventSequenceTest : public TemporaryFolder {
+class EventSequenceTest : public io::TemporaryFolder {
  protected:
   /// The status in a folder's run.json.
   static std::string status_in(const std::filesystem::path& folder) {
@@ -39,35 +39,35 @@ class Witness : public EventObserver {
   }
   bool stop_requested() override { return stops_at_ >= 0 && reports_ >= stops_at_; }
 
-  std::string seen;
+  std::string calls;
 
  private:
   void note(const std::string& what, int event) {
-    seen += what + " " + std::to_string(event) + ", ";
+    calls += what + " " + std::to_string(event) + ", ";
   }
   int stops_at_, throws_at_, reports_ = 0;
 };
 
-Scene two_events(Between between = Between::carry) {
-  Scene scene = small_scene();
+scene::Scene two_events(methods::Between between = methods::Between::carry) {
+  scene::Scene scene = small_scene();
   scene.events.count = 2;
   scene.events.between = between;
   return scene;
 }
 
-TEST_F(EventSequenceTest, TellsWhatHappensInOrder) {
+TEST_F(EventSequenceTest, ReportsEventsInOrder) {
   Witness carried, reseeded;
   EXPECT_TRUE(EventSequence::create(two_events(), ".", path("a")).run(carried, 0));
-  EXPECT_EQ(carried.seen, "begun 1, rest 1, between 1, begun 2, rest 2, ");
-  EXPECT_TRUE(
-      EventSequence::create(two_events(Between::reseed), ".", path("b")).run(reseeded, never));
-  EXPECT_EQ(reseeded.seen, "begun 1, rest 1, between 1, reseeded 2, rest 2, ");
+  EXPECT_EQ(carried.calls, "begun 1, rest 1, between 1, begun 2, rest 2, ");
+  EXPECT_TRUE(EventSequence::create(two_events(methods::Between::reseed), ".", path("b"))
+                  .run(reseeded, never));
+  EXPECT_EQ(reseeded.calls, "begun 1, rest 1, between 1, reseeded 2, rest 2, ");
 }
 
-TEST_F(EventSequenceTest, GoesOnWhereItWasStopped) {
-  Witness whole, first(20), second;
+TEST_F(EventSequenceTest, ResumesWhereItWasStopped) {
+  Witness undisturbed, first(20), second;
   EventSequence uninterrupted = EventSequence::create(two_events(), ".", path("a"));
-  EXPECT_TRUE(uninterrupted.run(whole, 0));
+  EXPECT_TRUE(uninterrupted.run(undisturbed, 0));
   EXPECT_FALSE(EventSequence::create(two_events(), ".", path("b")).run(first, 0));
   EXPECT_EQ(status_in(path("b")), "interrupted");
   EventSequence resumed = EventSequence::resume(two_events(), ".", path("b"));
@@ -75,9 +75,10 @@ TEST_F(EventSequenceTest, GoesOnWhereItWasStopped) {
   EXPECT_TRUE(resumed.run(second, 0));
   EXPECT_EQ(status_in(path("b")), "finished");
   expect_same_bits(resumed.simulation(), uninterrupted.simulation());
-  ASSERT_EQ(resumed.record().finished.size(), 2u);
+  ASSERT_EQ(resumed.record().finished_events.size(), 2u);
   for (int i : {0, 1}) {
-    const EventRecord &a = resumed.record().finished[i], &b = uninterrupted.record().finished[i];
+    const EventRecord &a = resumed.record().finished_events[i],
+                      &b = uninterrupted.record().finished_events[i];
     EXPECT_EQ(a.steps, b.steps);
     EXPECT_EQ(a.sim_time, b.sim_time);
     EXPECT_EQ(a.laid_height, b.laid_height);
@@ -85,16 +86,16 @@ TEST_F(EventSequenceTest, GoesOnWhereItWasStopped) {
   }
 }
 
-TEST_F(EventSequenceTest, GoesOnWithAnotherNumberOfThreadsToTheSameBits) {
-  Witness whole, first(20), second;
-  Scene one = two_events(), two = two_events();
-  one.numerics.as<mpm::Settings>().threads = 1;
-  two.numerics.as<mpm::Settings>().threads = 2;
-  EventSequence uninterrupted = EventSequence::create(one, ".", path("a"));
-  EXPECT_TRUE(uninterrupted.run(whole, 0));
-  EXPECT_FALSE(EventSequence::create(one, ".", path("b")).run(first, 0));
+TEST_F(EventSequenceTest, ResumesToTheSameBitsOnOtherThreads) {
+  Witness undisturbed, first(20), second;
+  scene::Scene single = two_events(), two = two_events();
+  single.numerics.as<methods::mpm::Settings>().threads = 1;
+  two.numerics.as<methods::mpm::Settings>().threads = 2;
+  EventSequence uninterrupted = EventSequence::create(single, ".", path("a"));
+  EXPECT_TRUE(uninterrupted.run(undisturbed, 0));
+  EXPECT_FALSE(EventSequence::create(single, ".", path("b")).run(first, 0));
   EventSequence resumed = EventSequence::resume(two, ".", path("b"));
-  EXPECT_EQ(resumed.simulation().scene().numerics.as<mpm::Settings>().threads, 2);
+  EXPECT_EQ(resumed.simulation().scene().numerics.as<methods::mpm::Settings>().threads, 2);
   EXPECT_TRUE(resumed.run(second, 0));
   expect_same_bits(resumed.simulation(), uninterrupted.simulation());
   EXPECT_EQ(content(path("a") / "film.bin"), content(path("b") / "film.bin"));
@@ -103,7 +104,7 @@ TEST_F(EventSequenceTest, GoesOnWithAnotherNumberOfThreadsToTheSameBits) {
 TEST_F(EventSequenceTest, ACompleteFilmIsClosed) {
   Witness quiet;
   EventSequence::create(two_events(), ".", path("a")).run(quiet, never);
-  EXPECT_TRUE(FilmReader(path("a") / "film.bin").closed());
+  EXPECT_TRUE(io::FilmReader(path("a") / "film.bin").closed());
   const std::string before = content(path("a") / "film.bin");
   EventSequence::resume(two_events(), ".", path("a")).run(quiet, never);
   EXPECT_EQ(content(path("a") / "film.bin"), before);
@@ -112,43 +113,26 @@ TEST_F(EventSequenceTest, ACompleteFilmIsClosed) {
 TEST_F(EventSequenceTest, RefusesAChangedRecord) {
   Witness quiet;
   EventSequence::create(two_events(), ".", path("a")).run(quiet, never);
-  const std::string sound = content(path("a") / "run.json");
-  for (std::size_t at = 1; at + 4 < sound.size(); at += 7) {
-    std::string bytes = sound;
+  const std::string intact = content(path("a") / "run.json");
+  for (std::size_t at = 1; at + 4 < intact.size(); at += 7) {
+    std::string bytes = intact;
     bytes[at] = bytes[at] == '7' ? '8' : '7';
     std::ofstream(path("a") / "run.json", std::ios::binary) << bytes;
     EXPECT_THROW(EventSequence::resume(two_events(), ".", path("a")), InputError) << at;
   }
 }
 
-TEST_F(EventSequenceTest, KnowsTheFilesThatPythonWrote) {
-  Witness first(20);
-  EventSequence begun = EventSequence::create(two_events(), ".", path("a"));
-  begun.record().files["curve.csv"] = {5, "a5fe3a3f"};
-  EXPECT_FALSE(begun.run(first, 0));
-  begun.close();
-  for (const char* text : {"bende", "abcd", "abcdf"}) {
-    std::ofstream(path("a") / "curve.csv") << text;
-    EventSequence resumed = EventSequence::resume(two_events(), ".", path("a"));
-    EXPECT_THROW(resumed.give_up_files(), InputError) << text;
-  }
-  std::filesystem::remove(path("a") / "curve.csv");
-  EventSequence resumed = EventSequence::resume(two_events(), ".", path("a"));
-  EXPECT_NO_THROW(resumed.give_up_files());
-  EXPECT_TRUE(resumed.record().files.empty());
-}
-
-TEST_F(EventSequenceTest, ARecordAheadOfTheCheckpointIsRunAgain) {
+TEST_F(EventSequenceTest, EventsAfterTheCheckpointAreRunAgain) {
   Witness first, second;
   EventSequence::create(two_events(), ".", path("a")).run(first, never);
   std::filesystem::remove(path("a") / "checkpoint.bin");
   EventSequence again = EventSequence::resume(two_events(), ".", path("a"));
-  EXPECT_TRUE(again.record().finished.empty());
+  EXPECT_TRUE(again.record().finished_events.empty());
   EXPECT_TRUE(again.run(second, never));
-  EXPECT_EQ(second.seen, first.seen);
+  EXPECT_EQ(second.calls, first.calls);
 }
 
-TEST_F(EventSequenceTest, AFailureIsRecordedAndCanBeResumedFrom) {
+TEST_F(EventSequenceTest, AFailureIsRecordedAndTheRunCanBeResumed) {
   Witness failing(-1, 20), second;
   EventSequence sequence = EventSequence::create(two_events(), ".", path("a"));
   EXPECT_THROW(sequence.run(failing, 0), SimulationError);
@@ -161,9 +145,9 @@ TEST_F(EventSequenceTest, AFailureIsRecordedAndCanBeResumedFrom) {
 }
 
 /// The state between two events may have aged already, and would age twice when resumed.
-TEST_F(EventSequenceTest, AFailureBetweenEventsLeavesTheCheckpointOfTheLast) {
+TEST_F(EventSequenceTest, AFailureBetweenEventsKeepsTheLastCheckpoint) {
   Witness quiet;
-  Scene scene = two_events();
+  scene::Scene scene = two_events();
   EventSequence sequence = EventSequence::create(scene, ".", path("a"));
   EXPECT_TRUE(sequence.run(quiet, never));
   const std::string before = content(path("a") / "checkpoint.bin");
@@ -182,31 +166,32 @@ TEST_F(EventSequenceTest, TwoRunsDoNotShareAFolder) {
 
 TEST_F(EventSequenceTest, RefusesTheCheckpointOfAnotherScene) {
   Witness quiet;
-  Scene steeper = two_events();
+  scene::Scene steeper = two_events();
   steeper.panel->tilt += 5;
   EventSequence::create(two_events(), ".", path("a")).run(quiet, never);
   EventSequence::create(steeper, ".", path("b")).run(quiet, never);
   std::filesystem::copy_file(path("b") / "checkpoint.bin", path("a") / "checkpoint.bin",
                              std::filesystem::copy_options::overwrite_existing);
-  EXPECT_EQ(message_of<InputError>([&] { EventSequence::resume(two_events(), ".", path("a")); }),
-            (path("a") / "checkpoint.bin").string() +
-                ": made by another scene, which differs from scene.json in /panel/tilt");
+  EXPECT_EQ(
+      io::message_of<InputError>([&] { EventSequence::resume(two_events(), ".", path("a")); }),
+      (path("a") / "checkpoint.bin").string() +
+          ": made by another scene, which differs from scene.json in /panel/tilt");
 }
 
 TEST_F(EventSequenceTest, ResumesOnlyItsOwnScene) {
   Witness quiet;
-  Scene scene = two_events();
+  scene::Scene scene = two_events();
   EventSequence::create(scene, ".", path("a")).run(quiet, never);
   scene.panel->tilt = 55;
   scene.gravity = 3;
   const std::string message =
-      message_of<InputError>([&] { EventSequence::resume(scene, ".", path("a")); });
+      io::message_of<InputError>([&] { EventSequence::resume(scene, ".", path("a")); });
   EXPECT_NE(message.find("differs in /gravity, /panel/tilt;"), std::string::npos) << message;
   EXPECT_THROW(EventSequence::resume(scene, ".", path("nowhere")), InputError);
 }
 
-TEST_F(EventSequenceTest, LeavesNothingWhereItCannotBegin) {
-  Scene scene = two_events();
+TEST_F(EventSequenceTest, LeavesNoFilesIfItCannotBegin) {
+  scene::Scene scene = two_events();
   scene.bodies.emplace_back().shape.type = "sphere";
   scene.bodies.back().shape.center = {1e6, 0, 0};  // the grid does not reach so far
   EXPECT_THROW(EventSequence::create(scene, ".", path("a")), InputError);
@@ -216,4 +201,4 @@ TEST_F(EventSequenceTest, LeavesNothingWhereItCannotBegin) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::run

@@ -1,13 +1,13 @@
-// When an event ends, seen from outside: snow that drifts without weight at a known speed.
+// The end of events, as the caller sees it: snow drifts without gravity at a known speed.
 #include <gtest/gtest.h>
 
 #include "run/simulation_testing.hpp"
 
-namespace snowshed {
+namespace snowshed::run {
 namespace {
 
-BodySpec drifting_box(double x, double size, double speed, int event) {
-  BodySpec body;
+scene::BodySpec drifting_box(double x, double size, double speed, int event) {
+  scene::BodySpec body;
   body.shape.type = "box";
   body.shape.center = Vec3(x, 0, 1);
   body.shape.size = Vec3(size, 0, size);
@@ -16,14 +16,14 @@ BodySpec drifting_box(double x, double size, double speed, int event) {
   return body;
 }
 
-Scene drift(std::vector<BodySpec> bodies) {
-  Scene scene;
+scene::Scene drift(std::vector<scene::BodySpec> bodies) {
+  scene::Scene scene;
   scene.dimension = 2;
   scene.gravity = 0;
   scene.snow.youngs_modulus = 1e5;
-  scene.numerics.as<mpm::Settings>().dx = 0.02;
-  scene.numerics.as<mpm::Settings>().sleep_speed = 0;
-  scene.numerics.as<mpm::Settings>().threads = 1;
+  scene.numerics.as<methods::mpm::Settings>().dx = 0.02;
+  scene.numerics.as<methods::mpm::Settings>().sleep_speed = 0;
+  scene.numerics.as<methods::mpm::Settings>().threads = 1;
   scene.bodies = std::move(bodies);
   scene.events.count = 2;
   scene.events.rest_speed = 0.02;
@@ -34,10 +34,10 @@ Scene drift(std::vector<BodySpec> bodies) {
 
 RunEnd end_of_event(Simulation& sim) {
   sim.begin_event();
-  return sim.run(go_on, never);
+  return sim.run(keep_running, never);
 }
 
-TEST(EventsEnd, AtTheStatedSpeedAndTime) {
+TEST(EventEnd, ComesAtTheGivenSpeedAndTime) {
   for (const double speed : {0.018, 0.022}) {
     Simulation sim(drift({drifting_box(0, 0.1, speed, 1), drifting_box(1, 0.1, 0, 2)}));
     EXPECT_EQ(end_of_event(sim), speed < 0.02 ? RunEnd::rest : RunEnd::time_limit) << speed;
@@ -45,8 +45,8 @@ TEST(EventsEnd, AtTheStatedSpeedAndTime) {
   }
 }
 
-TEST(EventsEnd, ByItsTimeLimitToAStep) {
-  Scene scene = drift({drifting_box(0, 0.1, 1.0, 1), drifting_box(1, 0.1, 0, 2)});
+TEST(EventEnd, ComesWithinAStepOfTheTimeLimit) {
+  scene::Scene scene = drift({drifting_box(0, 0.1, 1.0, 1), drifting_box(1, 0.1, 0, 2)});
   scene.events.rest_time = 0.15;  // the speed is checked ten times as often
   for (const double limit : {0.16, 0.1601, 0.1777}) {
     scene.events.max_time = limit;
@@ -57,8 +57,8 @@ TEST(EventsEnd, ByItsTimeLimitToAStep) {
   }
 }
 
-TEST(EventsEnd, NotBeforeTimeHasPassed) {
-  Scene scene = drift({drifting_box(0, 0.1, 0, 1), drifting_box(1, 0.1, 0, 2)});
+TEST(EventEnd, ComesAfterTheStart) {
+  scene::Scene scene = drift({drifting_box(0, 0.1, 0, 1), drifting_box(1, 0.1, 0, 2)});
   scene.events.rest_time = 0;
   Simulation sim(scene);
   EXPECT_EQ(end_of_event(sim), RunEnd::rest);
@@ -66,7 +66,7 @@ TEST(EventsEnd, NotBeforeTimeHasPassed) {
 }
 
 /// The path that an error of a scene names.
-std::string refused_at(const Scene& scene) {
+std::string refused_at(const scene::Scene& scene) {
   try {
     Simulation sim(scene);
     return "";
@@ -75,17 +75,17 @@ std::string refused_at(const Scene& scene) {
   }
 }
 
-TEST(EventsEnd, WithinAMillionMillionSteps) {
-  Scene scene = drift({drifting_box(0, 0.1, 0.01, 1)});
+TEST(EventEnd, MoreThanATrillionStepsAreRefused) {
+  scene::Scene scene = drift({drifting_box(0, 0.1, 0.01, 1)});
   EXPECT_EQ(refused_at(scene), "");
   for (const double factor : {1e-300, 1e-15, 1e-11}) {
-    scene.numerics.as<mpm::Settings>().courant_factor = factor;
+    scene.numerics.as<methods::mpm::Settings>().courant_factor = factor;
     EXPECT_EQ(refused_at(scene), "/numerics/courant_factor") << factor;
   }
 }
 
-TEST(EventsEnd, RecordedAMillionTimesAtMost) {
-  Scene scene = drift({drifting_box(0, 0.1, 0.01, 1)});
+TEST(EventEnd, MoreThanAMillionRecordsAreRefused) {
+  scene::Scene scene = drift({drifting_box(0, 0.1, 0.01, 1)});
   for (const double interval : {1e-300, 1e-9}) {
     scene.output.snapshot_interval = interval;
     EXPECT_EQ(refused_at(scene), "/output/snapshot_interval") << interval;
@@ -95,11 +95,11 @@ TEST(EventsEnd, RecordedAMillionTimesAtMost) {
   EXPECT_EQ(refused_at(scene), "/output/film_interval");
 }
 
-TEST(EventsEnd, NotBeforeASmallSlabRestsBesideALargeStack) {
+TEST(EventEnd, WaitsForASmallSlabBesideALargeStack) {
   Simulation sim(drift({drifting_box(0, 0.4, 0, 1), drifting_box(1, 0.1, 0.03, 2)}));
   EXPECT_EQ(end_of_event(sim), RunEnd::rest);
   EXPECT_EQ(end_of_event(sim), RunEnd::time_limit);
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::run

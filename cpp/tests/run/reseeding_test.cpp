@@ -5,14 +5,14 @@
 #include "run/simulation_testing.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
-namespace snowshed {
+namespace snowshed::run {
 namespace {
 
-/// A heap of one snow, and a hidden particle of another snow at the place of a particle of the
+/// A heap of one snow, and a hidden particle of another snow at the position of a particle of the
 /// heap. No new particle takes the snow of the hidden one.
-ParticleState heap_with_a_hidden_grain() {
-  ParticleState heap;
-  heap.positions = mpm::filled_box(2, Vec3(1, 0, 0), Vec3(1.1, 0, 0.1), 0.005).positions;
+methods::ParticleState heap_with_a_hidden_grain() {
+  methods::ParticleState heap;
+  heap.positions = methods::mpm::filled_box(2, Vec3(1, 0, 0), Vec3(1.1, 0, 0.1), 0.005).positions;
   heap.material_ids.assign(heap.positions.size(), 0);
   heap.positions.push_back(heap.positions.front());
   heap.material_ids.push_back(1);
@@ -21,17 +21,17 @@ ParticleState heap_with_a_hidden_grain() {
   return heap;
 }
 
-TEST(Reseeding, GivesTheMassOfASnowThatGotNoParticleToTheOthers) {
-  Scene scene = small_scene();
-  Snow light;
+TEST(Reseeding, GivesTheMassOfASnowWithoutParticlesToTheOthers) {
+  scene::Scene scene = small_scene();
+  material::Snow light;
   light.density = 120;
   scene.slab->thickness = 0;
   scene.slab->layers = {{0.01, light, 0}, {0.02, {}, 0}};
-  scene = resolve(scene);
-  const ParticleState heap = heap_with_a_hidden_grain();
-  const Reseeding found = reseed_stack(scene, PanelRegion(scene), heap, 1, 0.03);
+  scene = scene::resolve(scene);
+  const methods::ParticleState heap = heap_with_a_hidden_grain();
+  const Reseeding reseeding = reseed_stack(scene, PanelRegion(scene), heap, 1, 0.03);
   double mass = 0;
-  for (const ParticleBatch& batch : found.batches) {
+  for (const methods::ParticleBatch& batch : reseeding.batches) {
     EXPECT_EQ(batch.material_id, 0);
     mass += batch.mass * double(batch.positions.size());
   }
@@ -39,4 +39,4 @@ TEST(Reseeding, GivesTheMassOfASnowThatGotNoParticleToTheOthers) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::run

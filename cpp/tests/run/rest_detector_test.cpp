@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace snowshed {
+namespace snowshed::run {
 namespace {
 
 /// The time at which the detector first finds rest in 2 s of `speed(t)`; negative if it never does.
@@ -16,7 +16,7 @@ double time_of_rest(RestDetector detector, double start, Speed speed) {
   return -1;
 }
 
-TEST(RestDetector, WaitsUntilTheSnowHasBeenSlowForLongEnough) {
+TEST(RestDetector, WaitsUntilSnowHasBeenSlowForTheRestTime) {
   const RestDetector detector(0.02, 0.05);
   for (double start : {0.0, 7.5}) {
     const double t = time_of_rest(detector, start, [](double t) { return t < 0.3 ? 1.0 : 0.01; });
@@ -34,29 +34,29 @@ TEST(RestDetector, NeverStopsMovingSnow) {
       0);
 }
 
-TEST(RestDetector, DoesNotTakeSettingOffForRest) {
+TEST(RestDetector, DoesNotTakeASlowStartForRest) {
   // A slab on a slope just above its angle of repose starts slowly: 0.1 m/s^2.
   const RestDetector detector(0.02, 0.05);
   EXPECT_LT(time_of_rest(detector, 0, [](double t) { return 0.1 * t; }), 0);
 }
 
-TEST(RestDetector, AcceptsSnowThatIsSlowingDown) {
+TEST(RestDetector, AcceptsSnowThatSlowsDown) {
   const RestDetector detector(0.02, 0.05);
   const double t = time_of_rest(detector, 0, [](double t) { return 0.5 * std::exp(-t / 0.1); });
   EXPECT_NEAR(t, 0.1 * std::log(0.5 / 0.02) + 0.05, 0.02);
 }
 
-TEST(RestDetector, GoesOnFromItsState) {
-  RestDetector one(0.02, 0.05), other(0.02, 0.05);
-  one.start_event(1.0);
-  one.at_rest(1.0, 0.015);
-  one.at_rest(1.03, 0.01);
-  other.restore(one.state());
-  EXPECT_EQ(other.due(1.031), one.due(1.031));
-  EXPECT_FALSE(other.at_rest(1.04, 0.01));
-  EXPECT_TRUE(other.at_rest(1.06, 0.01));
-  EXPECT_EQ(other.speed(), 0.01);
+TEST(RestDetector, RestoresItsState) {
+  RestDetector original(0.02, 0.05), restored(0.02, 0.05);
+  original.start_event(1.0);
+  original.at_rest(1.0, 0.015);
+  original.at_rest(1.03, 0.01);
+  restored.restore(original.state());
+  EXPECT_EQ(restored.due(1.031), original.due(1.031));
+  EXPECT_FALSE(restored.at_rest(1.04, 0.01));
+  EXPECT_TRUE(restored.at_rest(1.06, 0.01));
+  EXPECT_EQ(restored.speed(), 0.01);
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::run

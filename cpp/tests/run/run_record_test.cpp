@@ -9,10 +9,10 @@
 #include "snowshed/methods/descriptor.hpp"
 #include "snowshed/methods/registry.hpp"
 
-namespace snowshed {
+namespace snowshed::run {
 namespace {
 
-TEST(EventRecord, TellWhatShareOfTheEnergyWasGainedOrLost) {
+TEST(EventRecord, ResidualIsTheShareOfEnergyGainedOrLost) {
   EventRecord record;
   EXPECT_FALSE(record.energy_residual().has_value());  // without the energy balance
   record.energy = {{"kinetic_j", 2.0}, {"gravity_j", -8.0}, {"residual_j", -0.4}};
@@ -23,19 +23,19 @@ TEST(EventRecord, TellWhatShareOfTheEnergyWasGainedOrLost) {
 }
 
 TEST(EventRecord, TheLastEnergyOfEveryMethodIsItsResidual) {
-  for (const MethodDescriptor* method : all_methods())
+  for (const methods::MethodDescriptor* method : methods::all_methods())
     if (!method->info().energies.empty())
       EXPECT_EQ(method->info().energies.back(), "residual_j") << method->info().name;
 }
 
-using RunRecordTest = TemporaryFolder;
+using RunRecordTest = io::TemporaryFolder;
 
-TEST_F(RunRecordTest, AnEventEndsAtRestOrAtTheTimeLimit) {
+TEST_F(RunRecordTest, EventsEndAtRestOrAtTheTimeLimit) {
   const auto ended = [&](const std::string& end) {
     std::ofstream(path("run.json")) << R"({"wall_s": 1, "finished_events": [{"event": 1,
         "sim_time_s": 1, "steps": 1, "wall_s": 1, "laid_height_m": 0, "ended": ")"
                                     << end << "\"}]}";
-    return RunRecord::read(path("run.json"), {}).finished.at(0).ended;
+    return RunRecord::read(path("run.json"), {}).finished_events.at(0).ended;
   };
   EXPECT_EQ(ended("rest"), RunEnd::rest);
   EXPECT_EQ(ended("time_limit"), RunEnd::time_limit);
@@ -43,4 +43,4 @@ TEST_F(RunRecordTest, AnEventEndsAtRestOrAtTheTimeLimit) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::run

@@ -1,4 +1,4 @@
-// Checkpoints that were changed on purpose, and those of runs on several threads.
+// Manipulated checkpoints, and checkpoints of runs on several threads.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,63 +11,64 @@
 #include "snowshed/methods/mpm/settings.hpp"
 #include "snowshed/run/simulation.hpp"
 
-namespace snowshed {
+namespace snowshed::run {
 namespace {
 
 /// A drop of snow above the ground.
-Scene drop(double dx) {
-  Scene scene;
+scene::Scene drop(double dx) {
+  scene::Scene scene;
   scene.dimension = 2;
   scene.ground.emplace();
-  BodySpec body;
+  scene::BodySpec body;
   body.shape.type = "sphere";
   body.shape.radius = 0.05;
   body.shape.center = {0, 0, 0.06};
   scene.bodies.push_back(body);
-  scene.numerics.as<mpm::Settings>().dx = dx;
-  scene.numerics.as<mpm::Settings>().threads = 1;
+  scene.numerics.as<methods::mpm::Settings>().dx = dx;
+  scene.numerics.as<methods::mpm::Settings>().threads = 1;
   return scene;
 }
 
-class SimulationCheckpoint : public TemporaryFolder {};
+class SimulationCheckpoint : public io::TemporaryFolder {};
 
-/// A clock that is not a number would never reach the end of an event.
-TEST_F(SimulationCheckpoint, WithoutATimeIsRefused) {
+/// With a clock of NaN an event would never end.
+TEST_F(SimulationCheckpoint, NonFiniteNumbersAreRefused) {
   Simulation sim(drop(0.02));
   sim.begin_event();
   sim.save(path("good"));
   const std::string bytes = content(path("good"));
   for (const char* section : {"clock", "run", "energy"})
     for (const double value : {std::nan(""), std::numeric_limits<double>::infinity()}) {
-      write_plainly(path("forged"), forged(bytes, data_of(bytes, section), value));
-      const std::string message = message_of<InputError>([&] { Simulation::load(path("forged")); });
+      write_plainly(path("forged"), io::forged(bytes, io::data_of(bytes, section), value));
+      const std::string message =
+          io::message_of<InputError>([&] { Simulation::load(path("forged")); });
       EXPECT_NE(message.find(section + std::string("' is not a finite number")), std::string::npos)
           << message;
     }
 }
 
-/// Blocks without particles would take memory out of all proportion to the file.
-TEST_F(SimulationCheckpoint, WithBlocksWithoutParticlesIsRefused) {
+/// Empty blocks could need far more memory than the file.
+TEST_F(SimulationCheckpoint, EmptyBlocksAreRefused) {
   Simulation sim(drop(0.01));
   sim.begin_event();
   sim.save(path("good"));
   const std::string bytes = content(path("good"));
-  const auto first = BinaryReader::load(path("good")).get<std::int32_t>("blocks/first");
+  const auto first = io::BinaryReader::load(path("good")).get<std::int32_t>("blocks/first");
   ASSERT_GT(first.size(), 2u);
   const std::string table(reinterpret_cast<const char*>(first.data()), 4 * first.size());
   // The second block begins where the first does, so the first has no particles.
-  write_plainly(path("forged"), forged(bytes, bytes.find(table) + 4, std::int32_t{0}));
+  write_plainly(path("forged"), io::forged(bytes, bytes.find(table) + 4, std::int32_t{0}));
   EXPECT_THROW(Simulation::load(path("forged")), InputError);
 }
 
-/// Enough snow that there is work for the second and the third thread.
-TEST_F(SimulationCheckpoint, IsTheSameOnAnyNumberOfThreads) {
-  Scene scene = drop(0.003);
+/// There is enough snow for three threads.
+TEST_F(SimulationCheckpoint, ThreadsDoNotChangeTheBytes) {
+  scene::Scene scene = drop(0.003);
   scene.bodies.front().velocity = {0.5, 0, -3};
   scene.output.energy = true;
   std::string first;
   for (const int threads : {1, 2, 3}) {
-    scene.numerics.as<mpm::Settings>().threads = threads;
+    scene.numerics.as<methods::mpm::Settings>().threads = threads;
     Simulation sim(scene);
     sim.begin_event();
     ASSERT_GT(sim.method().size(), 4000u);
@@ -82,4 +83,4 @@ TEST_F(SimulationCheckpoint, IsTheSameOnAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::run

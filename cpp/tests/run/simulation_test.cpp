@@ -9,68 +9,70 @@
 #include "run/simulation_testing.hpp"
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed {
+namespace snowshed::run {
 namespace {
 
-class SimulationTest : public TemporaryFolder {};
+class SimulationTest : public io::TemporaryFolder {};
 
-TEST_F(SimulationTest, AResumedRunEqualsAnUninterruptedOneBitForBit) {
-  for (mpm::Transfer transfer : {mpm::Transfer::flip, mpm::Transfer::apic})
-    for (Between between : {Between::carry, Between::reseed}) {
-      Scene scene = small_scene(transfer);
+TEST_F(SimulationTest, ResumingDoesNotChangeTheBits) {
+  for (methods::mpm::Transfer transfer :
+       {methods::mpm::Transfer::flip, methods::mpm::Transfer::apic})
+    for (methods::Between between : {methods::Between::carry, methods::Between::reseed}) {
+      scene::Scene scene = small_scene(transfer);
       scene.events.between = between;
-      Simulation whole(scene);
+      Simulation reference(scene);
       for (int event = 0; event < scene.events.count; ++event) {
-        whole.begin_event();
-        whole.run(go_on, never);
+        reference.begin_event();
+        reference.run(keep_running, never);
       }
       const auto resumed = with_interruptions(scene, 2, path("checkpoint"));
-      expect_same_bits(*resumed, whole);
-      EXPECT_GT(whole.method().counters().steps, 1000);
+      expect_same_bits(*resumed, reference);
+      EXPECT_GT(reference.method().counters().steps, 1000);
     }
 }
 
 TEST_F(SimulationTest, ThreadsDoNotChangeTheBits) {
-  Scene scene = small_scene();
+  scene::Scene scene = small_scene();
   scene.events.count = 1;
-  Simulation one(scene);
-  one.begin_event();
-  one.run(go_on, never);
-  scene.numerics.as<mpm::Settings>().threads = 2;
+  Simulation single(scene);
+  single.begin_event();
+  single.run(keep_running, never);
+  scene.numerics.as<methods::mpm::Settings>().threads = 2;
   Simulation two(scene);
   two.begin_event();
-  two.run(go_on, never);
-  expect_same_bits(one, two);
+  two.run(keep_running, never);
+  expect_same_bits(single, two);
 }
 
-TEST_F(SimulationTest, EventsBringTheirSnowAndKeepTheOld) {
-  const Scene scene = small_scene();
+TEST_F(SimulationTest, EventsAddSnowAndKeepTheOldSnow) {
+  const scene::Scene scene = small_scene();
   Simulation sim(scene);
   for (int event = 1; event <= 3; ++event) {
     EXPECT_FALSE(sim.begin_event().has_value());
     EXPECT_TRUE(sim.event_running());
     EXPECT_THROW(sim.begin_event(), SimulationError);
-    EXPECT_NEAR(mpm::total_mass(sim.method().state()), event * 210 * 0.1 * 0.03, 1e-6 * event);
-    sim.run(go_on, never);
-    EXPECT_THROW(sim.run(go_on, never), SimulationError);
+    EXPECT_NEAR(methods::mpm::total_mass(sim.method().state()), event * 210 * 0.1 * 0.03,
+                1e-6 * event);
+    sim.run(keep_running, never);
+    EXPECT_THROW(sim.run(keep_running, never), SimulationError);
   }
-  const ParticleState s = sim.method().state();
+  const methods::ParticleState s = sim.method().state();
   EXPECT_EQ(s.events.front(), 1);
   EXPECT_EQ(s.events.back(), 3);
   for (const Vec3& x : s.positions)
-    EXPECT_GT(x.z(), -scene.numerics.as<mpm::Settings>().dx);  // none in the ground
+    EXPECT_GT(x.z(), -scene.numerics.as<methods::mpm::Settings>().dx);  // none in the ground
 }
 
 TEST_F(SimulationTest, ReseedingKeepsTheMass) {
-  Scene scene = small_scene();
-  scene.events.between = Between::reseed;
+  scene::Scene scene = small_scene();
+  scene.events.between = methods::Between::reseed;
   Simulation sim(scene);
   EXPECT_FALSE(sim.begin_event().has_value());
-  sim.run(go_on, never);
-  const double before = mpm::total_mass(sim.method().state());
+  sim.run(keep_running, never);
+  const double before = methods::mpm::total_mass(sim.method().state());
   EXPECT_TRUE(sim.begin_event().has_value());
-  const ParticleState s = sim.method().state();
-  EXPECT_NEAR(mpm::total_mass(s), 2 * before, 1e-5 * before);
+  const methods::ParticleState s = sim.method().state();
+  EXPECT_NEAR(methods::mpm::total_mass(s), 2 * before, 1e-5 * before);
 }
 
 /// A grid file of a solid, spacing 0.02 m.
@@ -82,11 +84,11 @@ std::string solid_grid() {
   return npy_file(1, npy_header("<f8", "(5, 5)"), npy_data(distances));
 }
 
-TEST_F(SimulationTest, AnEventThatCannotBeginLeavesAllAsItWas) {
-  for (const Between between : {Between::carry, Between::reseed}) {
-    Scene scene = small_scene();
+TEST_F(SimulationTest, AFailedStartOfAnEventChangesNothing) {
+  for (const methods::Between between : {methods::Between::carry, methods::Between::reseed}) {
+    scene::Scene scene = small_scene();
     scene.events.between = between;
-    BodySpec body;
+    scene::BodySpec body;
     body.event = 2;
     body.shape.type = "grid";
     body.shape.file = path("solid.npy").string();
@@ -98,7 +100,7 @@ TEST_F(SimulationTest, AnEventThatCannotBeginLeavesAllAsItWas) {
 
     Simulation sim(scene);
     sim.begin_event();
-    sim.run(go_on, never);
+    sim.run(keep_running, never);
     sim.save(path("before"));
     write_plainly(path("solid.npy"), "spoilt");
     EXPECT_THROW(sim.begin_event(), InputError);
@@ -110,15 +112,15 @@ TEST_F(SimulationTest, AnEventThatCannotBeginLeavesAllAsItWas) {
     write_plainly(path("solid.npy"), solid_grid());
     while (sim.event() < scene.events.count) {
       sim.begin_event();
-      sim.run(go_on, never);
+      sim.run(keep_running, never);
     }
     expect_same_bits(sim, *undisturbed);
   }
 }
 
 TEST_F(SimulationTest, SnowBeyondTheGridIsNotAdded) {
-  Scene scene = small_scene();
-  BodySpec far;
+  scene::Scene scene = small_scene();
+  scene::BodySpec far;
   far.event = 2;
   far.shape.type = "sphere";
   far.shape.radius = 0.02;
@@ -126,47 +128,48 @@ TEST_F(SimulationTest, SnowBeyondTheGridIsNotAdded) {
   scene.bodies.push_back(far);
   Simulation sim(scene);
   sim.begin_event();
-  sim.run(go_on, never);
+  sim.run(keep_running, never);
   const std::size_t n = sim.method().size();
   EXPECT_THROW(sim.begin_event(), InputError);
   EXPECT_EQ(sim.method().size(), n);
   EXPECT_EQ(sim.method().state().positions.size(), n);
 }
 
-TEST_F(SimulationTest, ACheckpointIsNotReplacedByOneThatCannotBeLoaded) {
+TEST_F(SimulationTest, InvalidCheckpointsDoNotReplaceValidOnes) {
   Simulation sim(small_scene());
   sim.begin_event();
   sim.save(path("checkpoint"));
   const std::string good = content(path("checkpoint"));
   // Infinite in single precision.
   sim.add_velocity(std::vector<Vec3>(sim.method().size(), Vec3(1e300, 0, 0)));
-  const std::string message = message_of<SimulationError>([&] { sim.save(path("checkpoint")); });
+  const std::string message =
+      io::message_of<SimulationError>([&] { sim.save(path("checkpoint")); });
   EXPECT_NE(message.find("not a finite number"), std::string::npos) << message;
   EXPECT_TRUE(content(path("checkpoint")) == good);
   EXPECT_EQ(number_of_files(), 1u);
 }
 
 TEST_F(SimulationTest, EndsAtRestOrAtTheTimeLimit) {
-  Scene scene = small_scene();
+  scene::Scene scene = small_scene();
   scene.events.count = 1;
   scene.events.max_time = 0.05;
-  Simulation cut(scene);
-  cut.begin_event();
-  EXPECT_EQ(cut.run(go_on, never), RunEnd::time_limit);
-  EXPECT_GE(cut.event_time(), 0.05);
-  EXPECT_LT(cut.event_time(), 0.06);
+  Simulation limited(scene);
+  limited.begin_event();
+  EXPECT_EQ(limited.run(keep_running, never), RunEnd::time_limit);
+  EXPECT_GE(limited.event_time(), 0.05);
+  EXPECT_LT(limited.event_time(), 0.06);
 
-  scene.panel->friction = 2;  // it stays on the panel
+  scene.panel->friction = 2;  // the snow stays on the panel
   scene.events.max_time = 2;
   Simulation held(scene);
   held.begin_event();
-  EXPECT_EQ(held.run(go_on, never), RunEnd::rest);
+  EXPECT_EQ(held.run(keep_running, never), RunEnd::rest);
   EXPECT_LT(held.event_time(), 0.5);
   EXPECT_EQ(held.method().motion(0.02).moving_mass, 0.0);
 }
 
 TEST_F(SimulationTest, ReportsProgressToItsObserver) {
-  Scene scene = small_scene();
+  scene::Scene scene = small_scene();
   scene.events.count = 1;
   Simulation sim(scene);
   sim.begin_event();
@@ -186,14 +189,14 @@ TEST_F(SimulationTest, ReportsProgressToItsObserver) {
   EXPECT_GE(reports, 100);
 }
 
-TEST_F(SimulationTest, SnapshotsAreASeriesOverAllEvents) {
-  Scene scene = small_scene();
+TEST_F(SimulationTest, SnapshotsFormASeriesOverAllEvents) {
+  scene::Scene scene = small_scene();
   scene.events.count = 2;
   Simulation sim(scene);
   sim.write_snapshots(path("snapshots"), 0.1);
   for (int event = 0; event < 2; ++event) {
     sim.begin_event();
-    sim.run(go_on, never);
+    sim.run(keep_running, never);
   }
   const auto files = std::distance(std::filesystem::directory_iterator(path("snapshots")), {});
   EXPECT_GE(files, 1 + int(sim.method().time() / 0.1));  // and the index
@@ -202,7 +205,7 @@ TEST_F(SimulationTest, SnapshotsAreASeriesOverAllEvents) {
 }
 
 TEST_F(SimulationTest, RefusesDamagedCheckpoints) {
-  Scene scene = small_scene();
+  scene::Scene scene = small_scene();
   Simulation sim(scene);
   sim.begin_event();
   sim.run([](const RunReport&) { return false; }, 0.0);
@@ -218,4 +221,4 @@ TEST_F(SimulationTest, RefusesDamagedCheckpoints) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::run

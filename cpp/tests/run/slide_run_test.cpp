@@ -1,4 +1,4 @@
-// Slides as simulations: checkpoints beside files that have changed.
+// Slides as simulations: checkpoints whose files have changed.
 #include <gtest/gtest.h>
 
 #include "io/forged_archive.hpp"
@@ -7,10 +7,10 @@
 #include "snowshed/run/simulation.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 namespace {
 
-class SlideRun : public TemporaryFolder {
+class SlideRun : public io::TemporaryFolder {
  protected:
   /// Saves half a metre of snow on an incline, without a map of thickness, and returns the bytes.
   std::string checkpoint() const {
@@ -20,11 +20,12 @@ class SlideRun : public TemporaryFolder {
       heights += "\n";
     }
     write_plainly(path("incline.asc"), heights);
-    const Scene scene = parse_scene(R"({"snowshed": 2, "method": "slide", "dimension": 3,
+    const scene::Scene scene =
+        scene::parse_scene(R"({"snowshed": 2, "method": "slide", "dimension": 3,
       "terrain": {"file": "incline.asc",
         "release": [{"outline": [[8, 8], [20, 8], [20, 20]], "thickness": 0.5}]},
       "numerics": {"cell": 2, "threads": 1}})");
-    Simulation sim(scene, path(""));
+    run::Simulation sim(scene, path(""));
     sim.begin_event();
     sim.save(path("checkpoint"));
     return content(path("checkpoint"));
@@ -34,22 +35,22 @@ class SlideRun : public TemporaryFolder {
   /// File 0 is the terrain, file 1 the map of thickness.
   std::string refusal_with_mark_of(int file) const {
     const std::string bytes = checkpoint();
-    const std::size_t mark = data_of(bytes, "ground") + 8 * std::size_t(file);
-    write_plainly(path("forged"), forged(bytes, mark, std::int64_t(1)));
-    return message_of<InputError>([&] { Simulation::load(path("forged")); });
+    const std::size_t mark = io::data_of(bytes, "ground") + 8 * std::size_t(file);
+    write_plainly(path("forged"), io::forged(bytes, mark, std::int64_t(1)));
+    return io::message_of<InputError>([&] { run::Simulation::load(path("forged")); });
   }
 };
 
-TEST_F(SlideRun, ACheckpointWithTheMarkOfAnotherTerrainIsRefused) {
+TEST_F(SlideRun, ACheckpointOfAnotherTerrainIsRefused) {
   EXPECT_EQ(refusal_with_mark_of(0), "incline.asc: has changed since the checkpoint " +
                                          path("forged").string() +
                                          " was made; restore the file, or start a new run");
 }
 
-TEST_F(SlideRun, ACheckpointWithTheMarkOfAFileThatItsSceneDoesNotNameIsRefused) {
+TEST_F(SlideRun, AMarkOfAFileOutsideTheSceneIsRefused) {
   EXPECT_EQ(refusal_with_mark_of(1),
             path("forged").string() + ": holds the mark of a file that its scene does not name");
 }
 
 }  // namespace
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

@@ -5,14 +5,15 @@
 #include "io/temporary_folder.hpp"
 #include "methods/mpm/solver_testing.hpp"
 
-namespace snowshed {
+namespace snowshed::run {
 namespace {
 
-using SnapshotSeriesTest = TemporaryFolder;
+using SnapshotSeriesTest = io::TemporaryFolder;
 
-std::unique_ptr<Method> falling_snow() {
-  auto solver = mpm::make_solver(mpm::options_for({2, mpm::Precision::float32}), {});
-  solver->add(mpm::filled_box(2, Vec3::Zero(), Vec3(0.02, 0, 0.02), 0.005));
+std::unique_ptr<methods::Method> falling_snow() {
+  auto solver = methods::mpm::make_solver(
+      methods::mpm::options_for({2, methods::mpm::Precision::float32}), {});
+  solver->add(methods::mpm::filled_box(2, Vec3::Zero(), Vec3(0.02, 0, 0.02), 0.005));
   return solver;
 }
 
@@ -22,7 +23,7 @@ std::size_t occurrences(const std::string& text, const std::string& word) {
   return n;
 }
 
-TEST_F(SnapshotSeriesTest, WritesOneSnapshotForEachInterval) {
+TEST_F(SnapshotSeriesTest, WritesOneSnapshotPerInterval) {
   const auto solver = falling_snow();
   SnapshotSeries series(path("snapshots"), 0.01, solver->time());
   while (solver->time() < 0.035) {
@@ -37,24 +38,24 @@ TEST_F(SnapshotSeriesTest, WritesOneSnapshotForEachInterval) {
   EXPECT_EQ(occurrences(index, "<DataSet"), 4u);
 }
 
-TEST_F(SnapshotSeriesTest, AResumedSeriesGoesOnWithoutRepetition) {
+TEST_F(SnapshotSeriesTest, AResumedSeriesRepeatsNoSnapshot) {
   const auto solver = falling_snow();
   {
     SnapshotSeries series(path("snapshots"), 0.01, 0.0);
     series.write(*solver);
-    mpm::run_until(*solver, 0.01);
+    methods::mpm::run_until(*solver, 0.01);
     series.write(*solver);
   }
   SnapshotSeries series(path("snapshots"), 0.01, solver->time());
   EXPECT_FALSE(series.due(solver->time()));
-  mpm::run_until(*solver, 0.02);
+  methods::mpm::run_until(*solver, 0.02);
   EXPECT_TRUE(series.due(solver->time()));
   series.write(*solver);
   EXPECT_TRUE(std::filesystem::exists(path("snapshots") / "snapshot_000002.vtp"));
   EXPECT_EQ(occurrences(content(path("snapshots") / "snapshots.pvd"), "<DataSet"), 3u);
 }
 
-TEST_F(SnapshotSeriesTest, FilesHoldAllQuantities) {
+TEST_F(SnapshotSeriesTest, FilesContainAllQuantities) {
   const auto solver = falling_snow();
   write_particles(path("snow.vtp"), *solver);
   const std::string file = content(path("snow.vtp"));
@@ -65,4 +66,4 @@ TEST_F(SnapshotSeriesTest, FilesHoldAllQuantities) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::run

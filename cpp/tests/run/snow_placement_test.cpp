@@ -10,19 +10,20 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/methods/mps/settings.hpp"
 #include "snowshed/run/event_sequence.hpp"
+#include "snowshed/run/external_record.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
-namespace snowshed {
+namespace snowshed::run {
 namespace {
 
 /// A scene of one or more bodies, with further parts in JSON.
-Scene with_bodies(int dimension, const std::string& method, const std::string& bodies,
-                  const std::string& parts = R"("ground": {})") {
+scene::Scene with_bodies(int dimension, const std::string& method, const std::string& bodies,
+                         const std::string& parts = R"("ground": {})") {
   const std::string size = method == "mps" ? "spacing" : "dx";
-  return parse_scene(R"({"snowshed": 2, "dimension": )" + std::to_string(dimension) +
-                     R"(, "method": ")" + method + R"(", "numerics": {")" + size +
-                     "\": " + (dimension == 2 ? "0.02" : "0.04") +
-                     R"(, "threads": 1}, "bodies": [)" + bodies + "], " + parts + "}");
+  return scene::parse_scene(R"({"snowshed": 2, "dimension": )" + std::to_string(dimension) +
+                            R"(, "method": ")" + method + R"(", "numerics": {")" + size +
+                            "\": " + (dimension == 2 ? "0.02" : "0.04") +
+                            R"(, "threads": 1}, "bodies": [)" + bodies + "], " + parts + "}");
 }
 
 /// A box in the plane (x, z), or in space with the same extent along y as along x.
@@ -36,7 +37,7 @@ std::string box(int dimension, double x, double z, double length, double height,
 }
 
 /// The notes on the first event, or the message with which it is refused.
-std::string notes_or_refusal(const Scene& scene) try {
+std::string notes_or_refusal(const scene::Scene& scene) try {
   Simulation sim(scene);
   sim.begin_event();
   std::string all;
@@ -56,15 +57,15 @@ class SnowPlacement : public ::testing::TestWithParam<std::pair<int, const char*
   std::string method() const { return GetParam().second; }
   std::string box(double x, double z, double length, double height,
                   const std::string& more = "") const {
-    return snowshed::box(dimension(), x, z, length, height, more);
+    return snowshed::run::box(dimension(), x, z, length, height, more);
   }
   std::string notes_or_refusal(const std::string& bodies,
                                const std::string& parts = R"("ground": {})") const {
-    return snowshed::notes_or_refusal(with_bodies(dimension(), method(), bodies, parts));
+    return snowshed::run::notes_or_refusal(with_bodies(dimension(), method(), bodies, parts));
   }
 };
 
-TEST_P(SnowPlacement, SaysNothingOfSnowThatTouchesGroundWallsAndOtherSnow) {
+TEST_P(SnowPlacement, SnowMayTouchGroundWallsAndOtherSnow) {
   const bool flat = dimension() == 2;
   const std::string wall =
       std::string(R"("obstacles": [{"shape": {"type": "box", "center": [0.3, )") +
@@ -80,7 +81,7 @@ TEST_P(SnowPlacement, RefusesSnowBelowTheGround) {
   expect_part(text, "% of its particles lie below the ground, such as at (");
 }
 
-TEST_P(SnowPlacement, RefusesSnowInAnObstacleByItsName) {
+TEST_P(SnowPlacement, NamesTheObstacleThatContainsSnow) {
   const std::string parts =
       std::string(R"("ground": {}, "obstacles": [{"name": "post", "shape": )") +
       (dimension() == 2 ? R"({"type": "box", "center": [0, 0.2], "size": [0.1, 0.4]}}])"
@@ -88,16 +89,16 @@ TEST_P(SnowPlacement, RefusesSnowInAnObstacleByItsName) {
   expect_part(notes_or_refusal(box(0, 0.2, 0.4, 0.4), parts), "inside the obstacle \"post\"");
 }
 
-TEST_P(SnowPlacement, RefusesBodiesOneInAnother) {
+TEST_P(SnowPlacement, RefusesOverlappingBodies) {
   const std::string text = notes_or_refusal(box(0, 0.1, 0.4, 0.2) + "," + box(0.1, 0.1, 0.4, 0.2));
   expect_part(text, "refused: /bodies/0/shape: 7");
   expect_part(text, "within the snow of /bodies/1");
-  // A small body in a large one lies within it as a whole, but takes up little of the large one.
+  // A small body lies completely within a large one, of which it takes up little.
   expect_part(notes_or_refusal(box(0, 0.25, 0.5, 0.5) + "," + box(0, 0.25, 0.04, 0.04)),
               "/bodies/1/shape: 100 % of its particles lie within the snow of /bodies/0");
 }
 
-TEST_P(SnowPlacement, SaysNothingOfSnowThatTouchesTheSidesOfTheDomain) {
+TEST_P(SnowPlacement, SnowMayTouchTheSidesOfTheDomain) {
   const std::string parts = dimension() == 2
                                 ? R"("domain": {"min": [-0.2, 0], "max": [0.2, 1]})"
                                 : R"("domain": {"min": [-0.2, -0.2, 0], "max": [0.2, 0.2, 1]})";
@@ -110,7 +111,7 @@ TEST_P(SnowPlacement, RefusesAddedSnowOutsideTheDomain) {
                                 : R"("domain": {"min": [-1, -1, 0], "max": [1, 1, 1]})";
   Simulation sim(with_bodies(dimension(), method(), box(0, 0.1, 0.4, 0.2), parts));
   sim.begin_event();
-  ParticleBatch corner;
+  methods::ParticleBatch corner;
   corner.positions = {{1.1, 0, -0.1}};
   corner.mass = sim.method().state().masses.front();
   try {
@@ -121,7 +122,7 @@ TEST_P(SnowPlacement, RefusesAddedSnowOutsideTheDomain) {
   }
 }
 
-TEST_P(SnowPlacement, NotesASliverAndAllowsMoreIfTheSceneDoes) {
+TEST_P(SnowPlacement, NotesSmallAndAllowedOverlaps) {
   const std::string sliver = notes_or_refusal(box(0, 0.1994, 0.4, 0.4));  // 0.15 % of its height
   EXPECT_EQ(sliver.find("refused"), std::string::npos) << sliver;
   const std::string half =
@@ -133,48 +134,49 @@ INSTANTIATE_TEST_SUITE_P(Methods, SnowPlacement,
                          ::testing::Values(std::pair{2, "mpm"}, std::pair{3, "mpm"},
                                            std::pair{2, "mps"}, std::pair{3, "mps"}));
 
-TEST(SnowPlacementNotes, TellOfASliver) {
+TEST(SnowPlacementNotes, MentionSmallOverlaps) {
   const std::string text = notes_or_refusal(with_bodies(2, "mpm", box(2, 0, 0.199, 0.4, 0.4)));
   expect_part(text, "/bodies/0/shape: 0.");
   expect_part(text, "below the ground");
 }
 
-TEST(SnowPlacementNotes, MeetAnObstacleWhereItIsNow) {
-  // The obstacle has left the place of the second body before the second event begins.
+TEST(SnowPlacementNotes, UseTheCurrentPositionsOfObstacles) {
+  // The obstacle has left the position of the second body before the second event begins.
   const std::string moving =
       R"("ground": {}, "events": {"count": 2, "max_time": 0.2, "rest_time": 0.01}, "obstacles":
       [{"shape": {"type": "box", "center": [2, 0.1], "size": [0.2, 0.2]},
         "motion": {"velocity": [50, 0]}}])";
   const std::string late = R"(, "event": 2)";
-  Scene scene = with_bodies(
+  scene::Scene scene = with_bodies(
       2, "mpm", box(2, 0, 0.1, 0.2, 0.2) + "," + box(2, 2, 0.1, 0.2, 0.2, late), moving);
   Simulation sim(scene);
   sim.begin_event();
-  sim.run(go_on, never);
+  sim.run(keep_running, never);
   sim.begin_event();
   EXPECT_TRUE(sim.notes().empty());
   scene.obstacles[0].motion->velocity.setZero();
   Simulation still(scene);
   still.begin_event();
-  still.run(go_on, never);
+  still.run(keep_running, never);
   const std::size_t particles = still.method().size();
   EXPECT_THROW(still.begin_event(), InputError);
-  EXPECT_EQ(still.method().size(), particles);  // all or nothing
+  EXPECT_EQ(still.method().size(), particles);  // nothing was added
   EXPECT_EQ(still.event(), 1);
 }
 
-TEST(SnowPlacementNotes, KnowTheSnowOfEarlierEvents) {
+TEST(SnowPlacementNotes, IncludeTheSnowOfEarlierEvents) {
   const std::string twice = R"("ground": {}, "events": {"count": 2, "max_time": 0.1})";
   for (const int dimension : {2, 3}) {
-    // The same place again, just above it, and half in it.
+    // At the same position, just above it, and half inside.
     for (const double height : {0.05, 0.16, 0.1}) {
-      const Scene scene = with_bodies(dimension, "mpm",
-                                      box(dimension, 0, 0.05, 0.3, 0.1) + "," +
-                                          box(dimension, 0, height, 0.3, 0.1, R"(, "event": 2)"),
-                                      twice);
+      const scene::Scene scene =
+          with_bodies(dimension, "mpm",
+                      box(dimension, 0, 0.05, 0.3, 0.1) + "," +
+                          box(dimension, 0, height, 0.3, 0.1, R"(, "event": 2)"),
+                      twice);
       Simulation sim(scene);
       sim.begin_event();
-      sim.run(go_on, never);
+      sim.run(keep_running, never);
       if (height > 0.15) {
         sim.begin_event();
         EXPECT_TRUE(sim.notes().empty()) << sim.notes().front();
@@ -185,42 +187,42 @@ TEST(SnowPlacementNotes, KnowTheSnowOfEarlierEvents) {
   }
 }
 
-/// A panel to which snow sticks, so that each slab lies on the one before.
-Scene sticky_panel(int events) {
-  Scene scene = small_scene();
-  scene.panel->condition = Condition::sticky;
+/// A panel to which snow sticks, so that each slab lies on the previous one.
+scene::Scene sticky_panel(int events) {
+  scene::Scene scene = small_scene();
+  scene.panel->condition = methods::Condition::sticky;
   scene.events.count = events;
   scene.events.max_time = 0.02;
   scene.events.rest_time = 0.005;
   return scene;
 }
 
-TEST(SnowPlacementNotes, SayNothingOfASlabThatLiesOnTheLastOne) {
+TEST(SnowPlacementNotes, OmitSlabsThatLieOnTheLastOne) {
   Simulation sim(sticky_panel(3));
   for (int event = 0; event < 3; ++event) {
     sim.begin_event();
-    sim.run(go_on, never);
+    sim.run(keep_running, never);
   }
   EXPECT_TRUE(sim.notes().empty()) << sim.notes().front();
 }
 
-TEST(SnowPlacementNotes, TellOfASlabThatMeetsTheStackAndLetTheWinterGoOn) {
-  Scene scene = small_scene();
+TEST(SnowPlacementNotes, MentionASlabWithinTheStackIfAllowed) {
+  scene::Scene scene = small_scene();
   scene.events.count = 2;
   scene.events.max_time = 0.02;
   scene.events.rest_time = 0.005;
   scene.panel->height = 0.4;
   Simulation sim(scene);
   sim.begin_event();
-  sim.run(go_on, never);
+  sim.run(keep_running, never);
   // The stack has grown through the panel's lower end, though hardly any snow lies on the panel.
-  const PanelFrame panel = panel_frame(resolve(scene));
-  ParticleBatch stack = mpm::filled_box(2, panel.lower_edge() + Vec3(-0.01, 0, -0.1),
-                                        panel.lower_edge() + Vec3(0.15, 0, 0.1), 0.004);
-  scene.misplaced_snow = MisplacedSnow::allow;
+  const scene::PanelFrame panel = scene::panel_frame(scene::resolve(scene));
+  methods::ParticleBatch stack = methods::mpm::filled_box(
+      2, panel.lower_edge() + Vec3(-0.01, 0, -0.1), panel.lower_edge() + Vec3(0.15, 0, 0.1), 0.004);
+  scene.misplaced_snow = scene::MisplacedSnow::allow;
   Simulation grown(scene);
   grown.begin_event();
-  grown.run(go_on, never);
+  grown.run(keep_running, never);
   stack.mass = 210 * 0.004 * 0.004;
   grown.add_snow(stack);
   const std::size_t before = grown.notes().size();
@@ -230,7 +232,7 @@ TEST(SnowPlacementNotes, TellOfASlabThatMeetsTheStackAndLetTheWinterGoOn) {
     EXPECT_EQ(grown.notes()[i].find("/slab: in event 2, "), 0u) << grown.notes()[i];
 }
 
-TEST(SnowPlacementNotes, TellWhereTheGridThickensAnObstacle) {
+TEST(SnowPlacementNotes, MentionThickenedObstacles) {
   const std::string parts =
       R"("ground": {}, "obstacles": [{"name": "shelf", "shape":
         {"type": "box", "center": [0, 0.5], "size": [1, 0.004]}}])";
@@ -240,11 +242,11 @@ TEST(SnowPlacementNotes, TellWhereTheGridThickensAnObstacle) {
   EXPECT_EQ(notes_or_refusal(with_bodies(2, "mps", box(2, 0, 0.602, 0.4, 0.2), parts)), "");
 }
 
-TEST(SnowPlacementNotes, HoldForParticlesThatAreAddedByHand) {
-  const Scene scene = with_bodies(2, "mpm", box(2, 0, 0.1, 0.4, 0.2));
+TEST(SnowPlacementNotes, ApplyToParticlesAddedByHand) {
+  const scene::Scene scene = with_bodies(2, "mpm", box(2, 0, 0.1, 0.4, 0.2));
   Simulation sim(scene);
   sim.begin_event();
-  ParticleBatch above, within, below;
+  methods::ParticleBatch above, within, below;
   above.positions = {{0, 0, 0.5}};
   within.positions = {{0, 0, 0.1}};
   below.positions = {{1, 0, -0.1}};
@@ -254,7 +256,7 @@ TEST(SnowPlacementNotes, HoldForParticlesThatAreAddedByHand) {
   EXPECT_THROW(sim.add_snow(below), InputError);
 }
 
-TEST(Percent, HasTwoDigitsWhereItIsSmall) {
+TEST(Percent, HasTwoDigitsIfSmall) {
   EXPECT_EQ(percent(0.0042), "0.42 %");
   EXPECT_EQ(percent(0.5), "50 %");
   EXPECT_EQ(percent(1), "100 %");
@@ -287,23 +289,23 @@ std::vector<SolidWithVolume> solids(int dimension) {
        4.0 / 3.0 * pi * std::pow(0.17, 3)}};
 }
 
-TEST(MassOfBodies, IsDensityTimesVolumeWhateverTheResolution) {
+TEST(BodyMass, IsDensityTimesVolumeAtAnyResolution) {
   for (const int dimension : {2, 3})
     for (const std::string method : {"mpm", "mps"})
       for (const SolidWithVolume& solid : solids(dimension))
         for (const double size : {0.013, 0.02, 0.03}) {
-          Scene scene = with_bodies(dimension, method, R"({"shape": )" + solid.shape + "}");
+          scene::Scene scene = with_bodies(dimension, method, R"({"shape": )" + solid.shape + "}");
           double density = scene.snow.density;
           if (method == "mps") {
-            mps::Settings& s = scene.numerics.as<mps::Settings>();
+            methods::mps::Settings& s = scene.numerics.as<methods::mps::Settings>();
             s.spacing = size;
             density = s.density;
           } else {
-            scene.numerics.as<mpm::Settings>().dx = size;
+            scene.numerics.as<methods::mpm::Settings>().dx = size;
           }
           Simulation sim(scene);
           sim.begin_event();
-          const double mass = mpm::total_mass(sim.method().state());
+          const double mass = methods::mpm::total_mass(sim.method().state());
           const double error = solid.shape.find("sphere") == std::string::npos ? 1e-6 : 2e-3;
           EXPECT_NEAR(mass / (density * solid.volume), 1, error) << solid.shape << " " << size;
           if (method == "mps")
@@ -312,29 +314,29 @@ TEST(MassOfBodies, IsDensityTimesVolumeWhateverTheResolution) {
 }
 
 /// A slab on the panel, by the MPS method.
-Scene mps_slab(double thickness, double spacing) {
-  Scene scene = parse_scene(
+scene::Scene mps_slab(double thickness, double spacing) {
+  scene::Scene scene = scene::parse_scene(
       R"({"snowshed": 2, "dimension": 2, "method": "mps", "ground": {}, "numerics": {"threads": 1},
           "panel": {"height": 0.5, "length": 1.0, "tilt": 45}, "slab": {"thickness": 0.05}})");
   scene.slab->thickness = thickness;
-  scene.numerics.as<mps::Settings>().spacing = spacing;
+  scene.numerics.as<methods::mps::Settings>().spacing = spacing;
   return scene;
 }
 
-TEST(MassOfBodies, IsThatOfTheSlabByMps) {
+TEST(BodyMass, IsExactForMpsSlabs) {
   for (const double thickness : {0.009, 0.05, 0.051, 0.1})
     for (const double spacing : {0.01, 0.02, 0.03}) {
       Simulation sim(mps_slab(thickness, spacing));
       sim.begin_event();
-      const double density = sim.scene().numerics.as<mps::Settings>().density;
-      EXPECT_NEAR(mpm::total_mass(sim.method().state()), density * thickness, 1e-9);
+      const double density = sim.scene().numerics.as<methods::mps::Settings>().density;
+      EXPECT_NEAR(methods::mpm::total_mass(sim.method().state()), density * thickness, 1e-9);
       EXPECT_EQ(double(sim.method().size()), sim.cost().particles.front());
       EXPECT_NEAR(double(sim.method().size()), thickness / (spacing * spacing), 0.5 + 1e-9);
       EXPECT_EQ(sim.notes().empty(), thickness > spacing) << thickness << " " << spacing;
     }
 }
 
-TEST(MassOfBodies, IsToldWhereABodyIsThinnerThanASpacing) {
+TEST(BodyMass, IsNotedForBodiesThinnerThanASpacing) {
   Simulation sim(mps_slab(0.009, 0.02));
   sim.begin_event();
   ASSERT_EQ(sim.notes().size(), 1u);
@@ -342,37 +344,37 @@ TEST(MassOfBodies, IsToldWhereABodyIsThinnerThanASpacing) {
               "/slab: is 9 mm thick, less than the spacing of 20 mm: it becomes 23");
 }
 
-TEST(MassOfBodies, IsThatOfTheLayersByMps) {
-  Scene scene = mps_slab(0, 0.02);
+TEST(BodyMass, IsExactForMpsLayers) {
+  scene::Scene scene = mps_slab(0, 0.02);
   scene.slab->layers = {{0.03, {}, 0}, {0.025, {}, 0}};
   Simulation sim(scene);
   sim.begin_event();
-  const double density = sim.scene().numerics.as<mps::Settings>().density;
-  EXPECT_NEAR(mpm::total_mass(sim.method().state()), density * 0.055, 1e-9);
+  const double density = sim.scene().numerics.as<methods::mps::Settings>().density;
+  EXPECT_NEAR(methods::mpm::total_mass(sim.method().state()), density * 0.055, 1e-9);
   EXPECT_TRUE(sim.notes().empty()) << sim.notes().front();
 }
 
 // --- notes of runs ------------------------------------------------------------------------------
 
-class NotesOfRuns : public TemporaryFolder {};
+class RunNotes : public io::TemporaryFolder {};
 
-TEST_F(NotesOfRuns, StandInTheRecordOnceAlsoWhenTheRunGoesOn) {
+TEST_F(RunNotes, AreRecordedOnceAlsoAfterResuming) {
   struct NoteRecorder : EventObserver {
     void noted(const std::string& note) override { notes.push_back(note); }
     std::vector<std::string> notes;
   };
-  Scene scene = with_bodies(2, "mpm", box(2, 0, 0, 0.4, 0.2),
-                            R"("ground": {}, "misplaced_snow": "allow",
+  scene::Scene scene = with_bodies(2, "mpm", box(2, 0, 0, 0.4, 0.2),
+                                   R"("ground": {}, "misplaced_snow": "allow",
                                "events": {"max_time": 0.01, "rest_time": 0.001})");
   NoteRecorder recorder, resumed_recorder;
   EventSequence::create(scene, ".", path("run")).run(recorder, never);
   ASSERT_EQ(recorder.notes.size(), 1u);
   EXPECT_EQ(RunRecord::read(path("run") / "run.json", {}).notes, recorder.notes);
   EventSequence resumed = EventSequence::resume(scene, ".", path("run"));
-  resumed.record().add_note(recorder.notes.front());
+  ExternalRecord(resumed).add_note(recorder.notes.front());
   resumed.run(resumed_recorder, never);
   EXPECT_EQ(RunRecord::read(path("run") / "run.json", {}).notes, recorder.notes);
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::run

@@ -9,14 +9,14 @@
 #include "snowshed/sampling/seeding.hpp"
 #include "snowshed/sampling/voxel_set.hpp"
 
-namespace snowshed {
+namespace snowshed::sampling {
 namespace {
 
 using namespace geometry_testing;
 constexpr double voxel = 0.01;
 
 /// Returns the distance from a point inside the solid to its surface in direction u.
-double reach(const LevelSet& solid, const Vec3& from, const Vec3& u) {
+double reach(const geometry::LevelSet& solid, const Vec3& from, const Vec3& u) {
   double s = 0;
   while (solid.distance(from + s * u) < 0) s += 1e-4;
   return s;
@@ -27,11 +27,12 @@ class Pile : public ::testing::TestWithParam<int> {
   static constexpr double height = 0.1, length = 0.4;  // a flat dome on z = 0
   const int dimension = GetParam();
   const double per_voxel = dimension == 2 ? 6 : 8;
-  const Shape pile = subtract(make_sphere({0, 0, -0.15}, 0.25), {make_plane({0, 0, 0}, {0, 0, 1})});
+  const geometry::Shape pile = geometry::subtract(geometry::make_sphere({0, 0, -0.15}, 0.25),
+                                                  {geometry::make_plane({0, 0, 0}, {0, 0, 1})});
   const std::vector<Vec3> points =
       seed(*pile, dimension, voxel, per_voxel, SeedPattern::poisson, 3);
-  const Shape solid = particles_to_level_set(points, dimension, voxel,
-                                             particle_radius(dimension, voxel, per_voxel));
+  const geometry::Shape solid = particles_to_level_set(
+      points, dimension, voxel, particle_radius(dimension, voxel, per_voxel));
 };
 
 TEST_P(Pile, KeepsVolumeHeightAndLength) {
@@ -53,10 +54,10 @@ TEST_P(Pile, KeepsVolumeHeightAndLength) {
   EXPECT_NEAR(extent(z), cloud_extent(z), voxel / 2);
   EXPECT_NEAR(extent(z), height, voxel / 2);
   EXPECT_NEAR(extent(x) + extent(-x), cloud_extent(x) + cloud_extent(-x), voxel / 2);
-  EXPECT_NEAR(extent(x) + extent(-x), length, voxel);  // the sharp tips hold no particles
+  EXPECT_NEAR(extent(x) + extent(-x), length, voxel);  // no particles in the sharp tips
 }
 
-TEST_P(Pile, HasNoHolesAndHoldsItsParticles) {
+TEST_P(Pile, HasNoHolesAndContainsItsParticles) {
   const auto is_inside = [&](const Vec3& x) { return solid->distance(x) < 0; };
   const auto inside = std::count_if(points.begin(), points.end(), is_inside);
   EXPECT_GT(inside, 0.99 * points.size());
@@ -71,9 +72,9 @@ TEST_P(Pile, HasNoHolesAndHoldsItsParticles) {
 
 INSTANTIATE_TEST_SUITE_P(Dimensions, Pile, ::testing::Values(2, 3));
 
-TEST(ParticlesToLevelSet, OneParticleIsABall) {
+TEST(ParticlesToLevelSet, ASingleParticleIsABall) {
   const Vec3 x(0.3, -0.2, 0.1);
-  const Shape ball = particles_to_level_set({x}, 3, voxel, 0.02);
+  const geometry::Shape ball = particles_to_level_set({x}, 3, voxel, 0.02);
   EXPECT_NEAR(measure(*ball, 3, voxel) / (4 * pi / 3 * 8e-6), 1, 0.05);
   EXPECT_NEAR(ball->distance(x), -0.02, 2e-4);
   EXPECT_LT((ball->normal(x + Vec3(0.015, 0, 0)) - Vec3::UnitX()).norm(), 0.05);
@@ -92,7 +93,7 @@ TEST(ParticlesToLevelSet, KeepsIsolatedParticles) {
     for (int n = 0; n < 50; ++n) {
       Vec3 x = random_point(random, 0.1);
       if (dimension == 2) x.y() = 0;
-      const Shape ball = particles_to_level_set({x, {0.3, 0, 0}}, dimension, voxel, 1e-3);
+      const geometry::Shape ball = particles_to_level_set({x, {0.3, 0, 0}}, dimension, voxel, 1e-3);
       EXPECT_LT(ball->distance(x), 0) << x.transpose();
       const auto seeds = seed(*ball, dimension, voxel, 6, SeedPattern::poisson, n);
       const auto near = [&](const Vec3& particle) { return (particle - x).norm() < 0.6 * voxel; };
@@ -100,7 +101,7 @@ TEST(ParticlesToLevelSet, KeepsIsolatedParticles) {
     }
 }
 
-TEST(ParticlesToLevelSet, RefusesBadClouds) {
+TEST(ParticlesToLevelSet, RefusesInvalidParticles) {
   const double nan = std::nan("");
   expect_input_error([] { particles_to_level_set({}, 2, voxel, 1e-3); }, "no particles");
   expect_input_error([&] { particles_to_level_set({{0, 0, nan}}, 2, voxel, 1e-3); }, "finite");
@@ -111,4 +112,4 @@ TEST(ParticlesToLevelSet, RefusesBadClouds) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::sampling

@@ -8,7 +8,7 @@
 #include "snowshed/particles/point_grid.hpp"
 #include "snowshed/sampling/voxel_set.hpp"
 
-namespace snowshed {
+namespace snowshed::sampling {
 namespace {
 
 using namespace geometry_testing;
@@ -16,43 +16,44 @@ constexpr double voxel_edge = 0.01;
 constexpr SeedPattern patterns[] = {SeedPattern::regular, SeedPattern::jittered,
                                     SeedPattern::poisson};
 
-Shape tilted_slab_2d() {
-  return transform(make_box(Vec3::Zero(), Vec3(0.5, infinity, 0.05)), rotation_about_y(0.7),
-                   {0.1, 0, 1.2});
+geometry::Shape tilted_slab_2d() {
+  return geometry::transform(geometry::make_box(Vec3::Zero(), Vec3(0.5, geometry::infinity, 0.05)),
+                             rotation_about_y(0.7), {0.1, 0, 1.2});
 }
 
-Shape tilted_slab_3d() {
-  return make_plate({0.1, 0, 1.2}, {std::sin(0.7), 0, std::cos(0.7)}, 0.2, 0.1, 0.03);
+geometry::Shape tilted_slab_3d() {
+  return geometry::make_plate({0.1, 0, 1.2}, {std::sin(0.7), 0, std::cos(0.7)}, 0.2, 0.1, 0.03);
 }
 
-Shape dome() {
-  return subtract(make_sphere({0, 0, -0.05}, 0.1), {make_plane({0, 0, 0}, {0, 0, 1})});
+geometry::Shape dome() {
+  return geometry::subtract(geometry::make_sphere({0, 0, -0.05}, 0.1),
+                            {geometry::make_plane({0, 0, 0}, {0, 0, 1})});
 }
 
-void expect_strictly_inside(const LevelSet& shape, const std::vector<Vec3>& points) {
+void expect_strictly_inside(const geometry::LevelSet& shape, const std::vector<Vec3>& points) {
   for (const Vec3& x : points) ASSERT_LT(shape.distance(x), 0) << x.transpose();
 }
 
-double smallest_spacing(const std::vector<Vec3>& points, double reach) {
-  const PointGrid grid(points, reach);
-  double smallest = reach;
+double min_spacing(const std::vector<Vec3>& points, double reach) {
+  const particles::PointGrid grid(points, reach);
+  double min_separation = reach;
   for (std::size_t i = 0; i < points.size(); ++i)
     grid.for_each_near(points[i], [&](std::uint32_t j, const Vec3& other) {
-      if (j != i) smallest = std::min(smallest, (other - points[i]).norm());
+      if (j != i) min_separation = std::min(min_separation, (other - points[i]).norm());
     });
-  return smallest;
+  return min_separation;
 }
 
-TEST(Seed, PointsAreStrictlyInsideAndAsManyAsExpected) {
+TEST(Seeding, PointsAreStrictlyInsideAndAsManyAsExpected) {
   for (const SeedPattern pattern : patterns) {
-    for (const Shape& shape : {tilted_slab_2d(), dome()}) {
+    for (const geometry::Shape& shape : {tilted_slab_2d(), dome()}) {
       const auto points = seed(*shape, 2, voxel_edge, 6, pattern, 1);
       expect_strictly_inside(*shape, points);
       const auto expected = expected_count(*shape, 2, voxel_edge, 6, pattern);
       EXPECT_NEAR(points.size(), expected, shape->oriented_box() ? 0 : 0.05 * expected);
       for (const Vec3& x : points) ASSERT_EQ(x.y(), 0);
     }
-    for (const Shape& shape : {tilted_slab_3d(), dome()}) {
+    for (const geometry::Shape& shape : {tilted_slab_3d(), dome()}) {
       const auto points = seed(*shape, 3, voxel_edge, 8, pattern, 1);
       expect_strictly_inside(*shape, points);
       const auto expected = expected_count(*shape, 3, voxel_edge, 8, pattern);
@@ -61,22 +62,23 @@ TEST(Seed, PointsAreStrictlyInsideAndAsManyAsExpected) {
   }
 }
 
-TEST(Seed, PoissonGivesExactlyTheCountRoundedUp) {
+TEST(Seeding, PoissonGivesTheCountRoundedUp) {
   EXPECT_EQ(seed(*tilted_slab_2d(), 2, voxel_edge, 6, SeedPattern::poisson, 1).size(), 1500u);
   EXPECT_EQ(seed(*tilted_slab_3d(), 3, voxel_edge, 8, SeedPattern::poisson, 1).size(), 4800u);
   const double volume = measure(*dome(), 3, voxel_edge);
   EXPECT_EQ(seed(*dome(), 3, voxel_edge, 6, SeedPattern::poisson, 1).size(),
             std::ceil(6 * volume / 1e-6));
   // A solid smaller than a voxel still gets a particle.
-  EXPECT_EQ(seed(*make_sphere({0, 0, 0}, 1e-3), 3, voxel_edge, 6, SeedPattern::poisson, 1).size(),
+  EXPECT_EQ(seed(*geometry::make_sphere({0, 0, 0}, 1e-3), 3, voxel_edge, 6, SeedPattern::poisson, 1)
+                .size(),
             1u);
 }
 
-TEST(Seed, RegularTilesATiltedSlabExactly) {
-  const Shape slab = tilted_slab_3d();
+TEST(Seeding, RegularTilesATiltedSlabExactly) {
+  const geometry::Shape slab = tilted_slab_3d();
   const auto points = seed(*slab, 3, voxel_edge, 8, SeedPattern::regular, 1);
   ASSERT_EQ(points.size(), 40u * 20u * 6u);
-  const OrientedBox box = *slab->oriented_box();
+  const geometry::OrientedBox box = *slab->oriented_box();
   for (const Vec3& x : points) {
     const Vec3 cells = (box.axes.transpose() * (x - box.center) + box.half) / 0.005;
     for (int axis = 0; axis < 3; ++axis)
@@ -84,17 +86,19 @@ TEST(Seed, RegularTilesATiltedSlabExactly) {
   }
 }
 
-TEST(Seed, LatticeOfABoxNeverHoldsFewerThanAskedFor) {
+TEST(Seeding, LatticesInBoxesHaveAtLeastTheRequestedCount) {
   for (const double per_voxel : {1.0, 4.0, 5.0, 6.0, 7.3, 8.0}) {
-    const Shape box = make_box(Vec3::Zero(), Vec3(0.101, 0.043, 0.0217));
-    const double asked = per_voxel * measure(*box, 3, voxel_edge) / 1e-6;
-    EXPECT_GE(seed(*box, 3, voxel_edge, per_voxel, SeedPattern::regular, 1).size(), asked - 1e-6);
-    EXPECT_GE(seed(*box, 3, voxel_edge, per_voxel, SeedPattern::jittered, 1).size(), asked - 1e-6);
+    const geometry::Shape box = geometry::make_box(Vec3::Zero(), Vec3(0.101, 0.043, 0.0217));
+    const double requested = per_voxel * measure(*box, 3, voxel_edge) / 1e-6;
+    EXPECT_GE(seed(*box, 3, voxel_edge, per_voxel, SeedPattern::regular, 1).size(),
+              requested - 1e-6);
+    EXPECT_GE(seed(*box, 3, voxel_edge, per_voxel, SeedPattern::jittered, 1).size(),
+              requested - 1e-6);
   }
 }
 
-TEST(Seed, JitteredPutsOnePointInEachCell) {
-  const Shape box = make_box(Vec3(0.1, 0.05, 0.025), Vec3(0.2, 0.1, 0.05));
+TEST(Seeding, JitteredPutsOnePointInEachCell) {
+  const geometry::Shape box = geometry::make_box(Vec3(0.1, 0.05, 0.025), Vec3(0.2, 0.1, 0.05));
   const auto points = seed(*box, 3, voxel_edge, 8, SeedPattern::jittered, 1);
   std::vector<int> counts(40 * 20 * 10, 0);
   for (const Vec3& x : points)
@@ -103,18 +107,18 @@ TEST(Seed, JitteredPutsOnePointInEachCell) {
   EXPECT_EQ(*std::max_element(counts.begin(), counts.end()), 1);
 }
 
-TEST(Seed, PoissonKeepsItsDistance) {
+TEST(Seeding, PoissonKeepsItsDistance) {
   // In mean spacings, the smallest distance is 1.07 (2D) and 1.12 (3D) in the densest packing and
   // about 0 in white noise.
   const double spacing_2d = voxel_edge / std::sqrt(6.0), spacing_3d = voxel_edge / 2;
   const auto flat = seed(*tilted_slab_2d(), 2, voxel_edge, 6, SeedPattern::poisson, 5);
-  EXPECT_GT(smallest_spacing(flat, 2 * spacing_2d), 0.6 * spacing_2d);
+  EXPECT_GT(min_spacing(flat, 2 * spacing_2d), 0.6 * spacing_2d);
   const auto solid = seed(*tilted_slab_3d(), 3, voxel_edge, 8, SeedPattern::poisson, 5);
-  EXPECT_GT(smallest_spacing(solid, 2 * spacing_3d), 0.6 * spacing_3d);
+  EXPECT_GT(min_spacing(solid, 2 * spacing_3d), 0.6 * spacing_3d);
 }
 
-TEST(Seed, PoissonIsAsDenseAtTheSurfaceAsWithin) {
-  const Shape slab = make_box(Vec3::Zero(), Vec3(0.4, 0.3, 0.04));
+TEST(Seeding, PoissonIsAsDenseAtTheSurfaceAsInside) {
+  const geometry::Shape slab = geometry::make_box(Vec3::Zero(), Vec3(0.4, 0.3, 0.04));
   const auto points = seed(*slab, 3, voxel_edge, 8, SeedPattern::poisson, 2);
   // Counts in layers one spacing thick, from the top.
   std::vector<double> layers(8, 0);
@@ -125,7 +129,7 @@ TEST(Seed, PoissonIsAsDenseAtTheSurfaceAsWithin) {
   EXPECT_LT(mean.cwiseAbs().maxCoeff(), 4e-4);
 }
 
-TEST(Seed, IsTheSameForTheSameSeedOnly) {
+TEST(Seeding, DependsOnlyOnTheSeed) {
   for (const SeedPattern pattern : {SeedPattern::jittered, SeedPattern::poisson}) {
     const auto points = [&](std::uint64_t s) {
       return seed(*dome(), 2, voxel_edge, 6, pattern, s);
@@ -135,32 +139,34 @@ TEST(Seed, IsTheSameForTheSameSeedOnly) {
   }
 }
 
-TEST(Seed, RefusesWhatCannotBeFilled) {
-  const auto seed_it = [](const Shape& shape, int dimension, double dx, double per_voxel) {
+TEST(Seeding, RefusesInvalidSolidsAndCounts) {
+  const auto seed_it = [](const geometry::Shape& shape, int dimension, double dx,
+                          double per_voxel) {
     return [=] { seed(*shape, dimension, dx, per_voxel, SeedPattern::poisson, 1); };
   };
-  const Shape box = make_box(Vec3::Zero(), Vec3(1, 1, 1));
-  expect_input_error(seed_it(make_plane({0, 0, 0}, {0, 0, 1}), 3, voxel_edge, 8), "unbounded");
+  const geometry::Shape box = geometry::make_box(Vec3::Zero(), Vec3(1, 1, 1));
+  expect_input_error(seed_it(geometry::make_plane({0, 0, 0}, {0, 0, 1}), 3, voxel_edge, 8),
+                     "unbounded");
   expect_input_error(seed_it(box, 3, 1e-4, 8), "2e8");
-  expect_input_error(seed_it(make_sphere({0, 0, 0}, 1e5), 3, 1e-3, 8), "voxels");
+  expect_input_error(seed_it(geometry::make_sphere({0, 0, 0}, 1e5), 3, 1e-3, 8), "voxels");
   expect_input_error(seed_it(box, 3, 0, 8), "voxel size");
   expect_input_error(seed_it(box, 3, voxel_edge, -1), "particles per voxel");
   expect_input_error(seed_it(box, 3, voxel_edge, std::nan("")), "particles per voxel");
   expect_input_error(seed_it(box, 4, voxel_edge, 8), "2 or 3");
-  const Shape nothing = subtract(box, {make_sphere({0, 0, 0}, 2)});
+  const geometry::Shape nothing = geometry::subtract(box, {geometry::make_sphere({0, 0, 0}, 2)});
   expect_input_error(seed_it(nothing, 3, 0.1, 8), "empty");
   EXPECT_THROW(expected_count(*box, 3, 1e-4, 8, SeedPattern::regular), InputError);
 }
 
-TEST(Seed, IsGivenUpOnRequest) {
-  const Shape ball = make_sphere({0, 0, 0}, 0.3);
+TEST(Seeding, StopsOnRequest) {
+  const geometry::Shape ball = geometry::make_sphere({0, 0, 0}, 0.3);
   for (const SeedPattern pattern : patterns) {
-    int asked = 0;
-    const auto third = [&] { return ++asked == 3; };
+    int calls = 0;
+    const auto third = [&] { return ++calls == 3; };
     EXPECT_THROW(seed(*ball, 3, voxel_edge, 8, pattern, 1, third), Stopped);
-    EXPECT_EQ(asked, 3);
+    EXPECT_EQ(calls, 3);
   }
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::sampling

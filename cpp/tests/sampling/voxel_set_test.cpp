@@ -6,62 +6,67 @@
 #include "snowshed/geometry/combine.hpp"
 #include "snowshed/geometry/primitives.hpp"
 
-namespace snowshed {
+namespace snowshed::sampling {
 namespace {
 
 using namespace geometry_testing;
 
 /// Returns a box without `oriented_box`, so that its volume is measured by subdivision.
-Shape anonymous(Shape box) { return dilate(std::move(box), 0.0); }
+geometry::Shape anonymous(geometry::Shape box) { return geometry::dilate(std::move(box), 0.0); }
 
 TEST(Measure, IsExactForBoxes) {
   Random random(2);
-  const OrientedBox box{{1, 2, 3}, random_rotation(random), {0.5, 0.3, 0.025}};
-  EXPECT_NEAR(measure(*make_box(box), 3, 0.01), 8 * 0.5 * 0.3 * 0.025, 1e-12);
-  const Shape plate = make_plate({0, 0, 1}, {1, 0, 1}, 2.0, infinity, 0.05);
+  const geometry::OrientedBox box{{1, 2, 3}, random_rotation(random), {0.5, 0.3, 0.025}};
+  EXPECT_NEAR(measure(*geometry::make_box(box), 3, 0.01), 8 * 0.5 * 0.3 * 0.025, 1e-12);
+  const geometry::Shape plate =
+      geometry::make_plate({0, 0, 1}, {1, 0, 1}, 2.0, geometry::infinity, 0.05);
   EXPECT_NEAR(measure(*plate, 2, 0.01), 0.1, 1e-12);
 }
 
-TEST(Measure, OfARotatedThinSlabIsRightToAThousandth) {
+TEST(Measure, IsAccurateForRotatedThinSlabs) {
   Random random(9);
   for (int n = 0; n < 3; ++n) {
-    const OrientedBox box{random_point(random, 1), random_rotation(random), {0.2, 0.1, 0.025}};
-    EXPECT_NEAR(measure(*anonymous(make_box(box)), 3, 0.01), 0.004, 0.004 * 1e-3);
+    const geometry::OrientedBox box{
+        random_point(random, 1), random_rotation(random), {0.2, 0.1, 0.025}};
+    EXPECT_NEAR(measure(*anonymous(geometry::make_box(box)), 3, 0.01), 0.004, 0.004 * 1e-3);
   }
   for (const double tilt : {0.0, 13.0, 40.0, 45.0, 70.0}) {
-    const Shape slab = transform(make_box(Vec3::Zero(), Vec3(1, infinity, 0.05)),
-                                 rotation_about_y(radians(tilt)), {0.3, 0, 0.2});
+    const geometry::Shape slab =
+        geometry::transform(geometry::make_box(Vec3::Zero(), Vec3(1, geometry::infinity, 0.05)),
+                            rotation_about_y(radians(tilt)), {0.3, 0, 0.2});
     EXPECT_NEAR(measure(*anonymous(slab), 2, 0.01), 0.05, 0.05 * 1e-3) << tilt;
   }
 }
 
-TEST(Measure, OfRoundSolids) {
+TEST(Measure, IsAccurateForRoundSolids) {
   const double r = 0.05;
-  EXPECT_NEAR(measure(*make_sphere({1, 0, 2}, r), 3, 0.01) / (4 * pi * r * r * r / 3), 1, 1e-3);
-  EXPECT_NEAR(measure(*make_sphere({1, 0, 2}, r), 2, 0.01) / (pi * r * r), 1, 1e-3);
-  const Shape rod = make_cylinder({0, 0, 0}, {0.2, 0.1, 0.1}, r);
+  EXPECT_NEAR(measure(*geometry::make_sphere({1, 0, 2}, r), 3, 0.01) / (4 * pi * r * r * r / 3), 1,
+              1e-3);
+  EXPECT_NEAR(measure(*geometry::make_sphere({1, 0, 2}, r), 2, 0.01) / (pi * r * r), 1, 1e-3);
+  const geometry::Shape rod = geometry::make_cylinder({0, 0, 0}, {0.2, 0.1, 0.1}, r);
   EXPECT_NEAR(measure(*rod, 3, 0.01) / (pi * r * r * std::sqrt(0.06)), 1, 1e-3);
 }
 
-TEST(Measure, OfASphereWithAHole) {
-  const Shape shell = subtract(make_sphere({0, 0, 0}, 0.1), {make_sphere({0, 0, 0}, 0.08)});
+TEST(Measure, IsAccurateForHollowSpheres) {
+  const geometry::Shape shell = geometry::subtract(geometry::make_sphere({0, 0, 0}, 0.1),
+                                                   {geometry::make_sphere({0, 0, 0}, 0.08)});
   EXPECT_NEAR(measure(*shell, 3, 0.01) / (4 * pi / 3 * (1e-3 - 0.512e-3)), 1, 1e-3);
 }
 
 TEST(Measure, RefusesUnboundedSolids) {
-  const Shape ground = make_plane({0, 0, 0}, {0, 0, 1});
+  const geometry::Shape ground = geometry::make_plane({0, 0, 0}, {0, 0, 1});
   expect_input_error([&] { measure(*ground, 2, 0.01); }, "unbounded");
-  const Shape deep = make_box(Vec3::Zero(), Vec3(1, infinity, 1));
+  const geometry::Shape deep = geometry::make_box(Vec3::Zero(), Vec3(1, geometry::infinity, 1));
   expect_input_error([&] { measure(*deep, 3, 0.01); }, "unbounded");
 }
 
 TEST(Measure, RefusesAbsurdSizes) {
-  const Shape moon = make_sphere({0, 0, 0}, 1.7e6);
+  const geometry::Shape moon = geometry::make_sphere({0, 0, 0}, 1.7e6);
   expect_input_error([&] { measure(*moon, 3, 1e-3); }, "voxels");
 }
 
-TEST(Voxelize, CoversTheSolidAndKnowsItsInside) {
-  const Shape ball = make_sphere({0.3, 0.1, 0.2}, 0.1);
+TEST(Voxelize, CoversTheSolidAndMarksInnerVoxels) {
+  const geometry::Shape ball = geometry::make_sphere({0.3, 0.1, 0.2}, 0.1);
   const double edge = 0.02;
   const auto voxels = voxelize(*ball, 3, edge);
   Random random(11);
@@ -86,12 +91,13 @@ TEST(Voxelize, CoversTheSolidAndKnowsItsInside) {
   EXPECT_GT(inside, 100);
 }
 
-TEST(Voxelize, OfATwoDimensionalSceneStaysInItsPlane) {
-  const auto voxels = voxelize(*make_box(Vec3::Zero(), Vec3(0.1, infinity, 0.1)), 2, 0.01, 0.005);
+TEST(Voxelize, KeepsPlaneSolidsInTheirPlane) {
+  const auto voxels = voxelize(
+      *geometry::make_box(Vec3::Zero(), Vec3(0.1, geometry::infinity, 0.1)), 2, 0.01, 0.005);
   EXPECT_GE(voxels.size(), 144u);
   EXPECT_LE(voxels.size(), 200u);
   for (const Voxel& v : voxels) EXPECT_EQ(v.center.y(), 0);
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::sampling

@@ -3,7 +3,7 @@
 #include "geometry/mesh_testing.hpp"
 #include "geometry/readers/npy_testing.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 namespace {
 
 using namespace geometry_testing;
@@ -36,7 +36,7 @@ ShapeSpec panel() {
   return spec;
 }
 
-Shape build(const ShapeSpec& spec, int dimension = 3) {
+geometry::Shape build(const ShapeSpec& spec, int dimension = 3) {
   return build_shape(spec, dimension, "/obstacles/0/shape", ".");
 }
 
@@ -44,7 +44,7 @@ void expect_refused(const ShapeSpec& spec, const std::string& where, int dimensi
   expect_input_error([&] { build(spec, dimension); }, "/obstacles/0/shape" + where + ": ");
 }
 
-TEST(BuildShape, MakesEveryPrimitive) {
+TEST(BuildShape, BuildsEveryPrimitive) {
   EXPECT_DOUBLE_EQ(build(spec_of("plane"))->distance({0, 0, 2}), 2);
   ShapeSpec box = spec_of("box");
   box.size = {1, 2, 3};
@@ -60,7 +60,7 @@ TEST(BuildShape, MakesEveryPrimitive) {
 TEST(BuildShape, BoxesAndPlatesAreUnboundedAlongYIn2D) {
   ShapeSpec box = spec_of("box");
   box.size = {1, 0, 3};
-  EXPECT_EQ(build(box, 2)->bounds().max.y(), infinity);
+  EXPECT_EQ(build(box, 2)->bounds().max.y(), geometry::infinity);
   ShapeSpec plate = panel();
   plate.width = 0;
   EXPECT_NEAR(build(plate, 2)->distance({0, 1e6, 0}), 0, 1e-12);
@@ -76,20 +76,20 @@ TEST(BuildShape, CombinesShapes) {
   turned.angle = 90;
   turned.translate = {0, 0, 5};
   turned.shapes = {hollow};
-  const Shape shape = build(turned);
+  const geometry::Shape shape = build(turned);
   EXPECT_DOUBLE_EQ(build(hollow)->distance({0, 0, 0}), 0.5);
   EXPECT_NEAR(shape->distance({0, 0, 5 - 1.05}), -0.05, 1e-12);  // the rod's end, turned down
   EXPECT_NEAR(shape->distance({0, 0, 5}), 0.5, 1e-12);
 }
 
-TEST(BuildShape, NamesTheBadField) {
+TEST(BuildShape, NamesTheInvalidField) {
   expect_refused(spec_of("blob"), "/type");
   expect_refused(ball(0), "/radius");
   expect_refused(ball(-1), "/radius");
-  expect_refused(ball(infinity), "/radius");
+  expect_refused(ball(geometry::infinity), "/radius");
   expect_refused(ball(std::nan("")), "/radius");
   ShapeSpec s = ball(1);
-  s.center.x() = infinity;
+  s.center.x() = geometry::infinity;
   expect_refused(s, "/center");
   s = spec_of("box");
   s.size = {1, -1, 1};
@@ -121,7 +121,7 @@ TEST(BuildShape, NamesTheBadField) {
   s.axis.setZero();
   expect_refused(s, "/axis");
   s.axis = {0, 1, 0};
-  s.angle = infinity;
+  s.angle = geometry::infinity;
   expect_refused(s, "/angle");
   expect_refused(spec_of("mesh"), "/file");
   s = spec_of("grid");
@@ -132,7 +132,7 @@ TEST(BuildShape, NamesTheBadField) {
   expect_refused(s, "/scale");
 }
 
-TEST(BuildShape, NeedsThePlaneIn2D) {
+TEST(BuildShape, RefusesShapesOutsideThePlaneIn2D) {
   ShapeSpec s = ball(1);
   s.center.y() = 0.1;
   EXPECT_NO_THROW(build(s, 3));
@@ -144,7 +144,7 @@ TEST(BuildShape, NeedsThePlaneIn2D) {
   expect_refused(s, "/axis", 2);
 }
 
-TEST(BuildShape, LimitsTheDepth) {
+TEST(BuildShape, LimitsTheNesting) {
   ShapeSpec s = ball(1);
   for (int level = 1; level < max_shape_depth; ++level) {
     ShapeSpec outer = spec_of("union");
@@ -166,13 +166,13 @@ TEST(BuildShape, ReadsMeshesRelativeToTheScene) {
   ShapeSpec s = spec_of("mesh");
   s.file = "cube.obj";
   s.scale = 1e-3;
-  const Shape cube = build_shape(s, 3, "", dir.path());
+  const geometry::Shape cube = build_shape(s, 3, "", dir.path());
   EXPECT_NEAR(cube->distance({0.5, 0.5, 3}), 2, 1e-12);
   s.file = "nowhere.obj";
   expect_input_error([&] { build_shape(s, 3, "", dir.path()); }, "nowhere.obj: no such file");
 }
 
-TEST(BuildShape, ReadsGridsOfTwoAndThreeDimensions) {
+TEST(BuildShape, ReadsGridsInTwoAndThreeDimensions) {
   const TempDir dir;
   std::vector<double> flat, full;
   for (int i = 0; i < 5; ++i)
@@ -187,7 +187,7 @@ TEST(BuildShape, ReadsGridsOfTwoAndThreeDimensions) {
   s.origin = {1, 0, 2};
   for (const char* file : {"flat.npy", "full.npy"}) {
     s.file = file;
-    const Shape grid = build_shape(s, 2, "", dir.path());
+    const geometry::Shape grid = build_shape(s, 2, "", dir.path());
     EXPECT_NEAR(grid->distance({1.2, 0, 2.22}), 0.07, 1e-6);
     EXPECT_LT((grid->normal({1.2, 0, 2.15}) - Vec3::UnitZ()).norm(), 1e-6);
   }
@@ -197,4 +197,4 @@ TEST(BuildShape, ReadsGridsOfTwoAndThreeDimensions) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::scene

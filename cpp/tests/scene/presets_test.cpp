@@ -8,11 +8,11 @@
 #include "snowshed/methods/mpm/settings.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 namespace {
 
-void expect_snow(const Snow& snow, double slope, double pressure, double cohesion) {
-  EXPECT_EQ(snow.model, SnowModel::cam_clay);
+void expect_snow(const material::Snow& snow, double slope, double pressure, double cohesion) {
+  EXPECT_EQ(snow.model, material::SnowModel::cam_clay);
   EXPECT_EQ(snow.density, 210.0);
   EXPECT_EQ(snow.youngs_modulus, 1e6);
   EXPECT_EQ(snow.poissons_ratio, 0.3);
@@ -23,19 +23,19 @@ void expect_snow(const Snow& snow, double slope, double pressure, double cohesio
 }
 
 void expect_conditions(const Scene& scene) {
-  EXPECT_EQ(scene.panel->condition, Condition::separate);
-  EXPECT_EQ(scene.ground->condition, Condition::sticky);
+  EXPECT_EQ(scene.panel->condition, methods::Condition::separate);
+  EXPECT_EQ(scene.ground->condition, methods::Condition::sticky);
   EXPECT_EQ(scene.ground->tilt, 0.0);
-  EXPECT_EQ(scene.numerics.as<mpm::Settings>().dx, 0.01);
+  EXPECT_EQ(scene.numerics.as<methods::mpm::Settings>().dx, 0.01);
   EXPECT_EQ(scene.gravity, 9.81);
 }
 
-TEST(Presets, Snow) {
+TEST(Presets, SnowMatchesTables321And431) {
   expect_snow(preset_snow("calibrated"), 0.5, 7e3, 0.2);  // Table 4.3.1
   expect_snow(preset_snow("reference"), 0.5, 5e3, 0.1);   // Table 3.2.1
 }
 
-TEST(Presets, LaboratoryIsThatOfTables231And411) {
+TEST(Presets, LaboratoryMatchesTables231And411) {
   for (const double tilt : {40.0, 50.0}) {
     const Scene scene = preset_scene(tilt == 40.0 ? "lab-40" : "lab-50");
     EXPECT_EQ(scene.dimension, 3);
@@ -50,7 +50,7 @@ TEST(Presets, LaboratoryIsThatOfTables231And411) {
   }
 }
 
-TEST(Presets, SensitivityIsThatOfTable321) {
+TEST(Presets, SensitivityMatchesTable321) {
   const Scene scene = preset_scene("sensitivity");
   EXPECT_EQ(scene.dimension, 3);
   EXPECT_EQ(scene.panel->height, 0.5);
@@ -63,7 +63,7 @@ TEST(Presets, SensitivityIsThatOfTable321) {
   expect_conditions(scene);
 }
 
-TEST(Presets, GeometryIsThatOfTable511) {
+TEST(Presets, GeometryMatchesTable511) {
   const Scene scene = preset_scene("geometry");
   EXPECT_EQ(scene.dimension, 2);
   EXPECT_EQ(scene.panel->height, 2.0);
@@ -76,7 +76,7 @@ TEST(Presets, GeometryIsThatOfTable511) {
   expect_conditions(scene);
 }
 
-TEST(Presets, SlabsAreAsLongAsAnotherPanel) {
+TEST(Presets, SlabsFollowTheLengthOfThePanel) {
   for (const auto& name : scene_preset_names()) {
     Scene scene = preset_scene(name);
     for (const double length : {0.2, 4.0}) {
@@ -97,7 +97,7 @@ TEST(Presets, AllAreListedValidAndStorable) {
   }
 }
 
-TEST(Presets, UnknownNamesAreAnswered) {
+TEST(Presets, UnknownNamesGetASuggestion) {
   try {
     preset_scene("lab40");
     FAIL();
@@ -110,4 +110,4 @@ TEST(Presets, UnknownNamesAreAnswered) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::scene

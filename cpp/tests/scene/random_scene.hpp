@@ -10,7 +10,7 @@
 #include "snowshed/methods/slide/settings.hpp"
 #include "snowshed/scene/describe.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 
 /// Visitor that gives every field a value its range allows.
 class Randomizer {
@@ -19,40 +19,42 @@ class Randomizer {
       : random_(random), dimension_(dimension), depth_(depth) {}
 
   void version(const char*, int, const char*) {}
-  void number(const char*, double& value, const char*, const Range& range, const char*) {
+  void number(const char*, double& value, const char*, const methods::Range& range, const char*) {
     value = draw(range);
   }
   void number_instead(const char*, std::optional<double>& value, const char*, const char*,
-                      const Range& range, const char*) {
+                      const methods::Range& range, const char*) {
     if (chance(0.5)) value = draw(range);
   }
-  void integer(const char*, int& value, const Range& range, const char*) {
+  void integer(const char*, int& value, const methods::Range& range, const char*) {
     value = std::uniform_int_distribution<int>(int(range.min), int(range.max))(random_);
   }
-  void integer(const char*, std::uint64_t& value, const Range&, const char*) { value = random_(); }
+  void integer(const char*, std::uint64_t& value, const methods::Range&, const char*) {
+    value = random_();
+  }
   void flag(const char*, bool& value, const char*) { value = chance(0.5); }
   void text(const char*, std::string& value, const char*) {
     value = "Name \"\\\n\t\x01 \xc3\xa9 \xf0\x9f\x8f\x94 / ~ " + std::to_string(random_());
   }
   void file(const char*, std::string& value, const char*) { value = "meshes/roof of 1.stl"; }
-  void choice(const char*, const Choice& value, const char*) {
+  void choice(const char*, const methods::Choice& value, const char*) {
     value.choose(random_() % value.names().size());
   }
-  void vector(const char*, Vec3& value, const char*, const Range& range, const char*) {
+  void vector(const char*, Vec3& value, const char*, const methods::Range& range, const char*) {
     value = {draw(range), dimension_ == 3 ? draw(range) : 0.0, draw(range)};
   }
   void direction(const char*, Vec3& value, const char*) {
-    vector("", value, "", between(0.1, 1.0), "");
+    vector("", value, "", methods::between(0.1, 1.0), "");
   }
   void axis(const char*, Vec3& value, const char* doc) {
     if (dimension_ == 3) direction("", value, doc);
   }
-  void spin(const char*, Vec3& value, const char*, const Range& range, const char*) {
+  void spin(const char*, Vec3& value, const char*, const methods::Range& range, const char*) {
     value = {0.0, draw(range), 0.0};
     if (dimension_ == 3) vector("", value, "", range, "");
   }
   template <class T>
-  void object(const char*, T& value, Need, const char*) {
+  void object(const char*, T& value, methods::Need, const char*) {
     fill(value);
   }
   template <class T>
@@ -60,7 +62,7 @@ class Randomizer {
     if (chance(0.7)) fill(value.emplace());
   }
   template <class T>
-  void list(const char*, std::vector<T>& items, const Range& count, const char*) {
+  void list(const char*, std::vector<T>& items, const methods::Range& count, const char*) {
     items.resize(std::size_t(std::min(count.max, count.min + double(random_() % 3))));
     for (auto& item : items) fill(item);
   }
@@ -73,19 +75,21 @@ class Randomizer {
   }
   bool variant(const char* name, const char*) { return type_ == name; }
   void end_variants() {}
-  void method(const char*, const char*, MethodChoice& settings, const char*, const char*) {
+  void method(const char*, const char*, methods::MethodChoice& settings, const char*, const char*) {
     fill(settings);
   }
-  void method_ahead(const char*, MethodChoice& settings) {
-    if (chance(0.2)) settings = mps::Settings();
+  void read_method_first(const char*, methods::MethodChoice& settings) {
+    if (chance(0.2)) settings = methods::mps::Settings();
     if (dimension_ != 3) return;
-    if (chance(0.3)) settings = slide::Settings();
-    if (chance(0.2)) settings = grains::Settings();
+    if (chance(0.3)) settings = methods::slide::Settings();
+    if (chance(0.2)) settings = methods::grains::Settings();
   }
-  bool shows(const MethodChoice& settings, Part part) { return settings.takes(part); }
-  void taken_by(Part) {}
-  void outline(const char*, Ring& ring, const char*) {
-    const double x = draw(between(0, 1e3)), y = draw(between(0, 1e3));
+  bool shows(const methods::MethodChoice& settings, methods::Part part) {
+    return settings.takes(part);
+  }
+  void only_for_methods_with(methods::Part) {}
+  void outline(const char*, geometry::Ring& ring, const char*) {
+    const double x = draw(methods::between(0, 1e3)), y = draw(methods::between(0, 1e3));
     ring = {{x, y}, {x + 30, y}, {x + 30, y + 20.5}, {x, y + 20}};
   }
   void alias(const char*, const char*) {}
@@ -98,7 +102,7 @@ class Randomizer {
     describe(deeper, value);
   }
   bool chance(double p) { return std::uniform_real_distribution<>()(random_) < p; }
-  double draw(const Range& range) {
+  double draw(const methods::Range& range) {
     const double low = std::max(range.min, -1e3), high = std::min(range.max, low + 1e4);
     double value = std::uniform_real_distribution<>(low, high)(random_);
     if (chance(0.1) && range.contains(1.0 / 3.0)) value = 1.0 / 3.0;
@@ -125,9 +129,9 @@ inline void mend_slide(Randomizer& randomizer, Scene& scene) {
   scene.terrain->max_thickness = 100;  // as thick as an area may be
   scene.events.count = 1;
   scene.output.energy = false;
-  slide::Settings& settings = scene.numerics.as<slide::Settings>();
+  methods::slide::Settings& settings = scene.numerics.as<methods::slide::Settings>();
   settings.explicit_friction = false;
-  if (settings.mode == slide::Mode::compatible) scene.terrain->thickness_file.clear();
+  if (settings.mode == methods::slide::Mode::compatible) scene.terrain->thickness_file.clear();
 }
 
 /// Turns a scene into a loading test of a sample, in stages that may follow each other.
@@ -142,27 +146,28 @@ inline void mend_grains(Randomizer& randomizer, Scene& scene) {
   scene.seeding = {};
   if (!scene.sample) describe(randomizer, scene.sample.emplace());
   scene.events.count = 1;
-  scene.numerics.as<grains::Settings>().bonded_plates = true;
-  scene.loading.insert(scene.loading.begin(), LoadingStage{});
-  for (LoadingStage& stage : scene.loading) {
+  scene.numerics.as<methods::grains::Settings>().bonded_plates = true;
+  scene.loading.insert(scene.loading.begin(), methods::LoadingStage{});
+  for (methods::LoadingStage& stage : scene.loading) {
     stage.strain = std::min(stage.strain, 0.1);
-    if (stage.kind == LoadingKind::penetrate) stage.kind = LoadingKind::shear;
-    if (stage.kind == LoadingKind::stretch || stage.kind == LoadingKind::hold) stage.stress = 0;
+    if (stage.kind == methods::LoadingKind::penetrate) stage.kind = methods::LoadingKind::shear;
+    if (stage.kind == methods::LoadingKind::stretch || stage.kind == methods::LoadingKind::hold)
+      stage.stress = 0;
   }
-  if (scene.cone) scene.loading.push_back({LoadingKind::penetrate, 0.5, 0.2, 0});
+  if (scene.cone) scene.loading.push_back({methods::LoadingKind::penetrate, 0.5, 0.2, 0});
 }
 
-/// Turns a scene into one of MPS, whose snow is that of the method's settings.
+/// Turns a scene into an MPS scene, whose snow is part of the method's settings.
 inline void mend_mps(Scene& scene) {
   scene.snow = {};
   scene.seeding = {};
-  scene.events.between = Between::carry;
+  scene.events.between = methods::Between::carry;
   for (auto& body : scene.bodies) body.snow.reset();
   if (scene.slab)
     for (auto& layer : scene.slab->layers) layer.snow.reset();
-  mps::Settings& settings = scene.numerics.as<mps::Settings>();
+  methods::mps::Settings& settings = scene.numerics.as<methods::mps::Settings>();
   settings.erosion = false;
-  settings.order = mps::Order::single_move;
+  settings.order = methods::mps::Order::single_move;
 }
 
 /// Returns a scene with random fields, which are then changed to obey the rules between fields.
@@ -176,15 +181,15 @@ inline Scene random_scene(std::uint64_t seed) {
   scene.domain.reset();
   scene.seeding.allow_sparse = true;
   scene.events.rest_time = std::min(scene.events.rest_time, scene.events.max_time);
-  if (!scene.numerics.is<grains::Settings>()) {
+  if (!scene.numerics.is<methods::grains::Settings>()) {
     scene.sample.reset();
     scene.cone.reset();
   }
-  if (scene.numerics.is<slide::Settings>()) {
+  if (scene.numerics.is<methods::slide::Settings>()) {
     mend_slide(randomizer, scene);
     return scene;
   }
-  if (scene.numerics.is<grains::Settings>()) {
+  if (scene.numerics.is<methods::grains::Settings>()) {
     mend_grains(randomizer, scene);
     return scene;
   }
@@ -201,16 +206,16 @@ inline Scene random_scene(std::uint64_t seed) {
       scene.slab->thickness = 0.1;
   }
   if (!scene.slab) describe(randomizer, scene.bodies.emplace_back());
-  if (scene.numerics.is<mps::Settings>()) {
+  if (scene.numerics.is<methods::mps::Settings>()) {
     mend_mps(scene);
   } else {
-    mpm::Settings& numerics = scene.numerics.as<mpm::Settings>();
-    numerics.scheme = mpm::Scheme::thesis;
-    if (numerics.transfer == mpm::Transfer::apic) numerics.damping_rate.reset();
-    if (numerics.transfer != mpm::Transfer::affine_flip || !numerics.damping_rate)
+    methods::mpm::Settings& numerics = scene.numerics.as<methods::mpm::Settings>();
+    numerics.scheme = methods::mpm::Scheme::thesis;
+    if (numerics.transfer == methods::mpm::Transfer::apic) numerics.damping_rate.reset();
+    if (numerics.transfer != methods::mpm::Transfer::affine_flip || !numerics.damping_rate)
       numerics.damping_length = 0;
     if (numerics.crack_band_length > 0) numerics.crack_band_length = 2 * numerics.dx;
-    if (numerics.damping_rate) numerics.flip_ratio = mpm::Settings{}.flip_ratio;
+    if (numerics.damping_rate) numerics.flip_ratio = methods::mpm::Settings{}.flip_ratio;
   }
   for (auto& body : scene.bodies) body.event = std::min(body.event, scene.events.count);
   for (auto& obstacle : scene.obstacles)
@@ -219,4 +224,4 @@ inline Scene random_scene(std::uint64_t seed) {
   return scene;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::scene

@@ -1,4 +1,4 @@
-// Every class of bad input gives one InputError, at the right path, that says what is allowed.
+// Every kind of invalid input gives one InputError, which names the path and what is allowed.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -9,10 +9,10 @@
 #include "snowshed/methods/mpm/settings.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 namespace {
 
-struct Bad {
+struct InvalidPart {
   const char* rest;  // text after {"snowshed": 2, "bodies": [...]
   const char* where;
   const char* message;  // all of it, after the path
@@ -31,19 +31,19 @@ void expect_error(const std::string& text, const std::string& where, const std::
   }
 }
 
-void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.rest; }
+void PrintTo(const InvalidPart& bad, std::ostream* out) { *out << bad.rest; }
 
-class SceneErrors : public testing::TestWithParam<Bad> {};
+class SceneErrors : public testing::TestWithParam<InvalidPart> {};
 
-TEST(SceneErrorsBase, TheGoodPartIsGood) { EXPECT_NO_THROW(parse_scene(good + "}")); }
+TEST(SceneErrorsBase, TheUnchangedSceneIsValid) { EXPECT_NO_THROW(parse_scene(good + "}")); }
 
-TEST_P(SceneErrors, AreReportedOnceWithPathAndCause) {
+TEST_P(SceneErrors, NamePathAndCause) {
   expect_error(good + GetParam().rest + "}", GetParam().where, GetParam().message);
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Range, SceneErrors,
-    testing::ValuesIn(std::vector<Bad>{
+    testing::ValuesIn(std::vector<InvalidPart>{
         {R"(, "snow": {"poissons_ratio": 0.5})", "/snow/poissons_ratio",
          "0.5 is outside the allowed range (0 <= value < 0.5)"},
         {R"(, "snow": {"density": 0})", "/snow/density",
@@ -124,7 +124,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     Type, SceneErrors,
-    testing::ValuesIn(std::vector<Bad>{
+    testing::ValuesIn(std::vector<InvalidPart>{
         {R"(, "snow": {"density": "heavy"})", "/snow/density",
          "\"heavy\" is not a number (0 < value <= 1000 kg/m3)"},
         {R"(, "snow": {"density": null})", "/snow/density",
@@ -155,7 +155,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     TooLarge, SceneErrors,
-    testing::ValuesIn(std::vector<Bad>{
+    testing::ValuesIn(std::vector<InvalidPart>{
         {R"(, "gravity": 1e999)", "/gravity", "1e999 is too large for a number"},
         {R"(, "obstacles": [{"name": "a"}, {"motion": {"start": -1e999}}])",
          "/obstacles/1/motion/start", "-1e999 is too large for a number"},
@@ -174,7 +174,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     Keys, SceneErrors,
-    testing::ValuesIn(std::vector<Bad>{
+    testing::ValuesIn(std::vector<InvalidPart>{
         {R"(, "snow": {"densty": 200})", "/snow/densty", "unknown key; did you mean \"density\"?"},
         {R"(, "ground": {"colour": 1})", "/ground/colour",
          "unknown key; allowed: \"tilt\", \"condition\", \"friction\""},
@@ -214,7 +214,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     Shape, SceneErrors,
-    testing::ValuesIn(std::vector<Bad>{
+    testing::ValuesIn(std::vector<InvalidPart>{
         {R"(, "obstacles": [{"shape": {}}])", "/obstacles/0/shape/type",
          "missing: a text is required"},
         {R"(, "obstacles": [{"shape": {"type": 1}}])", "/obstacles/0/shape/type",
@@ -253,7 +253,7 @@ INSTANTIATE_TEST_SUITE_P(
          "/obstacles/0/shape/axis",
          "unknown key; allowed: \"type\", \"shapes\", \"angle\", \"translate\""}}));
 
-TEST(SceneErrorsText, WholeDocument) {
+TEST(SceneErrorsText, TheDocumentIsAnObjectWithAVersion) {
   expect_error("[]", "/", "an array is not an object");
   expect_error("null", "/", "null is not an object");
   expect_error("{}", "/snowshed", "missing: the version 2 is required");
@@ -310,7 +310,7 @@ TEST(SceneErrorsText, DepthIsLimitedWithoutRecursion) {
   EXPECT_THROW(parse_scene(objects), InputError);
 }
 
-TEST(SceneErrorsText, ShapesNestSixteenDeep) {
+TEST(SceneErrorsText, ShapesMayNestSixteenDeep) {
   const auto nested = [](int depth) {
     std::string text = R"({"type": "sphere", "radius": 1})";
     for (int i = 1; i < depth; ++i) text = R"({"type": "union", "shapes": [)" + text + "]}";
@@ -329,7 +329,7 @@ TEST(SceneErrorsText, SizeIsLimited) {
   EXPECT_EQ(where_of(values + "]"), "/999999");
 }
 
-TEST(SceneErrorsText, AsManyShapesAsAreAllowedCanBeWrittenAndReadAgain) {
+TEST(SceneErrorsText, TheMaximumOfShapesCanBeWrittenAndRead) {
   const auto with_shapes = [](int each) {
     std::string text = good + R"(, "obstacles": [)";
     for (int i = 0; i < 1000; ++i) {
@@ -345,9 +345,9 @@ TEST(SceneErrorsText, AsManyShapesAsAreAllowedCanBeWrittenAndReadAgain) {
   expect_error(with_shapes(51), "/", "51001 shapes in all; at most 50000 are allowed");
 }
 
-TEST(SceneErrorsText, BlankLinesAreNoPartOfTheMessage) {
+TEST(SceneErrorsText, MessagesOmitBlankLines) {
   const auto message_for = [](const std::string& text) {
-    return message_of<InputError>([&] { parse_scene(text); });
+    return io::message_of<InputError>([&] { parse_scene(text); });
   };
   const std::string message = message_for("\n\t\r\n\n ?");
   EXPECT_EQ(message.substr(0, 26), "scene:4:2: not valid JSON:");
@@ -358,13 +358,13 @@ TEST(SceneErrorsText, BlankLinesAreNoPartOfTheMessage) {
 }
 
 TEST(SceneErrorsText, DamagedTextNeverCrashes) {
-  const std::string whole = write_scene(parse_scene(good + R"(, "ground": {}, "obstacles": [
+  const std::string valid_text = write_scene(parse_scene(good + R"(, "ground": {}, "obstacles": [
     {"shape": {"type": "transform", "shapes": [{"type": "mesh", "file": "a.stl"}]}, "motion": {}}],
     "domain": {"min": [-9, -9, -9], "max": [9, 9, 9]}})"));
   std::mt19937 random(1);
   int accepted = 0;
   for (int i = 0; i < 3000; ++i) {
-    std::string text = whole;
+    std::string text = valid_text;
     for (int damage = 0; damage < 1 + i % 3; ++damage) {
       const std::size_t at = random() % text.size();
       switch (random() % 4) {
@@ -393,7 +393,7 @@ TEST(SceneErrorsText, DamagedTextNeverCrashes) {
   EXPECT_LT(accepted, 2900);
 }
 
-TEST(SceneErrorsText, ScenesMadeInCodeAreHeldAgainstTheSameRanges) {
+TEST(SceneErrorsText, ScenesBuiltInCodeObeyTheSameRanges) {
   Scene scene = parse_scene(good + "}");
   const auto where = [&] {
     try {
@@ -414,14 +414,14 @@ TEST(SceneErrorsText, ScenesMadeInCodeAreHeldAgainstTheSameRanges) {
   scene.bodies[0].shape.type = "transform";
   EXPECT_EQ(where(), "/bodies/0/shape/shapes");
   scene.bodies[0].shape.type = "sphere";
-  scene.numerics.as<mpm::Settings>().basis = static_cast<mpm::Basis>(17);
+  scene.numerics.as<methods::mpm::Settings>().basis = static_cast<methods::mpm::Basis>(17);
   EXPECT_EQ(where(), "/numerics/basis");
-  scene.numerics.as<mpm::Settings>().basis = mpm::Basis::cubic;
+  scene.numerics.as<methods::mpm::Settings>().basis = methods::mpm::Basis::cubic;
   scene.dimension = 5;
   EXPECT_EQ(where(), "/dimension");
 }
 
-TEST(SceneErrorsText, ANulEndsNoScene) {
+TEST(SceneErrorsText, NulCharactersAreRefused) {
   const std::string text = good + "}";
   for (const std::string& rest : {std::string(1, '\0'), std::string("\0junk", 5)}) try {
       parse_scene(text + rest);
@@ -432,4 +432,4 @@ TEST(SceneErrorsText, ANulEndsNoScene) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::scene

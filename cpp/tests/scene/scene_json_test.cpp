@@ -10,13 +10,13 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/methods/mpm/settings.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 namespace {
 
-const char* const smallest = R"({"snowshed": 2, "bodies": [
+const char* const minimal_scene = R"({"snowshed": 2, "bodies": [
   {"shape": {"type": "box", "center": [1, 2, 3], "size": [0.1, 0.2, 0.3]}}]})";
 
-TEST(SceneJson, RandomScenesComeBackExactly) {
+TEST(SceneJson, RandomScenesRoundTripExactly) {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     const Scene scene = random_scene(seed);
     const std::string text = write_scene(scene);
@@ -26,16 +26,16 @@ TEST(SceneJson, RandomScenesComeBackExactly) {
   }
 }
 
-TEST(SceneJson, MissingKeysTakeTheMembersDefaults) {
+TEST(SceneJson, MissingKeysTakeDefaults) {
   Scene expected;
   BodySpec& body = expected.bodies.emplace_back();
   body.shape.type = "box";
   body.shape.center = {1, 2, 3};
   body.shape.size = {0.1, 0.2, 0.3};
-  EXPECT_TRUE(parse_scene(smallest) == expected);
+  EXPECT_TRUE(parse_scene(minimal_scene) == expected);
 }
 
-TEST(SceneJson, SnowOfAPartLeavesTheRestToTheScenes) {
+TEST(SceneJson, PartialSnowInheritsFromTheScenesSnow) {
   const Scene scene = parse_scene(R"({"snowshed": 2,
     "slab": {"layers": [{"thickness": 0.1}, {"thickness": 0.2, "event": 1, "snow": {"density": 90}}]},
     "bodies": [{"shape": {"type": "sphere", "radius": 1}, "snow": {"model": "elastic"}}],
@@ -44,9 +44,9 @@ TEST(SceneJson, SnowOfAPartLeavesTheRestToTheScenes) {
   ASSERT_EQ(scene.slab->layers.size(), 2u);
   EXPECT_FALSE(scene.slab->layers[0].snow);
   EXPECT_EQ(scene.slab->layers[0].event, 0);
-  Snow light = scene.snow, elastic = scene.snow;
+  material::Snow light = scene.snow, elastic = scene.snow;
   light.density = 90;
-  elastic.model = SnowModel::elastic;
+  elastic.model = material::SnowModel::elastic;
   EXPECT_EQ(light.cohesion, 0.3);
   EXPECT_TRUE(scene.slab->layers[1] == (Layer{0.2, light, 1}));
   EXPECT_TRUE(scene.bodies[0].snow == elastic);
@@ -83,29 +83,33 @@ TEST(SceneJson, EveryFieldIsRead) {
                "energy": true, "checkpoint_interval": 30}})");
   EXPECT_EQ(scene.title, "all");
   EXPECT_EQ(scene.gravity, 1.62);
-  EXPECT_TRUE(scene.snow == (Snow{SnowModel::elastic, 300, 2e6, 0.2, 0.6, 8000, 0.3, 1}));
-  EXPECT_TRUE(*scene.panel == (Panel{0.5, 2, 1.5, 35, 0.04, Condition::separate, 0.1}));
+  EXPECT_TRUE(scene.snow ==
+              (material::Snow{material::SnowModel::elastic, 300, 2e6, 0.2, 0.6, 8000, 0.3, 1}));
+  EXPECT_TRUE(*scene.panel == (Panel{0.5, 2, 1.5, 35, 0.04, methods::Condition::separate, 0.1}));
   EXPECT_TRUE(*scene.slab == (Slab{0.05, 1.5, 1}));
-  EXPECT_TRUE(*scene.ground == (Ground{-5, Condition::slip, 0.4}));
+  EXPECT_TRUE(*scene.ground == (Ground{-5, methods::Condition::slip, 0.4}));
   EXPECT_TRUE(*scene.domain == (Domain{Vec3(-5, -4, -3), Vec3(6, 5, 4)}));
-  EXPECT_TRUE(scene.seeding == (Seeding{3, SeedPattern::regular, 18446744073709551615u, true}));
+  EXPECT_TRUE(scene.seeding ==
+              (methods::Seeding{3, sampling::SeedPattern::regular, 18446744073709551615u, true}));
   EXPECT_TRUE(
-      scene.numerics.as<mpm::Settings>() ==
-      (mpm::Settings{mpm::Scheme::thesis, 0.02, mpm::Precision::float64, mpm::Transfer::apic, 0.5,
-                     std::nullopt, 0, 0.03, 1e-4, mpm::ContactRule::touch, 0.7, mpm::Fields::events,
-                     0.5, mpm::Basis::cubic, 0.3, 0.1, 0.4, 0.7, 3}));
-  EXPECT_TRUE(scene.events == (Events{4, Between::reseed, 3, 0.1, 0.2}));
-  EXPECT_TRUE(scene.output == (Output{0.25, false, 0.5, true, 30}));
+      scene.numerics.as<methods::mpm::Settings>() ==
+      (methods::mpm::Settings{methods::mpm::Scheme::thesis, 0.02, methods::mpm::Precision::float64,
+                              methods::mpm::Transfer::apic, 0.5, std::nullopt, 0, 0.03, 1e-4,
+                              methods::mpm::ContactRule::touch, 0.7, methods::mpm::Fields::events,
+                              0.5, methods::mpm::Basis::cubic, 0.3, 0.1, 0.4, 0.7, 3}));
+  EXPECT_TRUE(scene.events == (methods::Events{4, methods::Between::reseed, 3, 0.1, 0.2}));
+  EXPECT_TRUE(scene.output == (methods::Output{0.25, false, 0.5, true, 30}));
 
   ASSERT_EQ(scene.obstacles.size(), 1u);
   const ObstacleSpec& post = scene.obstacles[0];
   EXPECT_EQ(post.name, "post");
-  EXPECT_EQ(post.condition, Condition::sticky);
+  EXPECT_EQ(post.condition, methods::Condition::sticky);
   EXPECT_EQ(post.friction, 0.6);
   EXPECT_EQ(post.shape.from, Vec3(1, 2, 0));
   EXPECT_EQ(post.shape.to, Vec3(1, 2, 3));
   EXPECT_EQ(post.shape.radius, 0.1);
-  EXPECT_TRUE(*post.motion == (MotionSpec{Vec3(1, 2, 3), Vec3(4, 5, 6), Vec3(7, 8, 9), 0.5, 1.5}));
+  EXPECT_TRUE(*post.motion ==
+              (geometry::MotionSpec{Vec3(1, 2, 3), Vec3(4, 5, 6), Vec3(7, 8, 9), 0.5, 1.5}));
 
   ASSERT_EQ(scene.bodies.size(), 1u);
   const BodySpec& body = scene.bodies[0];
@@ -117,7 +121,7 @@ TEST(SceneJson, EveryFieldIsRead) {
   EXPECT_EQ(body.shape.shapes.at(0).center, Vec3(1, 0, 0));
 }
 
-TEST(SceneJson, VectorsOfAPlaneSceneHaveTwoEntries) {
+TEST(SceneJson, VectorsInPlaneScenesHaveTwoEntries) {
   const Scene scene = parse_scene(R"({"snowshed": 2, "dimension": 2,
     "obstacles": [{"shape": {"type": "plane", "center": [1, 2], "normal": [3, 4]},
                    "motion": {"angular_velocity": 5}}],
@@ -134,15 +138,15 @@ TEST(SceneJson, OrderOfKeysDoesNotMatter) {
   EXPECT_EQ(scene.bodies[0].shape.size, Vec3(1, 0, 2));
 }
 
-TEST(SceneJson, WholeNumbersMayCarryAPoint) {
+TEST(SceneJson, IntegersMayHaveADecimalPoint) {
   const Scene scene = parse_scene(R"({"snowshed": 2, "dimension": 2.0, "seeding": {"seed": 5.0},
     "bodies": [{"shape": {"type": "sphere", "radius": 1}}]})");
   EXPECT_EQ(scene.dimension, 2);
   EXPECT_EQ(scene.seeding.seed, 5u);
 }
 
-TEST(SceneJson, OnlyTheKeysOfAShapesTypeAreWritten) {
-  const auto json = nlohmann::json::parse(write_scene(parse_scene(smallest)));
+TEST(SceneJson, OnlyKeysOfTheShapesTypeAreWritten) {
+  const auto json = nlohmann::json::parse(write_scene(parse_scene(minimal_scene)));
   const auto shape = json.at("bodies").at(0).at("shape");
   EXPECT_EQ(shape, nlohmann::json::parse(
                        R"({"type": "box", "center": [1.0, 2.0, 3.0], "size": [0.1, 0.2, 0.3]})"));
@@ -152,7 +156,7 @@ TEST(SceneJson, OnlyTheKeysOfAShapesTypeAreWritten) {
 }
 
 TEST(SceneJson, NumbersSurviveToTheLastBit) {
-  Scene scene = parse_scene(smallest);
+  Scene scene = parse_scene(minimal_scene);
   for (const double number : {0.1, 1.0 / 3.0, 5e-324, 2.2250738585072014e-308, 999.99999999999989,
                               0.1 + 0.2, std::nextafter(1.0, 2.0)}) {
     scene.gravity = number;
@@ -162,11 +166,11 @@ TEST(SceneJson, NumbersSurviveToTheLastBit) {
   EXPECT_TRUE(std::signbit(parse_scene(write_scene(scene)).bodies[0].shape.center.x()));
 }
 
-TEST(SceneJson, AnInvalidSceneIsNotWritten) {
-  Scene scene = parse_scene(smallest);
+TEST(SceneJson, InvalidScenesAreNotWritten) {
+  Scene scene = parse_scene(minimal_scene);
   scene.snow.density = std::nan("");
   EXPECT_THROW(write_scene(scene), InputError);
-  scene = parse_scene(smallest);
+  scene = parse_scene(minimal_scene);
   scene.title = "\xff";
   EXPECT_THROW(write_scene(scene), InputError);
 }
@@ -202,11 +206,11 @@ class SceneFile : public testing::Test {
       (std::string("snowshed_") + testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
-TEST_F(SceneFile, LoadsWhatParses) {
-  EXPECT_TRUE(load_scene(save(smallest)) == parse_scene(smallest));
+TEST_F(SceneFile, LoadsTheParsedScene) {
+  EXPECT_TRUE(load_scene(save(minimal_scene)) == parse_scene(minimal_scene));
 }
 
-TEST_F(SceneFile, MeshesLieBesideTheScene) {
+TEST_F(SceneFile, PathsAreRelativeToTheScene) {
   const Scene scene = load_scene(save(R"({"snowshed": 2,
     "bodies": [{"shape": {"type": "union", "shapes": [{"type": "mesh", "file": "a/b.stl"}]}}],
     "obstacles": [{"shape": {"type": "grid", "file": "/abs.npy", "spacing": 1}}]})"));
@@ -239,7 +243,7 @@ TEST_F(SceneFile, SyntaxErrorsNameFileLineAndColumn) {
   }
 }
 
-TEST_F(SceneFile, WhatCannotBeReadIsNamed) {
+TEST_F(SceneFile, UnreadablePathsAreNamed) {
   for (const auto& path : {folder_ / "absent.json", folder_}) {
     try {
       load_scene(path);
@@ -250,27 +254,27 @@ TEST_F(SceneFile, WhatCannotBeReadIsNamed) {
   }
 }
 
-TEST(SceneJson, TheMethodIsAChoiceAndTheDefaultGoesWithoutSaying) {
+TEST(SceneJson, TheDefaultMethodIsNotWritten) {
   const std::string base =
       R"({"snowshed": 2, "bodies": [{"shape": {"type": "sphere", "radius": 1}}])";
   const Scene scene = parse_scene(base + R"(, "numerics": {"dx": 0.02}, "method": "mpm"})");
-  EXPECT_EQ(scene.numerics.as<mpm::Settings>().dx, 0.02);
+  EXPECT_EQ(scene.numerics.as<methods::mpm::Settings>().dx, 0.02);
   EXPECT_EQ(write_scene(scene), write_scene(parse_scene(base + R"(, "numerics": {"dx": 0.02}})")));
   EXPECT_FALSE(nlohmann::json::parse(write_scene(scene)).contains("method"));
 }
 
 // `slip` of version 1 is `separate` now. The meaning of a scene of version 1 must not change.
-TEST(SceneJson, SlipOfVersion1IsSeparate) {
+TEST(SceneJson, SlipInVersion1IsReadAsSeparate) {
   const std::string rest = R"(, "ground": {"condition": "slip"}, "slab": {"thickness": 0.1},
     "panel": {"height": 1, "length": 2, "width": 3, "condition": "slip"},
     "obstacles": [{"shape": {"type": "plane"}, "condition": "sticky"},
                   {"shape": {"type": "plane"}, "condition": "slip"}]})";
   std::vector<std::string> notes;
   const Scene old = parse_scene("{\"snowshed\": 1" + rest, "scene", &notes);
-  EXPECT_EQ(old.panel->condition, Condition::separate);
-  EXPECT_EQ(old.ground->condition, Condition::separate);
-  EXPECT_EQ(old.obstacles[0].condition, Condition::sticky);
-  EXPECT_EQ(old.obstacles[1].condition, Condition::separate);
+  EXPECT_EQ(old.panel->condition, methods::Condition::separate);
+  EXPECT_EQ(old.ground->condition, methods::Condition::separate);
+  EXPECT_EQ(old.obstacles[0].condition, methods::Condition::sticky);
+  EXPECT_EQ(old.obstacles[1].condition, methods::Condition::separate);
   ASSERT_EQ(notes.size(), 3u);
   EXPECT_EQ(
       notes[0],
@@ -281,23 +285,23 @@ TEST(SceneJson, SlipOfVersion1IsSeparate) {
 
   notes.clear();
   const Scene present = parse_scene("{\"snowshed\": 2" + rest, "scene", &notes);
-  EXPECT_EQ(present.panel->condition, Condition::slip);
-  EXPECT_EQ(present.obstacles[1].condition, Condition::slip);
+  EXPECT_EQ(present.panel->condition, methods::Condition::slip);
+  EXPECT_EQ(present.obstacles[1].condition, methods::Condition::slip);
   EXPECT_TRUE(notes.empty());
 }
 
-TEST(SceneJson, ASchemeSetsItsMechanismsUnlessTheyAreGiven) {
+TEST(SceneJson, ASchemeSetsMechanismsThatAreNotGiven) {
   const auto numerics = [](const std::string& given) {
     return parse_scene(
                R"({"snowshed": 2, "bodies": [{"shape": {"type": "sphere", "radius": 1}}],
                            "numerics": {)" +
                given + "}}")
-        .numerics.as<mpm::Settings>();
+        .numerics.as<methods::mpm::Settings>();
   };
-  mpm::Settings expected;
-  expected.adopt(mpm::Scheme::objective);
+  methods::mpm::Settings expected;
+  expected.adopt(methods::mpm::Scheme::objective);
   EXPECT_TRUE(numerics(R"("scheme": "objective")") == expected);
-  EXPECT_EQ(expected.transfer, mpm::Transfer::affine_flip);
+  EXPECT_EQ(expected.transfer, methods::mpm::Transfer::affine_flip);
   EXPECT_EQ(*expected.damping_rate, 380.0);
   expected.damping_rate = 190;
   expected.crack_band_length = 0.02;
@@ -305,32 +309,32 @@ TEST(SceneJson, ASchemeSetsItsMechanismsUnlessTheyAreGiven) {
   const std::string given =
       R"("crack_band_length": 0.02, "dx": 0.02, "damping_rate": 190, "scheme": "objective")";
   EXPECT_TRUE(numerics(given) == expected);
-  EXPECT_TRUE(numerics(R"("scheme": "thesis")") == mpm::Settings{});
+  EXPECT_TRUE(numerics(R"("scheme": "thesis")") == methods::mpm::Settings{});
   expected = {};
-  expected.contact = mpm::ContactRule::touch;  // a mechanism alone
+  expected.contact = methods::mpm::ContactRule::touch;  // a mechanism alone
   EXPECT_TRUE(numerics(R"("contact": "touch")") == expected);
 }
 
-TEST(SceneJson, ADampingRateTakesThePlaceOfTheFlipRatio) {
+TEST(SceneJson, ADampingRateReplacesTheFlipRatio) {
   const Scene scene = parse_scene(R"({"snowshed": 2, "numerics": {"damping_rate": 50},
     "bodies": [{"shape": {"type": "sphere", "radius": 1}}]})");
-  EXPECT_EQ(scene.numerics.as<mpm::Settings>().damping_rate, 50.0);
+  EXPECT_EQ(scene.numerics.as<methods::mpm::Settings>().damping_rate, 50.0);
   const auto written = nlohmann::json::parse(write_scene(scene));
   EXPECT_EQ(written["numerics"]["damping_rate"], 50.0);
   EXPECT_FALSE(written["numerics"].contains("flip_ratio"));
   EXPECT_TRUE(parse_scene(write_scene(scene)) == scene);
 }
 
-TEST(SceneJson, OtherNamesOfAKeyAreRead) {
+TEST(SceneJson, AliasesOfKeysAreRead) {
   const Scene scene = parse_scene(R"({"snowshed": 2, "slab": {"thickness": 0.1},
     "panel": {"lower_edge_height": 1, "slant_height": 2, "width": 3, "surface_tilt": 45},
     "numerics": {"step_factor": 0.5}})");
-  EXPECT_TRUE(*scene.panel == (Panel{1, 2, 3, 45, 0, Condition::separate, 0.3}));
-  EXPECT_EQ(scene.numerics.as<mpm::Settings>().courant_factor, 0.5);
+  EXPECT_TRUE(*scene.panel == (Panel{1, 2, 3, 45, 0, methods::Condition::separate, 0.3}));
+  EXPECT_EQ(scene.numerics.as<methods::mpm::Settings>().courant_factor, 0.5);
   const auto written = nlohmann::json::parse(write_scene(scene));
   EXPECT_EQ(written["numerics"]["courant_factor"], 0.5);
   EXPECT_FALSE(written["numerics"].contains("step_factor"));
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::scene

@@ -8,7 +8,7 @@
 #include "scene/random_scene.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 namespace {
 
 using nlohmann::json;
@@ -61,7 +61,7 @@ void collect_fields(const json& value, std::string path, std::set<std::string>& 
   }
 }
 
-TEST(SceneSchema, HasEveryFieldThatScenesHaveAndNoOther) {
+TEST(SceneSchema, HasExactlyTheFieldsOfScenes) {
   std::set<std::string> written;
   for (std::uint64_t seed = 1; seed < 200; seed += 2)  // 3D
     collect_fields(json::parse(write_scene(random_scene(seed))), "", written);
@@ -74,7 +74,7 @@ TEST(SceneSchema, HasEveryFieldThatScenesHaveAndNoOther) {
   EXPECT_EQ(described_fields(), written);
 }
 
-TEST(SceneSchema, EveryObjectIsClosedAndEveryFieldExplained) {
+TEST(SceneSchema, ObjectsAreClosedAndFieldsAreDescribed) {
   int objects = 0;
   for_each_object([&](const json& object, const std::string& path) {
     ++objects;
@@ -93,7 +93,7 @@ TEST(SceneSchema, EveryObjectIsClosedAndEveryFieldExplained) {
   EXPECT_EQ(objects, 14 + 2 + 12 + 7 + 1 + 4 + 1);
 }
 
-TEST(SceneSchema, CarriesUnitsLimitsDefaultsAndChoices) {
+TEST(SceneSchema, ContainsUnitsLimitsDefaultsAndChoices) {
   const json& properties = schema()["properties"];
   const json& numerics = properties["numerics"]["anyOf"][0]["properties"];
   const json density = {{"description", "Initial bulk density"},
@@ -137,4 +137,4 @@ TEST(SceneSchema, TheCheckedInCopyIsUpToDate) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::scene

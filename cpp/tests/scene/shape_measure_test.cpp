@@ -6,7 +6,7 @@
 
 #include "snowshed/core/angles.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 namespace {
 
 ShapeSpec make(const char* type) {
@@ -37,7 +37,7 @@ void expect_bounds(const ShapeSpec& shape, const Vec3& min, const Vec3& max) {
   EXPECT_LT((bounds->max() - max).norm(), 1e-12) << bounds->max().transpose();
 }
 
-TEST(ShapeMeasure, Solids) {
+TEST(ShapeMeasure, SolidsHaveTheirBoundsAndVolumes) {
   expect_bounds(box({1, 2, 3}, {2, 4, 6}), {0, 0, 0}, {2, 4, 6});
   EXPECT_DOUBLE_EQ(*shape_volume(box({1, 2, 3}, {2, 4, 6}), 3), 48);
   EXPECT_DOUBLE_EQ(*shape_volume(box({1, 2, 3}, {2, 0, 6}), 2), 12);
@@ -77,7 +77,7 @@ TEST(ShapeMeasure, APlateHangsBelowItsFace) {
   EXPECT_DOUBLE_EQ(*shape_volume(plate, 2), 4);
 }
 
-TEST(ShapeMeasure, ATransformRotatesThenMoves) {
+TEST(ShapeMeasure, ATransformRotatesThenTranslates) {
   ShapeSpec turned = make("transform");
   turned.shapes = {box({1, 0, 0}, {2, 4, 6})};
   turned.angle = 90;  // about +y: x becomes -z, z becomes x
@@ -96,7 +96,7 @@ TEST(ShapeMeasure, CombinationsAreBoundedFromAbove) {
   EXPECT_DOUBLE_EQ(*shape_volume(both, 3), 8);
 }
 
-TEST(ShapeMeasure, UnboundedStaysUnbounded) {
+TEST(ShapeMeasure, UnboundedShapesStayUnbounded) {
   ShapeSpec turned = make("transform");
   turned.shapes = {make("plane")};
   turned.angle = 30;
@@ -115,4 +115,4 @@ TEST(ShapeMeasure, FilesAreNotOpened) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::scene

@@ -1,4 +1,4 @@
-// Rules between several fields: each is broken by one change to a scene that keeps them all.
+// Rules between several fields: each is broken by one change to a valid scene.
 #include "snowshed/scene/validation.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
-namespace snowshed {
+namespace snowshed::scene {
 namespace {
 
 Scene good_scene() {
@@ -24,19 +24,19 @@ Scene good_scene() {
     "domain": {"min": [-1, -2, 0], "max": [1, 2, 3]}})");
 }
 
-struct Break {
+struct Violation {
   const char* where;
   const char* part_of_message;
   std::function<void(Scene&)> change;
 };
 
-void PrintTo(const Break& rule, std::ostream* out) { *out << rule.where; }
+void PrintTo(const Violation& rule, std::ostream* out) { *out << rule.where; }
 
-class SceneRules : public testing::TestWithParam<Break> {};
+class SceneRules : public testing::TestWithParam<Violation> {};
 
-TEST(SceneRulesBase, TheGoodSceneIsGood) { EXPECT_NO_THROW(validate(good_scene())); }
+TEST(SceneRulesBase, TheUnchangedSceneIsValid) { EXPECT_NO_THROW(validate(good_scene())); }
 
-TEST_P(SceneRules, AreKept) {
+TEST_P(SceneRules, AreEnforced) {
   Scene scene = good_scene();
   GetParam().change(scene);
   try {
@@ -51,7 +51,7 @@ TEST_P(SceneRules, AreKept) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, SceneRules,
-    testing::ValuesIn(std::vector<Break>{
+    testing::ValuesIn(std::vector<Violation>{
         {"/slab", "there is no /panel", [](Scene& s) { s.panel.reset(); }},
         {"/slab/length", "2.5 m exceeds that of the panel (/panel/length = 2 m)",
          [](Scene& s) { s.slab->length = 2.5; }},
@@ -113,7 +113,7 @@ INSTANTIATE_TEST_SUITE_P(
            s.bodies.clear();
          }}}));
 
-TEST(SceneRulesBase, WhatTheyAllow) {
+TEST(SceneRulesBase, AllowedValuesAreAccepted) {
   Scene scene = good_scene();
   scene.seeding.particles_per_voxel = 6;
   EXPECT_NO_THROW(validate(scene));
@@ -123,11 +123,11 @@ TEST(SceneRulesBase, WhatTheyAllow) {
   scene.bodies[0].event = 0;
   scene.slab->length = scene.panel->length;
   scene.slab->width = scene.panel->width;
-  scene.snow.model = SnowModel::elastic;
+  scene.snow.model = material::SnowModel::elastic;
   EXPECT_NO_THROW(validate(scene));
 }
 
-TEST(SceneRulesBase, PlaneScenesHaveNoWidth) {
+TEST(SceneRulesBase, PlaneScenesNeedNoWidth) {
   Scene scene = good_scene();
   scene.dimension = 2;
   scene.panel->width = 0;
@@ -139,9 +139,9 @@ TEST(SceneRulesBase, PlaneScenesHaveNoWidth) {
   EXPECT_THROW(validate(scene), InputError);
 }
 
-TEST(SceneParts, AreRefusedByAMethodThatDoesNotTakeThem) {
+TEST(SceneParts, AreRefusedByMethodsThatLackThem) {
   const Scene scene = good_scene();
-  const auto refused = [&](const Parts& parts) {
+  const auto refused = [&](const methods::Parts& parts) {
     try {
       check_parts(scene, {"slide", "", parts});
     } catch (const InputError& error) {
@@ -150,22 +150,28 @@ TEST(SceneParts, AreRefusedByAMethodThatDoesNotTakeThem) {
     return std::string("nothing");
   };
   const std::string end = R"(: the method "slide" takes no such part)";
-  EXPECT_EQ(
-      refused({Part::panel, Part::slab, Part::ground, Part::obstacles, Part::bodies, Part::domain}),
-      "nothing");
-  EXPECT_EQ(refused({Part::slab, Part::ground, Part::obstacles, Part::bodies, Part::domain}),
+  EXPECT_EQ(refused({methods::Part::panel, methods::Part::slab, methods::Part::ground,
+                     methods::Part::obstacles, methods::Part::bodies, methods::Part::domain}),
+            "nothing");
+  EXPECT_EQ(refused({methods::Part::slab, methods::Part::ground, methods::Part::obstacles,
+                     methods::Part::bodies, methods::Part::domain}),
             "/panel" + end);
-  EXPECT_EQ(refused({Part::panel, Part::ground, Part::obstacles, Part::bodies, Part::domain}),
+  EXPECT_EQ(refused({methods::Part::panel, methods::Part::ground, methods::Part::obstacles,
+                     methods::Part::bodies, methods::Part::domain}),
             "/slab" + end);
-  EXPECT_EQ(refused({Part::panel, Part::slab, Part::obstacles, Part::bodies, Part::domain}),
+  EXPECT_EQ(refused({methods::Part::panel, methods::Part::slab, methods::Part::obstacles,
+                     methods::Part::bodies, methods::Part::domain}),
             "/ground" + end);
-  EXPECT_EQ(refused({Part::panel, Part::slab, Part::ground, Part::bodies, Part::domain}),
+  EXPECT_EQ(refused({methods::Part::panel, methods::Part::slab, methods::Part::ground,
+                     methods::Part::bodies, methods::Part::domain}),
             "/obstacles" + end);
-  EXPECT_EQ(refused({Part::panel, Part::slab, Part::ground, Part::obstacles, Part::domain}),
+  EXPECT_EQ(refused({methods::Part::panel, methods::Part::slab, methods::Part::ground,
+                     methods::Part::obstacles, methods::Part::domain}),
             "/bodies" + end);
-  EXPECT_EQ(refused({Part::panel, Part::slab, Part::ground, Part::obstacles, Part::bodies}),
+  EXPECT_EQ(refused({methods::Part::panel, methods::Part::slab, methods::Part::ground,
+                     methods::Part::obstacles, methods::Part::bodies}),
             "/domain" + end);
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::scene

@@ -29,13 +29,14 @@ openvdb::FloatGrid::Ptr fog() {
   return named(grid, "mist");
 }
 
-TEST(ReadVdb, LevelSetIsADistanceEverywhere) {
+TEST(ReadVdb, LevelSetsGiveDistancesEverywhere) {
   const TempDir folder;
   const std::string path = write(folder, {sphere()});
   for (const char* name : {"", "ball"}) {
-    const Shape ball = make_sampled_grid(read_vdb({path, name}), "ball");
+    const geometry::Shape ball =
+        geometry::make_sampled_grid(geometry::read_vdb({path, name}), "ball");
     // With ten voxels along the radius, linear interpolation loses half a per cent.
-    EXPECT_NEAR(measure(*ball, 3, voxel) / (4 * pi / 3 * std::pow(radius, 3)), 1, 0.01);
+    EXPECT_NEAR(sampling::measure(*ball, 3, voxel) / (4 * pi / 3 * std::pow(radius, 3)), 1, 0.01);
     // From the centre, ten voxels deep, to points outside the stored box.
     for (const double fraction : {0.01, 0.3, 0.6, 0.95, 1.0, 1.05, 1.2}) {
       const Vec3 x = center + fraction * radius * Vec3(1, 2, -2) / 3;
@@ -45,12 +46,12 @@ TEST(ReadVdb, LevelSetIsADistanceEverywhere) {
   }
 }
 
-TEST(ReadVdb, HalfPrecisionAndScale) {
+TEST(ReadVdb, ReadsHalfPrecisionAndScales) {
   const TempDir folder;
   auto grid = sphere();
   grid->setSaveFloatAsHalf(true);
-  const VdbSource centimetres{write(folder, {grid}), "ball", 0.5, 0.01};
-  const Shape ball = make_sampled_grid(read_vdb(centimetres), "ball");
+  const geometry::VdbSource centimetres{write(folder, {grid}), "ball", 0.5, 0.01};
+  const geometry::Shape ball = make_sampled_grid(read_vdb(centimetres), "ball");
   EXPECT_NEAR(ball->distance(0.01 * (center + Vec3(0.6, 0, 0))), 0.001, 2e-5);
 }
 
@@ -59,36 +60,38 @@ TEST(ReadVdb, FogVolumeIsSnowAboveTheThreshold) {
   const std::string path = write(folder, {fog()});
   // The value grows from 0 to 1 over three voxels.
   for (const double threshold : {0.2, 0.5, 0.8}) {
-    const Shape ball = make_sampled_grid(read_vdb({path, "mist", threshold}), "mist");
+    const geometry::Shape ball =
+        geometry::make_sampled_grid(geometry::read_vdb({path, "mist", threshold}), "mist");
     const double expected = radius - 3 * voxel * threshold;
-    const double volume = measure(*ball, 3, voxel);
+    const double volume = sampling::measure(*ball, 3, voxel);
     EXPECT_NEAR(std::cbrt(volume * 3 / 4 / pi), expected, 0.25 * voxel) << threshold;
     EXPECT_NEAR(ball->distance(center + Vec3(0, 0, 1)), 1 - expected, 0.25 * voxel);
   }
 }
 
-TEST(ReadVdb, AShapeOfAScene) {
+TEST(ReadVdb, BuildsAShapeOfAScene) {
   const TempDir folder;
   write(folder, {sphere(), fog()});
-  ShapeSpec spec;
+  scene::ShapeSpec spec;
   spec.type = "vdb";
   spec.file = "test.vdb";
   spec.grid = "ball";
-  EXPECT_NEAR(build_shape(spec, 3, "/x", folder.path())->distance(center), -radius, 0.1 * voxel);
+  EXPECT_NEAR(scene::build_shape(spec, 3, "/x", folder.path())->distance(center), -radius,
+              0.1 * voxel);
   // In 2D the shape is its section with the plane y = 0, which is 0.2 m from the centre.
   const double section = std::sqrt(radius * radius - 0.04);
-  EXPECT_NEAR(measure(*build_shape(spec, 2, "/x", folder.path()), 2, voxel), pi * section * section,
-              0.02);
+  EXPECT_NEAR(sampling::measure(*scene::build_shape(spec, 2, "/x", folder.path()), 2, voxel),
+              pi * section * section, 0.02);
 }
 
-TEST(ReadVdb, RefusesWhatIsNoUniformScalarGrid) {
+TEST(ReadVdb, RefusesOtherThanUniformScalarGrids) {
   const TempDir folder;
   openvdb::initialize();
   const auto refused = [&](const openvdb::GridBase::Ptr& grid, const std::string& why,
                            const std::string& name = "") {
     const std::string path = write(folder, {grid});
-    expect_input_error([&] { read_vdb({path, name}); }, path);
-    expect_input_error([&] { read_vdb({path, name}); }, why);
+    expect_input_error([&] { geometry::read_vdb({path, name}); }, path);
+    expect_input_error([&] { geometry::read_vdb({path, name}); }, why);
   };
   const auto vectors = openvdb::Vec3SGrid::create();
   vectors->setName("velocity");
@@ -110,43 +113,46 @@ TEST(ReadVdb, RefusesWhatIsNoUniformScalarGrid) {
   grid->transform().postScale(100.0);  // distances and positions in different units
   refused(grid, "background");
   refused(openvdb::createLevelSet<openvdb::FloatGrid>(0.1, 3), "no active voxels");
-  const std::string two = write(folder, {sphere(), fog()});
-  expect_input_error([&] { read_vdb({two, ""}); }, "more than one grid of floats; give the name");
+  const std::string pair = write(folder, {sphere(), fog()});
+  expect_input_error([&] { geometry::read_vdb({pair, ""}); },
+                     "more than one grid of floats; give the name");
 }
 
-TEST(ReadVdb, RefusesHugeExtentsAtOnce) {
+TEST(ReadVdb, RefusesHugeExtents) {
   const TempDir folder;
   auto grid = sphere();
   grid->tree().setValueOn({2'000'000'000, 0, 0}, 0.1f);
   grid->tree().setValueOn({-2'000'000'000, 0, 2'000'000'000}, 0.1f);
   const std::string far = write(folder, {grid});
-  expect_input_error([&] { read_vdb({far, "ball"}); }, "at most 5e+07 are read");
+  expect_input_error([&] { geometry::read_vdb({far, "ball"}); }, "at most 5e+07 are read");
   // A single active tile covers a large part of index space.
   grid = openvdb::FloatGrid::create(0.0f);
   grid->setGridClass(openvdb::GRID_FOG_VOLUME);
   grid->tree().root().addTile(openvdb::Coord(0), 1.0f, true);
   const std::string wide = write(folder, {grid});
-  expect_input_error([&] { read_vdb({wide, ""}); }, "at most 5e+07 are read");
+  expect_input_error([&] { geometry::read_vdb({wide, ""}); }, "at most 5e+07 are read");
 }
 
-TEST(ReadVdb, RefusesValuesThatAreNoNumbers) {
+TEST(ReadVdb, RefusesNonFiniteValues) {
   const TempDir folder;
   for (const float bad :
        {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
     auto grid = sphere();
     for (auto value = grid->beginValueOn(); value; ++value) value.setValue(bad);
     const std::string path = write(folder, {grid});
-    expect_input_error([&] { read_vdb({path, "ball"}); }, path + ": grid 'ball': the value at");
+    expect_input_error([&] { geometry::read_vdb({path, "ball"}); },
+                       path + ": grid 'ball': the value at");
     const std::string empty = write(folder, {openvdb::createLevelSet<openvdb::FloatGrid>(bad, 3)});
-    expect_input_error([&] { read_vdb({empty, ""}); }, empty);
+    expect_input_error([&] { geometry::read_vdb({empty, ""}); }, empty);
   }
 }
 
-TEST(ReadVdb, ValuesTooSteepForTheBandAreRebuilt) {
+TEST(ReadVdb, TooSteepValuesAreRebuilt) {
   const TempDir folder;
   auto grid = sphere();
   for (auto value = grid->beginValueOn(); value; ++value) value.setValue(100.0f * *value);
-  const Shape ball = make_sampled_grid(read_vdb({write(folder, {grid}), ""}), "ball");
+  const geometry::Shape ball =
+      geometry::make_sampled_grid(geometry::read_vdb({write(folder, {grid}), ""}), "ball");
   for (const double fraction : {0.5, 0.9, 1.1, 1.5})
     EXPECT_NEAR(ball->distance(center + fraction * radius * Vec3::UnitX()), (fraction - 1) * radius,
                 0.35 * voxel);
@@ -154,16 +160,17 @@ TEST(ReadVdb, ValuesTooSteepForTheBandAreRebuilt) {
 
 TEST(ReadVdb, RefusesDamagedFiles) {
   const TempDir folder;
-  expect_input_error([] { read_vdb({"/no/such.vdb", ""}); }, "no such file");
-  expect_input_error([&] { read_vdb({folder.write("none", ""), ""}); }, "ends too early");
-  expect_input_error([&] { read_vdb({folder.write("text", std::string(5000, 'x')), ""}); },
-                     "not a sound OpenVDB file");
+  expect_input_error([] { geometry::read_vdb({"/no/such.vdb", ""}); }, "no such file");
+  expect_input_error([&] { geometry::read_vdb({folder.write("none", ""), ""}); }, "ends too early");
+  expect_input_error(
+      [&] { geometry::read_vdb({folder.write("text", std::string(5000, 'x')), ""}); },
+      "not a sound OpenVDB file");
   const std::string path = write(folder, {sphere()});
   std::ifstream stream(path, std::ios::binary);
-  const std::string whole{std::istreambuf_iterator<char>(stream), {}};
+  const std::string intact{std::istreambuf_iterator<char>(stream), {}};
   for (std::size_t tenths = 1; tenths < 10; ++tenths) {
-    const auto cut = folder.write("cut.vdb", whole.substr(0, whole.size() * tenths / 10));
-    expect_input_error([&] { read_vdb({cut, "ball"}); }, "cut.vdb: grid 'ball': ");
+    const auto truncated = folder.write("cut.vdb", intact.substr(0, intact.size() * tenths / 10));
+    expect_input_error([&] { geometry::read_vdb({truncated, "ball"}); }, "cut.vdb: grid 'ball': ");
   }
 }
 
@@ -172,17 +179,17 @@ TEST(ReadVdb, SurvivesFlippedBytes) {
   const TempDir folder;
   const std::string path = write(folder, {sphere()});
   std::ifstream stream(path, std::ios::binary);
-  const std::string whole{std::istreambuf_iterator<char>(stream), {}};
+  const std::string intact{std::istreambuf_iterator<char>(stream), {}};
   Random random(11);
   for (int n = 0; n < 20; ++n) {
-    std::string damaged = whole;
+    std::string damaged = intact;
     // Every other file is damaged in the headers at its beginning.
     const std::size_t reach = n % 2 ? damaged.size() : 700;
     for (int flips = 0; flips < 3; ++flips)
       damaged[std::size_t(random.uniform() * reach)] = char(random.uniform() * 256);
     const auto file = folder.write("flipped.vdb", damaged);
     try {
-      make_sampled_grid(read_vdb({file, ""}), "flipped.vdb");
+      geometry::make_sampled_grid(geometry::read_vdb({file, ""}), "flipped.vdb");
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find("flipped.vdb"), std::string::npos) << error.what();
     }

@@ -44,7 +44,7 @@ class WriteVdb : public ::testing::TestWithParam<int> {
   const std::string path = (folder.path() / "snow.vdb").string();
 };
 
-TEST_P(WriteVdb, HoldsSolidDensityAndPoints) {
+TEST_P(WriteVdb, WritesSurfaceDensityAndPoints) {
   const int dimension = GetParam();
   const round_trip::Snow dome = round_trip::dome(dimension);
   const ParticleCloud cloud = cloud_of(round_trip::particles_of(*dome.solid, dimension, 1));
@@ -66,7 +66,7 @@ TEST_P(WriteVdb, HoldsSolidDensityAndPoints) {
 
   const auto points = openvdb::gridPtrCast<openvdb::points::PointDataGrid>(grid(path, "particles"));
   ASSERT_EQ(openvdb::points::pointCount(points->tree()), cloud.positions.size());
-  std::size_t found = 0;
+  std::size_t visited = 0;
   for (auto leaf = points->tree().cbeginLeaf(); leaf; ++leaf) {
     const openvdb::points::AttributeHandle<openvdb::Vec3f> at(leaf->constAttributeArray("P"));
     const openvdb::points::AttributeHandle<openvdb::Vec3f> v(leaf->constAttributeArray("v"));
@@ -76,23 +76,23 @@ TEST_P(WriteVdb, HoldsSolidDensityAndPoints) {
       const openvdb::Vec3d x = points->indexToWorld(at.get(*index) + index.getCoord().asVec3d());
       EXPECT_LT((Vec3(x.x(), x.y(), x.z()) - cloud.positions[n]).norm(), 1e-6);
       EXPECT_EQ(event.get(*index), int(n % 7));
-      ++found;
+      ++visited;
     }
   }
-  EXPECT_EQ(found, cloud.positions.size());
+  EXPECT_EQ(visited, cloud.positions.size());
 }
 
-TEST_P(WriteVdb, RoundTripThroughAFile) {
+TEST_P(WriteVdb, SurvivesARoundTripThroughAFile) {
   const auto through_a_file = [&](const std::vector<Vec3>& particles,
                                   const round_trip::Snow& snow) {
     write_particles(path, cloud_of(particles), settings(snow.dimension));
     return make_sampled_grid(read_vdb({path, "surface"}), path);
   };
-  round_trip::expect_kept(round_trip::dome(GetParam()), through_a_file);
-  round_trip::expect_kept(round_trip::slab(GetParam()), through_a_file);
+  round_trip::expect_preserved(round_trip::dome(GetParam()), through_a_file);
+  round_trip::expect_preserved(round_trip::slab(GetParam()), through_a_file);
 }
 
-TEST_P(WriteVdb, DensityVolumeReadBackIsTheSnow) {
+TEST_P(WriteVdb, DensityReadBackGivesTheSnow) {
   const int dimension = GetParam();
   const round_trip::Snow slab = round_trip::slab(dimension);
   ParticleCloud cloud = cloud_of(round_trip::particles_of(*slab.solid, dimension, 1));
@@ -104,7 +104,7 @@ TEST_P(WriteVdb, DensityVolumeReadBackIsTheSnow) {
 
 INSTANTIATE_TEST_SUITE_P(Dimensions, WriteVdb, ::testing::Values(2, 3));
 
-TEST(WriteVdbAlone, RefusesWhatIsNoSolid) {
+TEST(WriteVdbErrors, RefusesEmptyClouds) {
   openvdb::initialize();
   const TempDir folder;
   const std::string path = (folder.path() / "none.vdb").string();

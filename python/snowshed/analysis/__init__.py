@@ -1,4 +1,4 @@
-"""Questions to many runs: sensitivity, calibration, regression, errors."""
+"""Analyses of many runs and of images: a package for each question."""
 
 import lazy_loader as _lazy
 

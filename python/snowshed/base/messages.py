@@ -20,7 +20,7 @@ FORMULA = ("=", "+", "-", "@", "\t", "\r")  # beginnings of cells that spreadshe
 
 
 def shortened(text: str, longest: int = MAX_LENGTH) -> str:
-    """Return a text, cut off after `longest` characters.
+    """Return a text, truncated after `longest` characters.
 
     Examples
     --------
@@ -31,7 +31,7 @@ def shortened(text: str, longest: int = MAX_LENGTH) -> str:
 
 
 def quoted(text: str) -> str:
-    """Return a text in quotes, cut off if it is long.
+    """Return a text in quotes, truncated if it is long.
 
     Examples
     --------

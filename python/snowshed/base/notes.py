@@ -29,9 +29,9 @@ def issue_note(text: str) -> None:
     Examples
     --------
     >>> with record_notes() as notes:
-    ...     issue_note("the raster has feet; they were turned into metres")
+    ...     issue_note("the raster is in feet; it was converted to metres")
     >>> notes
-    ['the raster has feet; they were turned into metres']
+    ['the raster is in feet; it was converted to metres']
     """
     warnings.warn(text, SnowshedNote, caller_level())
 

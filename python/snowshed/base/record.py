@@ -1,4 +1,4 @@
-"""Records: dataclasses that mirror JSON objects. A field that is None was not given.
+"""Records: dataclasses that mirror JSON objects, some fields of which are given.
 
 A name that is not a field, and a value that a field does not take, are errors at once. A record
 keeps copies of given records.
@@ -10,6 +10,7 @@ import copy
 import typing
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, fields
+from dataclasses import field as dataclass_field
 from functools import cache
 from typing import TYPE_CHECKING, ClassVar, Optional, TypeVar
 
@@ -21,10 +22,28 @@ from snowshed.base.messages import shortened, suggestion
 MAX_DEPTH = 64  # the same as in the core
 
 RecordType = TypeVar("RecordType", bound="Record")
+Value = TypeVar("Value")
+
+#: Key under which the metadata of a field hold its default.
+_DEFAULT = "default"
 
 
 class UnknownFieldError(InputError, AttributeError, TypeError):
     """A name that is not a field of a record, as an attribute, a keyword or a key."""
+
+
+def default(value: Value) -> Value:
+    """Return a record's field that reads as `value` until it is given.
+
+    Examples
+    --------
+    >>> @dataclass
+    ... class Door(Record):
+    ...     width: Optional[float] = default(0.9)
+    >>> Door(), Door().width, Door(width=0.9)
+    (Door(), 0.9, Door(width=0.9))
+    """
+    return typing.cast(Value, dataclass_field(default=None, metadata={_DEFAULT: value}))
 
 
 class Alias:
@@ -68,6 +87,10 @@ class _RecordClass(type):
 class Record(metaclass=_RecordClass):
     """A JSON object. A trailing underscore in a field's name is not part of its JSON key.
 
+    A field that was not given reads as its default, or as None if it has no default or another
+    field replaces it. Writing None takes a value back. Texts, comparisons, copies and JSON contain
+    only the fields that were given.
+
     Examples
     --------
     >>> from snowshed.scene.components import Panel
@@ -85,17 +108,40 @@ class Record(metaclass=_RecordClass):
     #: Fields that name a choice of several others. A new choice unsets these other
     #: fields, because it decides them; values that are set with it or after it stay.
     ADOPTS: ClassVar[Mapping[str, tuple[str, ...]]] = {}
+    #: Fields with records whose missing values come from another part of the scene. These values
+    #: read as None, because the defaults do not hold.
+    INHERITS: ClassVar[tuple[str, ...]] = ()
+
+    _has_defaults = True  # not a field
 
     def __init_subclass__(cls) -> None:
-        """Give subclasses the `repr` of records, which `dataclass` would replace by its own."""
-        if "__repr__" not in vars(cls):
-            cls.__repr__ = Record.__repr__  # type: ignore[method-assign]
+        """Give subclasses the methods of records that `dataclass` would replace by its own."""
+        for name in ("__repr__", "__eq__"):
+            if name not in vars(cls):
+                setattr(cls, name, getattr(Record, name))
 
     def __repr__(self) -> str:
         """Return the fields that were given, as the call that makes the record."""
-        given = {name: getattr(self, name) for name in self.keys().values()}
-        texts = {name: repr(value) for name, value in given.items() if value is not None}
-        return call_text(type(self), texts)
+        return call_text(type(self), {name: repr(value) for name, value in self.given().items()})
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether the same fields were given, with equal values."""
+        if not isinstance(other, Record) or type(other) is not type(self):
+            return NotImplemented
+        return self.given() == other.given()
+
+    def given(self) -> dict[str, object]:
+        """Return the fields that were given, by name.
+
+        Examples
+        --------
+        >>> from snowshed.scene.components import Snow
+        >>> snow = Snow(cohesion=0.1)
+        >>> snow.density, snow.given()
+        (210.0, {'cohesion': 0.1})
+        """
+        held = vars(self)
+        return {n: held[n] for n in self.keys().values() if held.get(n) is not None}
 
     @classmethod
     def keys(cls) -> dict[str, str]:
@@ -146,7 +192,7 @@ class Record(metaclass=_RecordClass):
         """
         data: JsonObject = {}
         for key, name in self.keys().items():
-            value = convert(getattr(self, name), _hints(type(self))[name], f"{path}/{key}")
+            value = convert(vars(self)[name], _hints(type(self))[name], f"{path}/{key}")
             if value is not None:
                 data[key] = _to_json(value, f"{path}/{key}", depth + 1)
         return data
@@ -179,6 +225,9 @@ class Record(metaclass=_RecordClass):
 
     def _keep(self, name: str, value: object, where: str) -> None:
         converted = _own(convert(value, _hints(type(self))[name], where))
+        has_defaults = name not in self.INHERITS
+        if isinstance(converted, Record) and converted._has_defaults != has_defaults:
+            converted._has_defaults = has_defaults
         is_new = converted != vars(self).get(name)
         object.__setattr__(self, name, converted)
         if converted is not None:
@@ -194,7 +243,29 @@ class Record(metaclass=_RecordClass):
         has = near or f"; it has {', '.join(cls.keys())}"
         return UnknownFieldError(f"{cls.__name__}.{name}: {cls.__name__} has no such field{has}")
 
+    def _default(self, name: str) -> object:
+        """Return the default of a field; None if it has none, or another field replaces it."""
+        held, defaults = vars(self), _defaults(type(self))
+        if name not in defaults or not self._has_defaults:
+            return None
+        for pair in self.INSTEAD_OF.items():
+            if name in pair and held.get(pair[1 - pair.index(name)]) is not None:
+                return None
+        for choice, decided in self.ADOPTS.items():
+            if name in decided and held.get(choice) not in (None, defaults.get(choice)):
+                return None
+        return defaults[name]
+
     if not TYPE_CHECKING:  # otherwise type checkers would accept any attribute
+
+        def __getattribute__(self, name: str) -> object:
+            value = super().__getattribute__(name)
+            if value is None:
+                return self._default(name)
+            if name == "__dataclass_fields__":  # `dataclasses.replace` and `asdict` read these
+                held = vars(self)
+                return {key: value[key] for key in value if held.get(key) is not None}
+            return value
 
         def __getattr__(self, name: str) -> object:
             if name.startswith("_"):
@@ -258,6 +329,11 @@ def _hints(record: type[Record]) -> dict[str, object]:
     """Return the type of every field; the annotations are evaluated once, which is slow."""
     hints = typing.get_type_hints(record)
     return {f.name: hints[f.name] for f in fields(record)}
+
+
+@cache
+def _defaults(record: type[Record]) -> Mapping[str, object]:
+    return {f.name: f.metadata[_DEFAULT] for f in fields(record) if _DEFAULT in f.metadata}
 
 
 def _own(value: object) -> object:

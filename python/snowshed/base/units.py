@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 UNITS = MappingProxyType(
     {
@@ -34,3 +38,17 @@ def unit_of_column(name: str) -> str:
     """
     endings = [ending for ending in UNITS if name.endswith(f"_{ending}")]
     return UNITS[max(endings, key=len)] if endings else ""
+
+
+def with_units(table: pd.DataFrame) -> pd.DataFrame:
+    """Return a table, whose ``attrs["units"]`` now has the units of its columns, if they have one.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> with_units(pd.DataFrame({"event": [1], "height_m": [0.2]})).attrs
+    {'units': {'height_m': 'm'}}
+    """
+    units = {str(name): unit_of_column(str(name)) for name in table}
+    table.attrs["units"] = {name: unit for name, unit in units.items() if unit}
+    return table

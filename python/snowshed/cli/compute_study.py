@@ -11,7 +11,7 @@ import snowshed._core as _core
 from snowshed.base.formatting import about, plural
 from snowshed.base.progress import Progress, Reporter
 from snowshed.cli.exit_codes import Failed, Stopped
-from snowshed.cli.terminal import PlainConsole, say
+from snowshed.cli.output.terminal import PlainConsole, say
 from snowshed.study.definition import Study
 from snowshed.study.errors import StudyInterrupted
 from snowshed.study.store import Store, StoredRun
@@ -45,7 +45,7 @@ def outcome_as_exit_code() -> Iterator[None]:
 
 def study_progress(quiet: bool) -> AbstractContextManager[Optional[Reporter]]:
     """Return the progress bar of a study, which begins with the number of runs."""
-    from snowshed.cli.progress import LONG_PERIOD_S, progress_bar
+    from snowshed.cli.output.progress import LONG_PERIOD_S, progress_bar
 
     return progress_bar(quiet=quiet, announce=announcement, speed_period_s=LONG_PERIOD_S)
 

@@ -27,7 +27,7 @@ from snowshed.base.notes import SnowshedNote
 from snowshed.cli.deferred import Deferred
 from snowshed.cli.exit_codes import BAD_INPUT, COULD_NOT_FINISH, INTERRUPTED, PIPE_CLOSED
 from snowshed.cli.memory_shortage import memory_message
-from snowshed.cli.output_pipe import drop_output, flush_output, output_is_closed
+from snowshed.cli.output.pipe import drop_output, flush_output, output_is_closed
 
 #: Errors in file names that the user gave.
 NAME_ERRORS = (

@@ -9,10 +9,10 @@ import snowshed._core as _core
 from snowshed.base.formatting import about
 from snowshed.base.interrupt import Interrupted
 from snowshed.base.progress import Progress, Reporter
-from snowshed.cli.check import check_can_be_measured, check_run
-from snowshed.cli.dry_run import print_cost
 from snowshed.cli.exit_codes import Stopped
-from snowshed.cli.terminal import say
+from snowshed.cli.options.check import check_can_be_measured, check_run
+from snowshed.cli.output.dry_run import print_cost
+from snowshed.cli.output.terminal import say
 from snowshed.methods.registry import DEFAULT, SETTINGS_KEY, method_of
 from snowshed.scene.scene import ResolvedScene
 
@@ -21,7 +21,7 @@ ANNOUNCED_FROM_S = 600.0  # s; longer runs are announced
 
 def run_scene(resolved: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> None:
     """Run a scene into a folder with a progress bar, and print its results."""
-    from snowshed.cli.progress import progress_bar
+    from snowshed.cli.output.progress import progress_bar
     from snowshed.running.run import run
 
     if not quiet and (slow := _core.slow_kernels_note()):
@@ -33,7 +33,7 @@ def run_scene(resolved: ResolvedScene, folder: Path, resume: bool, quiet: bool) 
     except Interrupted as interrupted:
         raise Stopped(str(interrupted)) from None
     if not quiet:
-        from snowshed.cli.run_output import print_results
+        from snowshed.cli.output.results import print_results
 
         print_results(results)
 

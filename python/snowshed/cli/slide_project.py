@@ -11,17 +11,17 @@ import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.interrupt import deferred_interrupts
 from snowshed.base.notes import held_notes, issue_notes_on_failure
-from snowshed.cli.dry_run import print_cost
 from snowshed.cli.exit_codes import Failed, Stopped
+from snowshed.cli.options.same_command import same_command
+from snowshed.cli.options.slide_files import notes_for_summary, refuse_changed_areas
+from snowshed.cli.output.dry_run import print_cost
+from snowshed.cli.output.terminal import say
 from snowshed.cli.run_scene import run_scene
-from snowshed.cli.same_command import same_command
-from snowshed.cli.slide_files import notes_for_summary, refuse_changed_areas
-from snowshed.cli.terminal import say
-from snowshed.scene.builders.terrain_copy import removing_copies, terrain_copy
+from snowshed.scene.builders.terrain_copy import copies_removed_on_failure, terrain_copy
 from snowshed.scene.scene import ResolvedScene
 
 if TYPE_CHECKING:
-    from snowshed.scene.builders.avaframe import AvaFrameSimulation
+    from snowshed.scene.builders.avaframe.project import AvaFrameSimulation
 
 
 def run_project(
@@ -50,7 +50,7 @@ def run_project(
     """
     from snowshed.results.avaframe import simulation_name
 
-    with removing_copies(folder):
+    with copies_removed_on_failure(folder):
         with held_notes() as notes:
             simulations = _simulations(project, folder, settings, thickness, max_time)
             scenes = [_resolve_scene(simulation) for simulation in simulations]
@@ -95,7 +95,7 @@ def _simulations(
     thickness: Optional[float],
     max_time: Optional[float],
 ) -> list[AvaFrameSimulation]:
-    from snowshed.scene.builders.avaframe import avaframe_simulations
+    from snowshed.scene.builders.avaframe.project import avaframe_simulations
 
     simulations = avaframe_simulations(
         project, settings=settings, thickness=thickness, ascii_copy=terrain_copy(folder)
@@ -149,7 +149,7 @@ def _write_outputs(
 ) -> None:
     """Write the outputs of AvaFrame beside the results; errors do not count as bad input."""
     from snowshed.results.avaframe import write_avaframe_outputs
-    from snowshed.scene.builders.avaframe_files import copy_inputs
+    from snowshed.scene.builders.avaframe.files import copy_inputs
 
     try:
         copy_inputs(simulation.inputs, folder)
@@ -165,8 +165,9 @@ def _write_outputs(
 def write_particles(scene: ResolvedScene, folder: Path, steps: Sequence[int]) -> None:
     """Write tables of the particles after given steps into a results folder."""
     from snowshed.io.csv_table import write_csv
-    from snowshed.running.slide_history import particles_at
+    from snowshed.methods import slide_states
+    from snowshed.results.avaframe import particle_table
 
-    for step, table in particles_at(scene, steps).items():
-        name = "particles_initial" if step == 0 else f"particles_step{step:05d}"
-        write_csv(table, folder / f"{name}.csv", float_format="%.10g")
+    for state in slide_states(scene, steps=steps):
+        name = "particles_initial" if state.steps == 0 else f"particles_step{state.steps:05d}"
+        write_csv(particle_table(state.quantities), folder / f"{name}.csv", float_format="%.10g")

@@ -16,8 +16,9 @@ if sys.version_info >= (3, 11):
 else:
     import tomli as tomllib
 
-#: The library's time and memory grow with the square of these.
-MAX_PARTS, MAX_TABLES = 50, 10_000
+# The library's time and memory grow with the square of these.
+MAX_PARTS = 50  # parts of a dotted key
+MAX_TABLES = 10_000
 PART = r"""(?:[A-Za-z0-9_-]+|"[^"\n]*"|'[^'\n]*')"""
 LONG_KEY = re.compile(rf"{PART}(?:[ \t]*\.[ \t]*{PART}){{{MAX_PARTS}}}")
 BARE = re.compile(r"[A-Za-z0-9_-]+")

@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 from operator import attrgetter
 from typing import Any
 
-from snowshed._core import InputError
+import snowshed._core as _core
+from snowshed.base.missing_result import MissingResultError
 from snowshed.methods.settings import MethodSettings
 
 
@@ -32,6 +33,10 @@ class Method:
     results
         Results that other methods do not have: for each attribute of `snowshed.Results`, the name
         of the function that reads it from a results folder.
+    in_memory
+        Results that a simulation in memory has already: for each attribute of
+        `snowshed.Simulation`, the name of the function that returns it from the core's simulation
+        and the data of the scene.
     ages
         Whether its snow can settle and sinter between events.
     has_grid
@@ -43,6 +48,7 @@ class Method:
     settings: type[MethodSettings]
     run: str
     results: Mapping[str, str] = field(default_factory=dict)
+    in_memory: Mapping[str, str] = field(default_factory=dict)
     ages: bool = False
     has_grid: bool = False
 
@@ -55,19 +61,39 @@ class Method:
 
         Raises
         ------
-        InputError
+        MissingResultError
             If the method has no such result, or the folder does not contain it.
+        InputError
+            If it is damaged.
+        """
+        if result not in self.results:
+            raise self.missing(result, folder)
+        return imported(self.results[result])(folder)
+
+    def compute(self, result: str, core: _core.Simulation, scene: Mapping[str, Any]) -> Any:
+        """Return one of the results `in_memory` of a simulation, whose scene has the data `scene`.
+
+        Raises
+        ------
+        MissingResultError
+            If the method has no such result.
+        """
+        if result not in self.in_memory:
+            raise MissingResultError(f'/method: the method "{self.name}" has no {result}')
+        return imported(self.in_memory[result])(core, scene)
+
+    def missing(self, result: str, folder: Any) -> MissingResultError:
+        """Return the error for a result of a folder that the method does not have.
 
         Examples
         --------
-        >>> Method("none", "", MethodSettings, "").read("maps", "out")
-        Traceback (most recent call last):
-        snowshed._core.InputError: out: the method "none" has no maps; it has particles, film
+        >>> print(Method("none", "", MethodSettings, "").missing("maps", "out"))
+        out: the method "none" has no maps; it has particles, film
         """
-        if result not in self.results:
-            known = ", ".join((*self.results, "particles", "film"))
-            raise InputError(f'{folder}: the method "{self.name}" has no {result}; it has {known}')
-        return imported(self.results[result])(folder)
+        known = ", ".join((*self.results, "particles", "film"))
+        return MissingResultError(
+            f'{folder}: the method "{self.name}" has no {result}; it has {known}'
+        )
 
 
 def imported(name: str) -> Any:

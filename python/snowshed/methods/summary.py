@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, ClassVar, TypeVar
 
 from snowshed._core import InputError
+from snowshed.base.missing_result import MissingResultError
 from snowshed.base.paths import PathLike
 from snowshed.io.atomic import write_text
 from snowshed.io.json_file import read_object
@@ -51,12 +52,14 @@ class Summary:
 
         Raises
         ------
+        MissingResultError
+            If the file is missing.
         InputError
-            If the file is missing, or is not the file that the run wrote.
+            If it is not the file that the run wrote.
         """
         file = Path(folder) / cls.FILE
         if not file.is_file():
-            raise InputError(f"{file}: missing; a run writes it at its end")
+            raise MissingResultError(f"{file}: missing; a run writes it at its end")
         check_run_file(file)
         figures = {FORMER_NAMES.get(name, name): value for name, value in read_object(file).items()}
         given = {

@@ -1,4 +1,4 @@
-"""Figures, their labels and style, HTML pages."""
+"""Figures, their style, HTML pages."""
 
 import lazy_loader as _lazy
 

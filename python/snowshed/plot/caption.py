@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Optional
 import numpy as np
 
 from snowshed.methods.registry import settings_of
-from snowshed.plot.labels import label
+from snowshed.scene.labels import label
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -16,8 +16,10 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-#: Energies stored in the snow, and energies of height, whose zero is arbitrary.
-STORED, POTENTIAL = ("kinetic_j", "elastic_j", "bonds_j"), ("gravitational_j", "potential_j")
+#: Energies stored in the snow.
+STORED = ("kinetic_j", "elastic_j", "bonds_j")
+#: Energies of height, whose zero is arbitrary.
+POTENTIAL = ("gravitational_j", "potential_j")
 #: The other columns that are not losses.
 SUMS = ("added_j", "residual_j")
 MIN_DRAWN_SHARE = 1e-3  # smaller shares of the largest energy are not drawn

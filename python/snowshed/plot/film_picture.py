@@ -18,7 +18,7 @@ from snowshed.plot.solids import Box, Solid
 
 PAINTS = {"ground": "#dfe5ea", "panel": "#33506b", "solid": "#9aa9b5"}
 SKY = "#f5f7f9"
-TURN, LIFT = -0.6, 0.28  # initial angles of the camera, as on the page, radians
+TURN, LIFT = -0.6, 0.28  # radians, initial angles of the camera, as on the page
 TERRAIN_LIFT = 0.8  # steep ground is seen from higher up
 WIDTH = 8.0  # inches
 

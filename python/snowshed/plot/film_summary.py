@@ -16,8 +16,10 @@ from snowshed.io.film import Film, FilmFrame
 from snowshed.plot.solids import Box
 
 COLOURS = "viridis"  # perceptually uniform, and safe for colour-blind eyes
-#: Parts of the colour map that stand out from a light and from a dark background.
-ON_LIGHT, ON_DARK = (0.0, 0.88), (0.25, 1.0)
+#: Part of the colour map that stands out from a light background.
+ON_LIGHT = (0.0, 0.88)
+#: Part of the colour map that stands out from a dark background.
+ON_DARK = (0.25, 1.0)
 SHOWN_SHARES = (0.005, 0.995)  # quantiles of all values at the ends of the colour scale
 MAX_LABELS = 10  # largest number of labelled events; more events get a colour scale
 SPACING_SAMPLE = 4000  # particles whose nearest neighbours are searched

@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 FOLDED_FROM_ROWS = 12
 DPI = 130
 CSS_PIXELS = 96  # per inch
-PNG, HEADER = b"\x89PNG", 24  # first bytes of a PNG file; number of bytes to the end of its size
+PNG = b"\x89PNG"  # first bytes of a PNG file
+HEADER = 24  # bytes of a PNG file up to the end of its size
 #: Cells with these words stand out; the class of the page's style decides their colour.
 STATES: Mapping[str, str] = {
     "holds": "good",

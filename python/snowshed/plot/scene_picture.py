@@ -13,7 +13,6 @@ from snowshed.base.arrays import Floats
 from snowshed.methods.registry import resolution_of
 from snowshed.plot.caption import scene_caption
 from snowshed.plot.figure_style import FAINT, INK, STACK, blank_figure, describe, mute_frame
-from snowshed.scene.builders.slope import BOARD_CELLS
 from snowshed.scene.scene import SceneLike, resolve_scene
 
 if TYPE_CHECKING:
@@ -59,7 +58,7 @@ def scene_figure(scene: SceneLike) -> Figure:
         zorder=3,
         label="snow",
     )
-    _draw_panel(axes, simulation, data)
+    _draw_panel(axes, simulation)
     axes.legend(frameon=False, fontsize=9, loc="upper right", markerscale=3)
     mute_frame(axes)
     axes.set_xlabel("x, m", color=INK, fontsize=9)
@@ -93,15 +92,14 @@ def _draw_obstacles(axes: Axes, simulation: Simulation) -> None:
         axes.contour(x, z, distance, [0.0], colors=[FAINT], linewidths=1.2, zorder=2)
 
 
-def _draw_panel(axes: Axes, simulation: Simulation, scene: Mapping[str, Any]) -> None:
+def _draw_panel(axes: Axes, simulation: Simulation) -> None:
     """Draw the panel's face, and the board below it in the core's thickness."""
     frame = simulation.panel_frame()
     if frame is None:
         return
     half = 0.5 * frame["length"] * np.asarray(frame["slope"])
     face = np.array([frame["center"] - half, frame["center"] + half])
-    thickness = max(scene["panel"]["thickness"], BOARD_CELLS * resolution_of(scene))
-    back = face[::-1] - thickness * np.asarray(frame["normal"])
+    back = face[::-1] - frame["board_thickness"] * np.asarray(frame["normal"])
     axes.fill(*np.concatenate([face, back])[:, [0, 2]].T, color="#c9d1d8", linewidth=0, zorder=1)
     axes.plot(*face[:, [0, 2]].T, color=INK, linewidth=3.5, zorder=4, label="panel")
 

@@ -15,9 +15,7 @@ import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.arrays import Floats, Integers
 from snowshed.io.raster.raster import Raster
-from snowshed.methods.registry import resolution_of
 from snowshed.plot.surface_nets import surface_of
-from snowshed.scene.builders.slope import BOARD_CELLS
 from snowshed.scene.resolved import ResolvedScene
 
 ROUND_SIDES = 24  # number of sides of round shapes
@@ -94,33 +92,32 @@ class Solid:
 
 
 def scene_solids(
-    scene: Mapping[str, Any], base_dir: Path, snow: Box, terrain: Optional[Raster]
+    scene: ResolvedScene, snow: Box, terrain: Optional[Raster]
 ) -> tuple[list[Solid], Box]:
     """Return the solids of a scene around its snow, and a box around all except the ground.
 
     Parameters
     ----------
     scene
-        Complete data, as in scene.json.
-    base_dir
-        Folder of relative file names.
+        The simulated scene.
     snow
         A box that holds the snow at all times.
     terrain
         The ground of a slide; None for other methods.
     """
-    flat = scene["dimension"] == 2
+    data, frame = scene.data, scene.core.panel_frame()
+    flat = data["dimension"] == 2
     solids = [
-        *([_panel(scene)] if scene.get("panel") else []),
-        *_obstacles(scene, base_dir, snow),
+        *([] if frame is None else [_panel(frame)]),
+        *_obstacles(data, Path(scene.base_dir), snow),
     ]
     focus = snow
     for solid in solids:
         if solid.kind == "panel" or np.all(np.ptp(solid.corners, axis=0) < 3 * snow.size.max()):
             focus = focus.joined(solid.corners)
-    if scene.get("ground"):
-        solids.insert(0, _ground(scene["ground"]["tilt"], focus, flat))
-        focus = focus.joined(_below(focus, scene["ground"]["tilt"]))
+    if data.get("ground"):
+        solids.insert(0, _ground(data["ground"]["tilt"], focus, flat))
+        focus = focus.joined(_below(focus, data["ground"]["tilt"]))
     if terrain is not None:
         solids.insert(0, _terrain(terrain, focus))
     return [_flattened(solid) for solid in solids] if flat else solids, focus
@@ -140,18 +137,12 @@ def _below(focus: Box, tilt: float) -> Floats:
     return np.column_stack([x, np.full(2, middle), -x * np.tan(np.radians(tilt))])
 
 
-def _panel(scene: Mapping[str, Any]) -> Solid:
-    panel = scene["panel"]
-    tilt = np.radians(panel["tilt"])
-    slope = np.array([np.cos(tilt), 0.0, -np.sin(tilt)])
-    normal = np.array([np.sin(tilt), 0.0, np.cos(tilt)])
-    rise = panel["height"] + 0.5 * panel["length"] * np.sin(tilt)
-    if ground := scene.get("ground"):  # the panel's height counts from the ground below its edge
-        rise -= 0.5 * panel["length"] * np.cos(tilt) * np.tan(np.radians(ground["tilt"]))
-    thickness = max(panel["thickness"], BOARD_CELLS * resolution_of(scene))
-    centre = np.array([0.0, 0.0, rise]) - 0.5 * thickness * normal
-    edges = (panel["length"] * slope, _width(panel) * np.array([0.0, 1.0, 0.0]), thickness * normal)
-    return _box("panel", "panel", centre, edges)
+def _panel(frame: Mapping[str, Any]) -> Solid:
+    """Return the board below the panel's face."""
+    board = frame["board_thickness"] * np.asarray(frame["normal"])
+    across = np.array([0.0, frame["width"], 0.0])
+    edges = (frame["length"] * np.asarray(frame["slope"]), across, board)
+    return _box("panel", "panel", np.asarray(frame["center"]) - 0.5 * board, edges)
 
 
 def _width(part: Mapping[str, Any]) -> float:
@@ -252,7 +243,7 @@ def _sampled_surface(
     shape: Mapping[str, Any], scene: Mapping[str, Any], base_dir: Path, near: Box
 ) -> Solid:
     """Return the surface of any shape where the snow may come, from samples of its distance."""
-    alone = _core.Simulation(_only(shape, scene).core, str(base_dir))
+    single = _core.Simulation(_scene_of_shape(shape, scene).core, str(base_dir))
     spacing = float(near.size.max()) / SAMPLES
     flat = scene["dimension"] == 2
     axes = [
@@ -262,7 +253,7 @@ def _sampled_surface(
         for axis in range(3)
     ]
     points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
-    distance = alone.obstacle_distance(points.reshape(-1, 3)).reshape(points.shape[:3])
+    distance = single.obstacle_distance(points.reshape(-1, 3)).reshape(points.shape[:3])
     if flat:  # a slice, closed in front and behind
         distance = np.concatenate([distance, distance], axis=1)
     distance = np.pad(distance, 1, constant_values=spacing)
@@ -271,7 +262,7 @@ def _sampled_surface(
     return Solid(shape["type"], "solid", corners, triangles)
 
 
-def _only(shape: Mapping[str, Any], scene: Mapping[str, Any]) -> ResolvedScene:
+def _scene_of_shape(shape: Mapping[str, Any], scene: Mapping[str, Any]) -> ResolvedScene:
     """Return a scene with a single shape and hardly any snow."""
     dimension = scene["dimension"]
     drop = {"type": "sphere", "center": [0.0] * dimension, "radius": 0.05}
@@ -305,7 +296,7 @@ def _frame_along(axis: Floats) -> tuple[Floats, Floats, Floats]:
     return along, side, np.cross(along, side)
 
 
-def _turned(rings: list[tuple[Floats, float]], side: Floats, other: Floats) -> Solid:
+def _revolved(rings: list[tuple[Floats, float]], side: Floats, other: Floats) -> Solid:
     """Return the solid of revolution through rings: centre and radius of each, end to end."""
     angle = np.linspace(0.0, 2.0 * np.pi, ROUND_SIDES, endpoint=False)
     circle = np.cos(angle)[:, None] * side + np.sin(angle)[:, None] * other
@@ -320,7 +311,7 @@ def _turned(rings: list[tuple[Floats, float]], side: Floats, other: Floats) -> S
 
 def _cylinder(start: Floats, end: Floats, radius: float) -> Solid:
     _, side, other = _frame_along(end - start)
-    return _turned([(start, 0.0), (start, radius), (end, radius), (end, 0.0)], side, other)
+    return _revolved([(start, 0.0), (start, radius), (end, radius), (end, 0.0)], side, other)
 
 
 def _capsule(start: Floats, end: Floats, radius: float) -> Solid:
@@ -328,7 +319,7 @@ def _capsule(start: Floats, end: Floats, radius: float) -> Solid:
     quarter = np.linspace(0.0, 0.5 * np.pi, ROUND_SIDES // 4 + 1)
     first = [(start - radius * np.cos(a) * along, radius * float(np.sin(a))) for a in quarter]
     last = [(end + radius * np.sin(a) * along, radius * float(np.cos(a))) for a in quarter]
-    return _turned(first + last, side, other)
+    return _revolved(first + last, side, other)
 
 
 def _motion(spec: Mapping[str, Any]) -> dict[str, Any]:

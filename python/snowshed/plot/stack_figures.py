@@ -37,9 +37,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 HELD = "#b8c0c8"  # snow that the panel or a structure holds
-MAX_NAMED_EVENTS, ROWS = 15, 8  # events in a legend, and rows of it
+MAX_NAMED_EVENTS = 15  # events in a legend
+ROWS = 8  # rows of a legend
 MAX_PICTURED_PARTICLES = 100_000  # of more, every second, third, ... is drawn
-WIDTH, VIEW_WIDTH = 9.0, 8.1  # inches, of the figure and of the views in it
+WIDTH = 9.0  # inches, of the figure
+VIEW_WIDTH = 8.1  # inches, of the views in it
 MIN_VIEW_HEIGHT, MAX_VIEW_HEIGHT = 1.6, 5.0  # inches, of a view
 
 Limits = tuple[float, float, float, float]  # left, right, bottom, top

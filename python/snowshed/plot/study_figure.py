@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from snowshed.base.formatting import plural
 from snowshed.plot.figure_style import BODY, STACK, STYLE, blank_figure, headline
-from snowshed.plot.labels import label
+from snowshed.scene.labels import label
 
 if TYPE_CHECKING:
     import pandas as pd

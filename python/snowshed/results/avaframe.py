@@ -25,17 +25,21 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import chain, product
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import snowshed._core as _core
-from snowshed.base.arrays import Floats
+from snowshed.base.arrays import Floats, Numbers
 from snowshed.base.messages import csv_cell, printable
 from snowshed.io.atomic import write_text
 from snowshed.io.raster.output import write_raster
 from snowshed.io.raster.raster import GEOTIFF, Raster, read_raster
 from snowshed.methods.slide.maps import SlideMaps, slide_maps
 from snowshed.methods.slide.summary import SlideSummary
-from snowshed.scene.builders.avaframe import AvaFrameSimulation
+from snowshed.scene.builders.avaframe.project import AvaFrameSimulation
 from snowshed.scene.scene import ResolvedScene
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 MODULES = ("com1DFA", "com5SnowSlide")
 STEPS_AT_ONCE = 20
@@ -110,6 +114,33 @@ def write_avaframe_outputs(folder: Path, simulation: AvaFrameSimulation, results
         write_text(each.parent / f"mass_{name}.txt", _mass_table(summary))
         _write_configuration(each.parent / "configurationFiles", name, configuration, summary, last)
     return name
+
+
+def particle_table(quantities: Mapping[str, Numbers]) -> pd.DataFrame:
+    """Return particles of a slide as a table with AvaFrame's names.
+
+    Parameters
+    ----------
+    quantities
+        As in `snowshed.methods.slide.states.SlideState`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Columns ID, x, y, z [m], ux, uy, uz [m/s], m [kg], h [m].
+    """
+    import pandas as pd
+
+    position, velocity = quantities["position"], quantities["velocity"]
+    return pd.DataFrame(
+        {
+            "ID": quantities["id"],
+            **{axis: position[:, k] for k, axis in enumerate("xyz")},
+            **{f"u{axis}": velocity[:, k] for k, axis in enumerate("xyz")},
+            "m": quantities["mass"],
+            "h": quantities["thickness"],
+        }
+    )
 
 
 def _final_maps(results: Path, resolved: ResolvedScene) -> dict[str, Raster]:

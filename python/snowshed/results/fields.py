@@ -4,11 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 
 import snowshed._core as _core
+from snowshed._core import InputError
 from snowshed.base.arrays import Numbers
+
+Order = Literal["id", "storage"]
+
+
+def checked_order(order: Order) -> Order:
+    """Return an order of particles.
+
+    Raises
+    ------
+    InputError
+        If it is neither "id" nor "storage".
+    """
+    if order not in ("id", "storage"):
+        raise InputError(f'order: {order!r}; allowed: "id", "storage"')
+    return order
 
 
 @dataclass(frozen=True)

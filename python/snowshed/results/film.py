@@ -64,7 +64,7 @@ def _check_end(film: Film, record: Mapping[str, Any]) -> None:
     facts = [event for event in events or [] if isinstance(event, Mapping)]
     times = [float(event["sim_time_s"]) for event in facts if is_number(event.get("sim_time_s"))]
     if not film.whole or not film.frames:
-        raise InputError(f"{film.path}: damaged: cut off, although the run is finished")
+        raise InputError(f"{film.path}: damaged: truncated, although the run is finished")
     if times and not math.isclose(film.frames[-1].time, math.fsum(times), rel_tol=1e-9):
         raise InputError(f"{film.path}: damaged: it does not end where the run ended")
 

@@ -19,6 +19,7 @@ DATASET = (
     "position",
     "velocity",
     "mass",
+    "thickness",
     "density",
     "pressure",
     "deviatoric_stress",
@@ -67,8 +68,8 @@ def particle_dataset(values: Mapping[str, Numbers], event: int, time: float) -> 
             "time": ((), time, {"units": "s", "long_name": "Time in the event"}),
         },
     )
-    for name in dataset.data_vars:
-        unit, meaning = meanings[str(name)]
+    for name in meanings.keys() & dataset.data_vars.keys():
+        unit, meaning = meanings[name]
         dataset[name].attrs.update(units=unit, long_name=meaning)
     dataset["particle"].attrs.update(long_name=meanings["id"][1])
     return dataset

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Optional, cast
+from typing import TYPE_CHECKING, Any, Optional, cast
 
 import numpy as np
 
 import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.extras import require
+from snowshed.base.missing_result import MissingResultError
 from snowshed.base.paths import PathLike
-from snowshed.base.units import unit_of_column
+from snowshed.base.units import unit_of_column, with_units
 from snowshed.io.csv_table import read_csv
 from snowshed.io.film import FILM, Film
 from snowshed.io.input_file import read_input
@@ -26,6 +27,7 @@ from snowshed.methods.summary import Summary
 from snowshed.results.film import film_dataset, run_film
 from snowshed.results.folder import ENERGY, EVENTS, read_events
 from snowshed.results.grid import grid_dataset, stored_grid
+from snowshed.results.method_results import MethodResults
 from snowshed.results.particle_dataset import particle_dataset
 from snowshed.scene.scene import ResolvedScene
 from snowshed.snow.stack.measure import StackMeasure
@@ -37,16 +39,17 @@ if TYPE_CHECKING:
 HISTORY = "energy_history.csv"
 
 
-class Results:
+class Results(MethodResults):
     """The results folder of a run, as `snowshed.run` and ``snowshed run`` write it.
 
     All methods have particles, a film and, on request, energies. Further attributes depend on the
     method: `events` and `stack`, or `summary`, `maps`, `curve` and `forces`. An attribute that the
-    method of the scene does not have raises InputError with the names of those that it has.
+    method of the scene does not have, or that the run did not write, raises an InputError that is
+    also an AttributeError: `hasattr` returns False.
 
     Files are read on access. Every table has a dict of units by column in ``attrs["units"]``, every
-    variable of a Dataset its ``units`` and ``long_name`` in `attrs`. The methods raise InputError
-    if a file is missing or invalid.
+    variable of a Dataset its ``units`` and ``long_name`` in `attrs`. A damaged file raises
+    InputError.
 
     Parameters
     ----------
@@ -98,15 +101,19 @@ class Results:
         """Version, machine, size, speed and status of the run (run.json)."""
         path = self.folder / "run.json"
         if not path.is_file():
-            raise InputError(f"{path}: missing; a run writes it with its first checkpoint")
+            raise MissingResultError(f"{path}: missing; a run writes it with its first checkpoint")
         return dict(read_object(path))
 
     @property
     def events(self) -> pd.DataFrame:
         """One row per event: its stack, duration and end (events.csv)."""
         if not (self.folder / EVENTS).is_file():
-            self._refuse_missing_events()
-        return _with_units(read_events(self.folder))
+            method = method_of(self.scene.data)
+            if "stack" not in method.results:
+                raise method.missing("events", self.folder)
+            path = self.folder / EVENTS
+            raise MissingResultError(f"{path}: missing; a run that ended an event writes it")
+        return with_units(read_events(self.folder))
 
     @property
     def outline(self) -> pd.DataFrame:
@@ -173,20 +180,24 @@ class Results:
 
     def _stored_event(self, event: Optional[int]) -> tuple[int, Path]:
         """Return the number of an event, the last by default, and the file of its particles."""
-        there = {
+        file_by_event = {
             int(file.stem.rpartition("_")[2]): file
             for file in (self.folder / "particles").glob("event_*.vtp")
         }
-        if not there:
+        if not file_by_event:
             raise InputError(f"{self.folder / 'particles'}: holds no particles")
-        number = max(there) if event is None else event
-        if number not in there:
-            allowed = ", ".join(map(str, sorted(there)))
+        number = max(file_by_event) if event is None else event
+        if number not in file_by_event:
+            allowed = ", ".join(map(str, sorted(file_by_event)))
             raise InputError(f"event: {event!r}; {self.folder / 'particles'} has {allowed}")
-        return number, there[number]
+        return number, file_by_event[number]
 
     def _duration(self, event: int) -> float:
-        return float(self.events.set_index("event")["sim_time_s"][event])
+        """Return the duration of an event; only runs that make stacks have a table of events."""
+        if (self.folder / EVENTS).is_file():
+            return float(self.events.set_index("event")["sim_time_s"][event])
+        finished = cast("Mapping[str, Any]", self.run)["finished_events"]
+        return next(float(facts["sim_time_s"]) for facts in finished if facts["event"] == event)
 
     def snapshots(self) -> Iterator[xarray.Dataset]:
         """Yield the particles of each snapshot in order, in the form of `particles`.
@@ -210,29 +221,6 @@ class Results:
         """The figures of a slide or a loading test, as attributes."""
         return cast("Summary", self.result("summary"))
 
-    @property
-    def maps(self) -> xarray.Dataset:
-        """The maps of a slide at the nodes of its grid: largest values over time, and at the end.
-
-        Needs xarray (extra ``study``).
-        """
-        return cast("xarray.Dataset", self.result("maps"))
-
-    @property
-    def curve(self) -> pd.DataFrame:
-        """The curve of a loading test: strains, stresses, bonds and contacts over time."""
-        return cast("pd.DataFrame", self.result("curve"))
-
-    @property
-    def forces(self) -> pd.DataFrame:
-        """The contacts between grains at the end of a loading test, with their forces, N."""
-        return cast("pd.DataFrame", self.result("forces"))
-
-    def _refuse_missing_events(self) -> None:
-        method = method_of(self.scene.data)
-        if "stack" not in method.results:
-            method.read("events", self.folder)
-
     def result(self, name: str) -> object:
         """Return a result of the scene's method by its name, such as "maps"."""
         value: object = method_of(self.scene.data).read(name, self.folder)
@@ -243,7 +231,7 @@ class Results:
         """The recorded film of the run, read frame by frame (film.bin)."""
         path = self.folder / FILM
         if not path.is_file():
-            raise InputError(f"{path}: missing; a run with output.film = true writes it")
+            raise MissingResultError(f"{path}: missing; a run with output.film = true writes it")
         return run_film(path, read_run_record(self.folder))
 
     def film_dataset(self, every: int = 1) -> xarray.Dataset:
@@ -258,7 +246,7 @@ class Results:
         """Return a table whose numbers are all finite."""
         path = self.folder / name
         if not path.is_file():
-            raise InputError(f"{path}: missing; {writer} writes it")
+            raise MissingResultError(f"{path}: missing; {writer} writes it")
         check_run_file(path)
         table = read_csv(path)
         if missing := [column for column in columns if column not in table]:
@@ -270,12 +258,6 @@ class Results:
 
     def __repr__(self) -> str:
         return f"Results({str(self.folder)!r})"
-
-
-def _with_units(table: pd.DataFrame) -> pd.DataFrame:
-    units = {str(name): unit_of_column(str(name)) for name in table}
-    table.attrs["units"] = {name: unit for name, unit in units.items() if unit}
-    return table
 
 
 def particle_files(folder: Path, *, snapshots: bool) -> list[Path]:

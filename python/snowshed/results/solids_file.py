@@ -45,7 +45,7 @@ def write_solids(
     if not len(positions):
         return None
     snow = Box(positions.min(axis=0), positions.max(axis=0))
-    solids, _ = scene_solids(scene.data, Path(scene.base_dir), snow, terrain)
+    solids, _ = scene_solids(scene, snow, terrain)
     if not solids:
         return None
     starts = np.cumsum([0, *(len(solid.corners) for solid in solids)])

@@ -81,7 +81,7 @@ def view_content(results: Results, film: Film) -> ViewContent:
     data = scene.data
     bounds = summarise_film(film).bounds
     terrain = slide_terrain(scene) if data.get("terrain") else None
-    solids, focus = scene_solids(data, Path(scene.base_dir), bounds, terrain)
+    solids, focus = scene_solids(scene, bounds, terrain)
     table = _events(results)
     lines = [] if table is None else _measures(data, table, results.folder, float(bounds.low[1]))
     return ViewContent(

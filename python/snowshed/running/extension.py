@@ -34,7 +34,7 @@ CONTINUED_FILES = (
 
 def extend_run(
     results: PathLike,
-    out_dir: PathLike,
+    folder: PathLike,
     events: int,
     *,
     snow: Optional[Snow] = None,
@@ -51,7 +51,7 @@ def extend_run(
     ----------
     results
         The folder of the finished run.
-    out_dir
+    folder
         The new folder; new or empty.
     events
         Number of further events.
@@ -104,12 +104,12 @@ def extend_run(
             f"{earlier.scene} -o {results} --resume"
         )
     longer = extended_scene(scene, events, snow=snow, thickness=thickness)
-    check_empty(out_dir)
+    check_empty(folder)
     ageing = read_object(earlier.ageing) if earlier.ageing.is_file() else None
-    _prepare(earlier, longer, Path(out_dir))
+    _prepare(earlier, longer, Path(folder))
     return run_events(
         longer,
-        out_dir,
+        folder,
         resume=True,
         ageing=None if ageing is None else Ageing.from_data(ageing, str(earlier.ageing)),
         progress=progress,
@@ -191,12 +191,12 @@ def _change_slab(slab: dict[str, Any], done: int, last: int, changes: Mapping[st
     slab["thickness"] = 0.0  # the layers have the thickness
 
 
-def _prepare(earlier: RunFolder, scene: ResolvedScene, out_dir: Path) -> None:
+def _prepare(earlier: RunFolder, scene: ResolvedScene, folder: Path) -> None:
     """Make the new folder, whole or not at all, as if its own run had computed the past events."""
     simulation = _core.Simulation.load_into(
         scene.core, scene.base_dir, os.fspath(earlier.checkpoint)
     )
-    with replacing_folder(out_dir) as beside:
+    with replacing_folder(folder) as beside:
         for name in CONTINUED_FILES:
             there = earlier.folder / name
             if there.is_dir():

@@ -22,8 +22,10 @@ from snowshed.base.arrays import (
     whole_number,
 )
 from snowshed.base.paths import PathLike
-from snowshed.results.fields import Fields
+from snowshed.methods.registry import method_of
+from snowshed.results.fields import Fields, Order, checked_order
 from snowshed.results.grid import grid_dataset, scene_grid
+from snowshed.results.method_results import MethodResults
 from snowshed.results.particle_dataset import DATASET, particle_dataset
 from snowshed.running.sequence import issuing_notes
 from snowshed.scene.components import Snow
@@ -35,7 +37,6 @@ from snowshed.snow.stack.particles import measure_particles
 if TYPE_CHECKING:
     import xarray
 
-Order = Literal["id", "storage"]
 Ended = Literal["rest", "time_limit", "reached"]
 Until = Union[Literal["rest"], float, Callable[["Simulation"], bool]]
 
@@ -43,7 +44,7 @@ MAX_STEPS = 64  # steps between two checks for Ctrl-C
 CHECK_INTERVAL = 0.1  # s of wall time between checks while the core runs to rest
 
 
-class Simulation:
+class Simulation(MethodResults):
     """A scene being simulated, in memory.
 
     It advances event by event: `run` seeds the snow of the next event and moves it until it rests;
@@ -176,7 +177,7 @@ class Simulation:
         if callable(until):
             return self._run_until(until, steps)
         while self.time < until:
-            # Half of the remaining time at the present time step, because the step may grow.
+            # Only half of the steps that would remain, because the time step may grow.
             left = 0.5 * (until - self.time) / self._core.time_step_s if self.time else 1
             self._core.step(max(1, min(MAX_STEPS, int(left))))
         return "reached"
@@ -320,13 +321,13 @@ class Simulation:
     def on_panel(self, order: Order = "id") -> Booleans:
         """Return whether each particle (n,) lies on the panel."""
         on_panel = self._core.on_panel()
-        if _checked_order(order) == "storage":
+        if checked_order(order) == "storage":
             by_id, on_panel = on_panel, np.empty_like(on_panel)
             on_panel[self._core.order_by_id()] = by_id
         return on_panel
 
     def _read(self, name: str, order: Order) -> Numbers:
-        read = self._core.field_by_id if _checked_order(order) == "id" else self._core.field
+        read = self._core.field_by_id if checked_order(order) == "id" else self._core.field
         return read(name)
 
     def to_xarray(self) -> xarray.Dataset:
@@ -390,6 +391,12 @@ class Simulation:
             )
         return {name[: -len("_j")]: value for name, value in self._core.energy().items()}
 
+    def result(self, name: str) -> object:
+        """Return a result of the scene's method up to now by its name, such as "maps"."""
+        data = self.scene.data
+        value: object = method_of(data).compute(name, self._core, data)
+        return value
+
     @property
     def scene(self) -> ResolvedScene:
         """The complete scene."""
@@ -441,9 +448,3 @@ class Simulation:
             f"<Simulation in {self.dimension}D: event {self.event} {state}, t = {self.time:g} s, "
             f"{self.particle_count} particles>"
         )
-
-
-def _checked_order(order: Order) -> Order:
-    if order not in ("id", "storage"):
-        raise InputError(f'order: {order!r}; allowed: "id", "storage"')
-    return order

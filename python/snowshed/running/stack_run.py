@@ -73,7 +73,8 @@ class StackRun(MethodRun):
         results.check_rows(self.sequence.tables, event)
         events = results.events
         if events.rows and not self.sequence.finished_events:  # of the version before
-            self.sequence.count_from(int(events.total("steps")), events.total("wall_s"))
+            work = int(events.total("steps")), events.total("wall_s")
+            self.sequence.set_finished_work(*work)
 
     def _fill_in(self, finished: list[dict[str, Any]]) -> None:
         """Measure the events that the tables lack from their stored particles."""

@@ -1,4 +1,4 @@
-from .builders.avaframe import avaframe_scene as avaframe_scene
+from .builders.avaframe.project import avaframe_scene as avaframe_scene
 from .builders.grains import grains_scene as grains_scene
 from .builders.meshes import mesh_structure as mesh_structure
 from .builders.panels import panel_rows as panel_rows

@@ -1,7 +1,8 @@
 """The components of a scene, field by field as the core reads them.
 
-Every field defaults to None, "not given": the core's default holds. Vectors are (x, y, z), in 2D
-(x, z). The tables of attributes are those of the JSON Schema (``snowshed schema``).
+A field that was not given reads as the core's default, or as None if it has no default. Writing
+None takes a value back. Vectors are (x, y, z), in 2D (x, z). The tables of attributes are those of
+the JSON Schema (``snowshed schema``).
 """
 
 from __future__ import annotations
@@ -10,11 +11,11 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import List, Literal, Optional, Union
+from typing import ClassVar, List, Literal, Optional, Union
 
 from snowshed._core import InputError, snow_preset
 from snowshed.base.paths import PathLike
-from snowshed.base.record import Alias, Record
+from snowshed.base.record import Alias, Record, default
 from snowshed.io.json_file import read_object
 from snowshed.scene.shape import Shape, Vector
 
@@ -55,14 +56,14 @@ class Snow(Record):
         Hardening factor xi. 0 < value <= 1000; default 0.1.
     """
 
-    model: Optional[SnowModel] = None
-    density: Optional[float] = None
-    youngs_modulus: Optional[float] = None
-    poissons_ratio: Optional[float] = None
-    critical_state_slope: Optional[float] = None
-    preconsolidation_pressure: Optional[float] = None
-    cohesion: Optional[float] = None
-    hardening_factor: Optional[float] = None
+    model: Optional[SnowModel] = default("cam_clay")
+    density: Optional[float] = default(210.0)
+    youngs_modulus: Optional[float] = default(1e6)
+    poissons_ratio: Optional[float] = default(0.3)
+    critical_state_slope: Optional[float] = default(0.5)
+    preconsolidation_pressure: Optional[float] = default(7000.0)
+    cohesion: Optional[float] = default(0.2)
+    hardening_factor: Optional[float] = default(0.1)
 
     @classmethod
     def preset(cls, name: str) -> Snow:
@@ -94,8 +95,8 @@ class Snow(Record):
             raise InputError(f"{file}: {error}") from None
 
     @classmethod
-    def named(cls, name: str) -> Snow:
-        """Return the snow of the thesis that has a name, or else that in a file."""
+    def preset_or_file(cls, name: str) -> Snow:
+        """Return the preset with this name, or the snow in this JSON file."""
         try:
             return cls.preset(name)
         except InputError as unknown:
@@ -122,7 +123,7 @@ class Panel(Record):
     thickness : float
         Thickness, below the sliding face [m]. 0 <= value <= 1e+06; default 0.
     condition : {"sticky", "slip", "separate"}
-        Motion of touching snow: stay (sticky), slide in the surface (slip), slide and leave
+        Snow in contact: sticks (sticky), slides and cannot leave (slip), slides and may leave
         (separate). Default "separate".
     friction : float
         Coulomb coefficient; unused when sticky. 0 <= value <= 100; default 0.3.
@@ -131,10 +132,10 @@ class Panel(Record):
     height: Optional[float] = None
     length: Optional[float] = None
     width: Optional[float] = None
-    tilt: Optional[float] = None
-    thickness: Optional[float] = None
-    condition: Optional[Condition] = None
-    friction: Optional[float] = None
+    tilt: Optional[float] = default(40.0)
+    thickness: Optional[float] = default(0.0)
+    condition: Optional[Condition] = default("separate")
+    friction: Optional[float] = default(0.3)
 
     # The words of pvlib.
     surface_tilt = Alias("tilt")
@@ -159,7 +160,9 @@ class Layer(Record):
 
     thickness: Optional[float] = None
     snow: Optional[Snow] = None
-    event: Optional[int] = None
+    event: Optional[int] = default(0)
+
+    INHERITS: ClassVar[tuple[str, ...]] = ("snow",)
 
 
 @dataclass
@@ -178,9 +181,9 @@ class Slab(Record):
         Layers from the panel up, instead of a thickness.
     """
 
-    thickness: Optional[float] = None
-    length: Optional[float] = None
-    width: Optional[float] = None
+    thickness: Optional[float] = default(0.0)
+    length: Optional[float] = default(0.0)
+    width: Optional[float] = default(0.0)
     layers: Optional[List[Layer]] = None
 
 
@@ -193,15 +196,15 @@ class Ground(Record):
     tilt : float
         Tilt; positive falls in the slide direction [degrees]. -60 < value < 60; default 0.
     condition : {"sticky", "slip", "separate"}
-        Motion of touching snow: stay (sticky), slide in the surface (slip), slide and leave
+        Snow in contact: sticks (sticky), slides and cannot leave (slip), slides and may leave
         (separate). Default "sticky".
     friction : float
         Coulomb coefficient; unused when sticky. 0 <= value <= 100; default 0.3.
     """
 
-    tilt: Optional[float] = None
-    condition: Optional[Condition] = None
-    friction: Optional[float] = None
+    tilt: Optional[float] = default(0.0)
+    condition: Optional[Condition] = default("sticky")
+    friction: Optional[float] = default(0.3)
 
 
 @dataclass
@@ -210,8 +213,8 @@ class Hole(Record):
 
     Attributes
     ----------
-    outline : sequence of float
-        Corners, in the terrain's coordinates, m [m]. Required.
+    outline : sequence of (x, y)
+        Corners, in the terrain's coordinates [m]. Required.
     """
 
     outline: Optional[Outline] = None
@@ -225,15 +228,15 @@ class Area(Record):
     ----------
     name : str
         Name in messages and results.
-    outline : sequence of float
-        Corners, in the terrain's coordinates, m [m]. Required.
+    outline : sequence of (x, y)
+        Corners, in the terrain's coordinates [m]. Required.
     holes : list of Hole
         Parts within the outline that do not belong to it.
     thickness : float
         Thickness of the snow, normal to the ground [m]. 0 < value <= 100; required.
     """
 
-    name: Optional[str] = None
+    name: Optional[str] = default("")
     outline: Optional[Outline] = None
     holes: Optional[List[Hole]] = None
     thickness: Optional[float] = None
@@ -247,13 +250,13 @@ class ResistanceArea(Record):
     ----------
     name : str
         Name in messages and results.
-    outline : sequence of float
-        Corners, in the terrain's coordinates, m [m]. Required.
+    outline : sequence of (x, y)
+        Corners, in the terrain's coordinates [m]. Required.
     holes : list of Hole
         Parts within the outline that do not belong to it.
     """
 
-    name: Optional[str] = None
+    name: Optional[str] = default("")
     outline: Optional[Outline] = None
     holes: Optional[List[Hole]] = None
 
@@ -291,12 +294,12 @@ class Terrain(Record):
     """
 
     file: Optional[PathLike] = None
-    crs: Optional[str] = None
-    single_precision: Optional[bool] = None
-    thickness_file: Optional[str] = None
-    max_thickness: Optional[float] = None
-    max_slope: Optional[float] = None
-    notes: Optional[str] = None
+    crs: Optional[str] = default("")
+    single_precision: Optional[bool] = default(True)
+    thickness_file: Optional[str] = default("")
+    max_thickness: Optional[float] = default(10.0)
+    max_slope: Optional[float] = default(70.0)
+    notes: Optional[str] = default("")
     release: Optional[List[Area]] = None
     entrainment: Optional[List[Area]] = None
     resistance: Optional[List[ResistanceArea]] = None
@@ -322,11 +325,11 @@ class Motion(Record):
         End of the motion [s]. 0 <= value <= 1e+09; default 1e+09.
     """
 
-    velocity: Optional[Vector] = None
+    velocity: Optional[Vector] = default((0.0, 0.0, 0.0))
     angular_velocity: Union[Vector, float, None] = None
-    pivot: Optional[Vector] = None
-    start: Optional[float] = None
-    end: Optional[float] = None
+    pivot: Optional[Vector] = default((0.0, 0.0, 0.0))
+    start: Optional[float] = default(0.0)
+    end: Optional[float] = default(1e9)
 
 
 @dataclass
@@ -340,7 +343,7 @@ class Obstacle(Record):
     shape : Shape
         The solid. Required.
     condition : {"sticky", "slip", "separate"}
-        Motion of touching snow: stay (sticky), slide in the surface (slip), slide and leave
+        Snow in contact: sticks (sticky), slides and cannot leave (slip), slides and may leave
         (separate). Default "separate".
     friction : float
         Coulomb coefficient; unused when sticky. 0 <= value <= 100; default 0.3.
@@ -348,10 +351,10 @@ class Obstacle(Record):
         Prescribed rigid motion; fixed without it.
     """
 
-    name: Optional[str] = None
+    name: Optional[str] = default("")
     shape: Optional[Shape] = None
-    condition: Optional[Condition] = None
-    friction: Optional[float] = None
+    condition: Optional[Condition] = default("separate")
+    friction: Optional[float] = default(0.3)
     motion: Optional[Motion] = None
 
 
@@ -373,9 +376,11 @@ class Body(Record):
     """
 
     shape: Optional[Shape] = None
-    velocity: Optional[Vector] = None
-    event: Optional[int] = None
+    velocity: Optional[Vector] = default((0.0, 0.0, 0.0))
+    event: Optional[int] = default(1)
     snow: Optional[Snow] = None
+
+    INHERITS: ClassVar[tuple[str, ...]] = ("snow",)
 
 
 @dataclass
@@ -411,10 +416,10 @@ class Seeding(Record):
         Accept fewer particles per voxel. Default False.
     """
 
-    particles_per_voxel: Optional[float] = None
-    pattern: Optional[Pattern] = None
-    seed: Optional[int] = None
-    allow_sparse: Optional[bool] = None
+    particles_per_voxel: Optional[float] = default(0.0)
+    pattern: Optional[Pattern] = default("poisson")
+    seed: Optional[int] = default(1)
+    allow_sparse: Optional[bool] = default(False)
 
 
 @dataclass
@@ -436,8 +441,8 @@ class Events(Record):
         Duration of rest that ends the event [s]. 0 <= value <= 1e+09; default 0.05.
     """
 
-    count: Optional[int] = None
-    between: Optional[Between] = None
-    max_time: Optional[float] = None
-    rest_speed: Optional[float] = None
-    rest_time: Optional[float] = None
+    count: Optional[int] = default(1)
+    between: Optional[Between] = default("carry")
+    max_time: Optional[float] = default(10.0)
+    rest_speed: Optional[float] = default(0.02)
+    rest_time: Optional[float] = default(0.05)

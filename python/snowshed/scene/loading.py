@@ -1,6 +1,6 @@
 """The components of a scene of grains: the sample, and how it is loaded.
 
-As in `snowshed.scene.components`, a field that is None takes the core's default.
+As in `snowshed.scene.components`, a field that was not given reads as the core's default.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Literal, Optional
 
 from snowshed.base.paths import PathLike
-from snowshed.base.record import Record
+from snowshed.base.record import Record, default
 
 LoadingKind = Literal["compress", "unload", "stretch", "shear", "isotropic", "penetrate", "hold"]
 
@@ -32,7 +32,7 @@ class Sample(Record):
 
     file: Optional[PathLike] = None
     voxel_size: Optional[float] = None
-    split_labels: Optional[bool] = None
+    split_labels: Optional[bool] = default(False)
 
 
 @dataclass
@@ -55,10 +55,10 @@ class LoadingStage(Record):
         plate (shear; 0: constant height) [Pa]. 0 <= value <= 1e+12; default 0.
     """
 
-    kind: Optional[LoadingKind] = None
-    speed: Optional[float] = None
-    strain: Optional[float] = None
-    stress: Optional[float] = None
+    kind: Optional[LoadingKind] = default("compress")
+    speed: Optional[float] = default(0.02)
+    strain: Optional[float] = default(0.3)
+    stress: Optional[float] = default(0.0)
 
 
 @dataclass
@@ -73,5 +73,5 @@ class Cone(Record):
         Angle between the axis and the cone's side [degrees]. 0 < value <= 90; default 30.
     """
 
-    radius: Optional[float] = None
-    half_angle: Optional[float] = None
+    radius: Optional[float] = default(0.0025)
+    half_angle: Optional[float] = default(30.0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Optional
 
-from snowshed.base.record import Record
+from snowshed.base.record import Record, default
 
 
 @dataclass
@@ -28,8 +28,8 @@ class Output(Record):
         Wall time between checkpoints; 0: none [s]. 0 <= value <= 1e+09; default 60.
     """
 
-    snapshot_interval: Optional[float] = None
-    film: Optional[bool] = None
-    film_interval: Optional[float] = None
-    energy: Optional[bool] = None
-    checkpoint_interval: Optional[float] = None
+    snapshot_interval: Optional[float] = default(0.0)
+    film: Optional[bool] = default(True)
+    film_interval: Optional[float] = default(0.0)
+    energy: Optional[bool] = default(False)
+    checkpoint_interval: Optional[float] = default(60.0)

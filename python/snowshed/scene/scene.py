@@ -19,7 +19,7 @@ from snowshed._core import InputError
 from snowshed._core import preset as preset_text
 from snowshed.base.json_values import JsonObject, JsonValue
 from snowshed.base.paths import PathLike
-from snowshed.base.record import MAX_DEPTH, Record, check_instead, check_once
+from snowshed.base.record import MAX_DEPTH, Record, check_instead, check_once, default
 from snowshed.io.input_file import read_input
 from snowshed.io.json_text import loads
 from snowshed.methods.registry import DEFAULT, NAME_KEY, SETTINGS_KEY, method_named
@@ -58,7 +58,7 @@ SLIP_CHANGED = (
 
 @dataclass
 class Scene(Record):
-    """A scene under construction; fields that are None use the core's defaults. SI units.
+    """A scene under construction; fields that are not given have the core's defaults. SI units.
 
     Attributes
     ----------
@@ -132,10 +132,10 @@ class Scene(Record):
     """
 
     snowshed: Optional[int] = 2
-    dimension: Optional[int] = None
-    title: Optional[str] = None
-    gravity: Optional[float] = None
-    misplaced_snow: Optional[MisplacedSnow] = None
+    dimension: Optional[int] = default(3)
+    title: Optional[str] = default("")
+    gravity: Optional[float] = default(9.81)
+    misplaced_snow: Optional[MisplacedSnow] = default("refuse")
     snow: Snow = UNSET
     panel: Optional[Panel] = None
     slab: Optional[Slab] = None
@@ -148,7 +148,7 @@ class Scene(Record):
     bodies: Optional[List[Body]] = None
     domain: Optional[Domain] = None
     seeding: Seeding = UNSET
-    method: Optional[str] = None
+    method: Optional[str] = default(DEFAULT)
     numerics: MethodSettings = UNSET
     events: Events = UNSET
     output: Output = UNSET
@@ -326,7 +326,7 @@ class Scene(Record):
             scene is then unchanged.
         """
         with locate(self, path) as (record, key, where):
-            held = getattr(record, record.field_of(key, where))
+            held = vars(record)[record.field_of(key, where)]
             if not isinstance(held, (list, tuple, type(None))):
                 raise InputError(f"{where}/{key}: is not a list; cannot append")
             record.assign(key, [*(held or []), value], where)

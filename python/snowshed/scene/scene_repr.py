@@ -23,9 +23,9 @@ def scene_repr(scene: Record, always: Collection[str]) -> str:
     """
     schema = schema_of_method(getattr(scene, NAME_KEY) or DEFAULT)
     nodes = properties(schema, schema)
-    lines = []
+    given, lines = scene.given(), []
     for key, name in scene.keys().items():
-        value = getattr(scene, name)
+        value = given.get(name)
         if (
             key in always
             and isinstance(value, Record)
@@ -50,11 +50,11 @@ def _literal(value: object, node: JsonObject) -> str:
 
 def _changed_fields(record: Record, node: JsonObject) -> dict[str, str]:
     """Return the fields that differ from the defaults, as texts."""
-    nodes = properties(scene_schema(), node)
+    nodes, given = properties(scene_schema(), node), record.given()
     return {
-        name: _literal(getattr(record, name), nodes.get(key, {}))
+        name: _literal(given[name], nodes.get(key, {}))
         for key, name in record.keys().items()
-        if not _is_default(getattr(record, name), nodes.get(key, {}))
+        if not _is_default(given.get(name), nodes.get(key, {}))
     }
 
 

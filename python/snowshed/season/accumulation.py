@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 from typing import Optional
 
 from snowshed.running.ageing.ageing import Ageing, Interval
-from snowshed.season.checks import check_one_season
 from snowshed.season.release import SnowBalance, snow_balance
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.settling_column import SnowColumn
-from snowshed.season.weather_row import Weather
+from snowshed.season.weather.checks import check_one_season
+from snowshed.season.weather.row import Weather
 from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
 
 

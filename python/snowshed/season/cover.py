@@ -14,7 +14,7 @@ from typing import Optional
 
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.settling_column import SnowColumn
-from snowshed.season.weather_row import Weather
+from snowshed.season.weather.row import Weather
 from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
 
 DAY = 86400.0  # s

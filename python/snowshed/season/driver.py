@@ -18,16 +18,16 @@ from snowshed.results.season_folder import SeasonFolder
 from snowshed.running.run import run_events
 from snowshed.scene.scene import ResolvedScene, SceneLike, resolve_scene
 from snowshed.season.accumulation import WinterDay, accumulate, stack_ageing
-from snowshed.season.clearance import PanelContact, first_contact, first_reached, panel_ends
 from snowshed.season.notes import assumptions, first_staying, notes
-from snowshed.season.quality import COVERAGE
-from snowshed.season.quality_table import caption
-from snowshed.season.season_record import SeasonRecord, WinterList
+from snowshed.season.panel_contact import PanelContact, first_contact, first_reached, panel_ends
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.slabs import season_scene
-from snowshed.season.source import AUTO
 from snowshed.season.table import season_table
-from snowshed.season.weather import Season, read_record
+from snowshed.season.weather.quality import COVERAGE
+from snowshed.season.weather.quality_table import caption
+from snowshed.season.weather.reading import Season, read_record
+from snowshed.season.weather.season_record import SeasonRecord, WinterList
+from snowshed.season.weather.source import AUTO
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -45,7 +45,7 @@ class SeasonResult:
     releases, simulated
         Number of releases, and of those that were simulated.
     contact
-        The first contact of any kind between the snow below and the panel, if any: the verdict.
+        First contact of the stack or the snow cover with the panel, if any: the verdict.
     burial_event
         First event after which the snow below the panel's lower edge reaches it, if any.
     crest_event
@@ -72,7 +72,7 @@ class SeasonResult:
 def run_season(
     season: Season,
     scene: SceneLike,
-    out_dir: PathLike,
+    folder: PathLike,
     *,
     settings: Optional[SeasonSettings] = None,
     resume: bool = False,
@@ -92,12 +92,12 @@ def run_season(
         A scene, its JSON data, or the path of a scene file. Its panel, ground, obstacles, snow and
         method are used; `season_scene` replaces its slab and its events. The panel's friction is
         that of sliding snow.
-    out_dir
+    folder
         The results folder (``snowshed.results.season_folder``); new or empty, unless resuming.
     settings
         Settings of release, density and settling. [default: `SeasonSettings()`]
     resume
-        Whether to resume an interrupted season in `out_dir`.
+        Whether to resume an interrupted season in `folder`.
     progress
         Called about twice a second while a slide-off runs.
     pictures
@@ -133,21 +133,21 @@ def run_season(
         season, scene, settings=settings, coverage=coverage, snow_from=snow_from,
         temperature=temperature,
     )  # fmt: skip
-    folder = SeasonFolder(out_dir)
+    files = SeasonFolder(folder)
     if not resume:
-        check_empty(folder.folder)
+        check_empty(files.folder)
     if plan.slides is not None:
         run_events(
             plan.slides,
-            folder.run.folder,
-            resume=resume and folder.run.scene.is_file(),
+            files.run.folder,
+            resume=resume and files.run.scene.is_file(),
             ageing=stack_ageing(plan.days, settings),
             progress=progress,
             pictures=pictures,
         )
-    folder.folder.mkdir(parents=True, exist_ok=True)
-    result = _result(plan, settings, folder)
-    _write(result, plan.scene, settings, folder, pictures=pictures)
+    files.folder.mkdir(parents=True, exist_ok=True)
+    result = _result(plan, settings, files)
+    _write(result, plan.scene, settings, files, pictures=pictures)
     return result
 
 
@@ -255,10 +255,12 @@ def _write(
         from snowshed.plot.figure_style import save_figure
 
         outlines = _table_or_empty(folder.run.outlines)
-        save_figure(drawn(result, outlines, scene.data), folder.figure)
+        save_figure(season_result_figure(result, outlines, scene.data), folder.figure)
 
 
-def drawn(result: SeasonResult, outlines: pd.DataFrame, scene: Mapping[str, Any]) -> Figure:
+def season_result_figure(
+    result: SeasonResult, outlines: pd.DataFrame, scene: Mapping[str, Any]
+) -> Figure:
     """Return the figure of a season.
 
     Parameters

@@ -65,8 +65,9 @@ def assumptions(
     if settings.pool_below:
         slides = sum(day.event is not None for day in days)
         yield (
-            f"{sum(day.released for day in days)} releases slide in {slides} slide-offs, of slabs "
-            f"of {1000 * settings.pool_below:g} mm and more"
+            f"{sum(day.released for day in days)} releases are pooled into {slides} slide-offs, "
+            f"whose slabs are at least {1000 * settings.pool_below:g} mm thick (the last may be "
+            "thinner)"
         )
 
 

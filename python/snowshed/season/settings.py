@@ -39,7 +39,7 @@ class SeasonSettings:
         Name of a law in `SINTERING_LAWS`, by which broken snow in the stack regains strength
         between events; None: no sintering.
     strength_age
-        Age at which bonds have the strength of the sliding snow, hours.
+        Age at which bonds reach the strength of the sliding snow, hours.
     strength
         Name of a relation in `TENSILE_STRENGTH`, which scales the strength and stiffness of a slab
         with its density; None: all slabs have the strength of the scene's snow.

@@ -10,8 +10,8 @@ import numpy as np
 
 from snowshed.results.season_folder import SEASON_COLUMNS
 from snowshed.season.accumulation import WinterDay
-from snowshed.season.clearance import below_panel, clearance
 from snowshed.season.cover import natural_cover
+from snowshed.season.panel_contact import below_panel, clearance
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.stack_settling import SettlingStack
 

@@ -5,3 +5,7 @@ from .relations.sintering import SINTERING_LAWS as SINTERING_LAWS
 from .relations.snow import snow_from_density as snow_from_density
 from .relations.stiffness import YOUNGS_MODULUS as YOUNGS_MODULUS
 from .relations.strength import TENSILE_STRENGTH as TENSILE_STRENGTH
+from .stack.measure import Extent as Extent
+from .stack.measure import StackMeasure as StackMeasure
+from .stack.measure import levelled_positions as levelled_positions
+from .stack.measure import measure_stack as measure_stack

@@ -15,7 +15,7 @@ from typing import Optional
 from snowshed._core import InputError
 from snowshed.base.messages import shortened
 
-MAX_COUNT = 1_000_000  # values of one factor; more is a slip of the pen
+MAX_COUNT = 1_000_000  # values of one factor; more are a mistyped range
 SCALES = ("linear", "log")
 #: Path of the seed of the particles' placement, which repeats a point of a study.
 SEED = "seeding.seed"

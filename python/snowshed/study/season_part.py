@@ -15,8 +15,8 @@ from snowshed.scene.scene import ResolvedScene
 from snowshed.season.accumulation import accumulate, stack_ageing
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.slabs import season_scene
-from snowshed.season.weather import read_season
-from snowshed.season.weather_row import Weather
+from snowshed.season.weather.reading import read_season
+from snowshed.season.weather.row import Weather
 from snowshed.study.scene_hash import RunKey
 
 if TYPE_CHECKING:

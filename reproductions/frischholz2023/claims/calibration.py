@@ -14,7 +14,7 @@ from reproductions.common.hypothesis_tests import (
 )
 from reproductions.frischholz2023.printed import CALIBRATED
 from snowshed.base.formatting import percent
-from snowshed.plot.labels import settings
+from snowshed.scene.labels import settings_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -32,7 +32,7 @@ class Recovery:
     Attributes
     ----------
     ranked
-        From `snowshed.analysis.rank_sets`: one row per parameter set, the best first.
+        From `snowshed.analysis.calibration.rank_sets`: one row per parameter set, the best first.
     ranges
         From `snowshed.analysis.calibration.Posterior.ranges`.
     """
@@ -49,7 +49,7 @@ def is_ranked_well(data: Recovery) -> Finding:
     if true_rows.empty:
         raise LookupError("the calibrated snow among the parameter sets")
     rank, count = int(true_rows["rank"].iloc[0]), len(data.ranked)
-    best = settings({path: data.ranked[path].iloc[0] for path in CALIBRATED})
+    best = settings_text({path: data.ranked[path].iloc[0] for path in CALIBRATED})
     verdict = CONTRADICTED
     if rank == 1:
         verdict = CONFIRMED
@@ -61,11 +61,11 @@ def is_ranked_well(data: Recovery) -> Finding:
 def is_in_the_ranges(data: Recovery) -> Finding:
     """Test whether the 95 % ranges of the posterior hold the true snow.
 
-    One of the three ranges misses the true value by chance, in about one of seven draws of the
-    errors.
+    At least one of the three ranges misses the true value by chance in about one of seven draws of
+    the errors (1 - 0.95^3).
 
-    p0 and beta of the true snow lie at the ends of the grid, which no range between quantiles
-    reaches: a range that is open at an end extends to it.
+    The true p0 and beta lie on the grid's boundary, which a quantile range never reaches. Ranges
+    marked open are therefore extended to it.
     """
     outside = [
         row["parameter"]

@@ -1,8 +1,8 @@
 """Claims of section 3.4: effects of a parameter, on average over all other parameters.
 
-The data are the table of `snowshed.analysis.sensitivity.fixation` with a column ``noise_m``: the
-standard deviation that the seeding gives ``mean_m``. Numbers are those after the last
-event unless an event is given. Values of the other parameters are a design, not a sample: only the
+The data are the table of `snowshed.analysis.sensitivity.fixation_table` with a column ``noise_m``:
+the standard deviation that the seeding gives ``mean_m``. Numbers are those after the last event
+unless an event is given. Values of the other parameters are a design, not a sample: only the
 seeding is random.
 """
 
@@ -17,10 +17,10 @@ from reproductions.common.hypothesis_tests import (
     Estimate,
     Finding,
     all_of,
+    is_negative,
+    is_positive,
     is_small,
     mean_of,
-    negative,
-    positive,
 )
 from reproductions.frischholz2023.claims.s_index import (
     COHESION,
@@ -30,7 +30,7 @@ from reproductions.frischholz2023.claims.s_index import (
     SLOPE,
 )
 from snowshed.base.formatting import percent
-from snowshed.plot.labels import label
+from snowshed.scene.labels import label
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -53,12 +53,12 @@ def effect(table: pd.DataFrame, parameter: str, target: str) -> Estimate:
 
 def raises(table: pd.DataFrame, parameter: str, target: str) -> Finding:
     """Test whether the stack grows over the range of a parameter."""
-    return positive(effect(table, parameter, target), _change(parameter, target), "m")
+    return is_positive(effect(table, parameter, target), _change(parameter, target), "m")
 
 
 def lowers(table: pd.DataFrame, parameter: str, target: str) -> Finding:
     """Test whether the stack shrinks over the range of a parameter."""
-    return negative(effect(table, parameter, target), _change(parameter, target), "m")
+    return is_negative(effect(table, parameter, target), _change(parameter, target), "m")
 
 
 def shortens_at_first(table: pd.DataFrame, parameter: str) -> Finding:
@@ -67,7 +67,7 @@ def shortens_at_first(table: pd.DataFrame, parameter: str) -> Finding:
     for event, rows in _by_event(_target_rows(table, "length"), parameter):
         low, high = (Estimate(row["mean_m"], row["noise_m"]) for _, row in rows.iloc[:2].iterrows())
         what = f"length, second minus lowest {label(parameter).symbol}, event {event:g}"
-        findings.append(negative(high - low, what, "m"))
+        findings.append(is_negative(high - low, what, "m"))
     return all_of(findings)
 
 
@@ -92,7 +92,7 @@ def events_matter_more(table: pd.DataFrame, target: str) -> Finding:
     strongest = Estimate(abs(effects[rival].value), effects[rival].noise)
     lead = (last - first) - strongest
     text = f"{target}, growth by the events minus change by {label(rival).symbol}, the strongest"
-    return positive(lead, text, "m")
+    return is_positive(lead, text, "m")
 
 
 def second_event_adds_most_length(table: pd.DataFrame) -> Finding:
@@ -104,7 +104,9 @@ def second_event_adds_most_length(table: pd.DataFrame) -> Finding:
     first, second, third = (_mean(rows[rows["event"] == event]) for event in events[:3])
     more = 2 * second.value - first.value - third.value
     noise = math.sqrt(first.noise**2 + 4 * second.noise**2 + third.noise**2)
-    return positive(Estimate(more, noise), "length, growth at the second minus at the third", "m")
+    return is_positive(
+        Estimate(more, noise), "length, growth at the second minus at the third", "m"
+    )
 
 
 def cohesive_snow_is_more_sensitive(table: pd.DataFrame) -> Finding:
@@ -117,7 +119,7 @@ def cohesive_snow_is_more_sensitive(table: pd.DataFrame) -> Finding:
         rows = _last(_target_rows(table, "height"), parameter)
         low, high = (_deviation(row) for row in (rows.iloc[0], rows.iloc[-1]))
         what = f"scatter at the highest {label(parameter).symbol} minus at the lowest"
-        findings.append(positive(high - low, what, "m"))
+        findings.append(is_positive(high - low, what, "m"))
     return all_of(findings)
 
 
@@ -131,7 +133,7 @@ def mass_makes_sensitive(table: pd.DataFrame) -> Finding:
             for rows in (by_event[0], by_event[-1])
         )
         what = f"mean scatter at values of {label(parameter).symbol}, last event minus first"
-        findings.append(positive(last - first, what, "m"))
+        findings.append(is_positive(last - first, what, "m"))
     return all_of(findings)
 
 

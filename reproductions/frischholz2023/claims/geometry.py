@@ -23,9 +23,9 @@ from reproductions.common.hypothesis_tests import (
     Claim,
     Estimate,
     Finding,
+    is_negative,
+    is_positive,
     is_small,
-    negative,
-    positive,
 )
 from snowshed.base.arrays import Floats
 from snowshed.base.formatting import percent
@@ -136,12 +136,12 @@ def _relative(values: Floats) -> Floats:
 
 def grows_with(table: pd.DataFrame, varied: str, target: str) -> Finding:
     """Test whether a target grows with an input."""
-    return positive(*_slope(table, varied, target))
+    return is_positive(*_slope(table, varied, target))
 
 
 def falls_with(table: pd.DataFrame, varied: str, target: str) -> Finding:
     """Test whether a target falls with an input."""
-    return negative(*_slope(table, varied, target))
+    return is_negative(*_slope(table, varied, target))
 
 
 def _slope(table: pd.DataFrame, varied: str, target: str) -> tuple[Estimate, str]:

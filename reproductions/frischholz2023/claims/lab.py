@@ -19,9 +19,9 @@ from reproductions.common.hypothesis_tests import (
     Estimate,
     Finding,
     is_near,
+    is_negative,
+    is_positive,
     is_small,
-    negative,
-    positive,
     widening,
 )
 from snowshed.base.formatting import percent
@@ -29,8 +29,10 @@ from snowshed.base.formatting import percent
 if TYPE_CHECKING:
     import pandas as pd
 
-#: Ratio of thesis 5.1, and its largest deviation that counts as "about".
-RATIO_3D_2D, RATIO_TOLERANCE = 2 / 3, 0.1
+#: Ratio of thesis 5.1.
+RATIO_3D_2D = 2 / 3
+#: Its largest deviation that counts as "about".
+RATIO_TOLERANCE = 0.1
 #: Section 4.3: mean errors of 0.010 m, about 10 %, and 0.061 m, about 20 %, give the mean stack.
 MEAN_HEIGHT, HEIGHT_TOLERANCE = 0.10, 0.010
 MEAN_LENGTH, LENGTH_TOLERANCE = 0.30, 0.061
@@ -84,7 +86,7 @@ def _growth(run: pd.DataFrame, column: str) -> float:
 def head_walks_back(rows: pd.DataFrame) -> Finding:
     """Test whether the head moves toward the panel from the first event to the last."""
     moved = mean_over_runs(rows, lambda run: _growth(run, "head"))
-    return negative(moved, "head, last event minus first", "m")
+    return is_negative(moved, "head, last event minus first", "m")
 
 
 def tail_stays(rows: pd.DataFrame) -> Finding:
@@ -96,7 +98,7 @@ def tail_stays(rows: pd.DataFrame) -> Finding:
 def head_makes_the_length(rows: pd.DataFrame) -> Finding:
     """Test whether the head contributes more to the growth of the length than the tail."""
     more = mean_over_runs(rows, lambda run: -_growth(run, "head") - _growth(run, "tail"))
-    return positive(more, "growth by the head minus growth by the tail", "m")
+    return is_positive(more, "growth by the head minus growth by the tail", "m")
 
 
 def length_grows_most_at_second(rows: pd.DataFrame) -> Finding:
@@ -110,7 +112,7 @@ def length_grows_most_at_second(rows: pd.DataFrame) -> Finding:
         )
         for event in _later(rows)[1:]
     ]
-    return positive(_least(leads), "second growth minus the largest later one", "m")
+    return is_positive(_least(leads), "second growth minus the largest later one", "m")
 
 
 def height_grows_always(rows: pd.DataFrame) -> Finding:
@@ -119,7 +121,7 @@ def height_grows_always(rows: pd.DataFrame) -> Finding:
         mean_over_runs(rows, lambda run, at=event: _event_growth(run, "height", at))
         for event in _later(rows)
     ]
-    return positive(_least(growths), "smallest growth of the height at an event", "m")
+    return is_positive(_least(growths), "smallest growth of the height at an event", "m")
 
 
 def _later(rows: pd.DataFrame) -> list[int]:
@@ -146,7 +148,7 @@ def height_slope_falls(rows: pd.DataFrame) -> Finding:
         half = len(added) // 2
         return float(added[:half].mean() - added[-half:].mean())
 
-    return positive(mean_over_runs(rows, flattening), "growth at first minus at last", "m/event")
+    return is_positive(mean_over_runs(rows, flattening), "growth at first minus at last", "m/event")
 
 
 def steeper_throws_further(rows: pd.DataFrame) -> Finding:
@@ -162,7 +164,7 @@ def steeper_throws_further(rows: pd.DataFrame) -> Finding:
         return middle if run["tilt"].iloc[0] == tilts[-1] else -middle
 
     what = f"middle of the stack, {tilts[-1]:g} minus {tilts[0]:g} degrees"
-    return positive(mean_over_runs(ends, signed_middle).scaled(2.0), what, "m")
+    return is_positive(mean_over_runs(ends, signed_middle).scaled(2.0), what, "m")
 
 
 def mean_height(rows: pd.DataFrame) -> Finding:

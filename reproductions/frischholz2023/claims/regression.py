@@ -17,7 +17,7 @@ from reproductions.common.hypothesis_tests import (
     Finding,
     all_of,
     is_near,
-    positive,
+    is_positive,
     widening,
 )
 from reproductions.frischholz2023.printed import THESIS_ERRORS, THESIS_QUARTILES, THESIS_ROWS
@@ -100,7 +100,7 @@ def mean_error(data: RegressionResults, model: str) -> Estimate:
 def rbf_is_better(data: RegressionResults) -> Finding:
     """Test whether the RBF kernel's median absolute error on validation sets is smaller."""
     lead = validation(data, "linear") - validation(data, "rbf")
-    return positive(lead, "validation score, linear minus RBF")
+    return is_positive(lead, "validation score, linear minus RBF")
 
 
 def rbf_is_better_by_ratio(data: RegressionResults) -> Finding:
@@ -128,7 +128,7 @@ def score_agrees(data: RegressionResults) -> Finding:
 def rbf_overfits_more(data: RegressionResults) -> Finding:
     """Test whether the RBF kernel loses more from the development sets to the validation sets."""
     more = overfitting(data, "rbf") - overfitting(data, "linear")
-    return positive(more, "validation minus development score, RBF minus linear")
+    return is_positive(more, "validation minus development score, RBF minus linear")
 
 
 def linear_chooses_more_widely(data: RegressionResults) -> Finding:
@@ -144,7 +144,7 @@ def is_sub_centimetre(data: RegressionResults) -> Finding:
     """Test whether the RBF models' mean absolute error is below 0.01."""
     error = mean_error(data, "rbf")
     left = Estimate(SUB_CENTIMETRE, 0.0) - error
-    return Finding(positive(left, "").verdict, f"mean absolute error of H/L: {error.text()}")
+    return Finding(is_positive(left, "").verdict, f"mean absolute error of H/L: {error.text()}")
 
 
 def error_agrees(data: RegressionResults, model: str) -> Finding:

@@ -14,12 +14,12 @@ from reproductions.common.hypothesis_tests import (
     Estimate,
     Finding,
     all_of,
+    is_negative,
+    is_positive,
     is_small,
     mean_of,
-    negative,
-    positive,
 )
-from snowshed.plot.labels import label
+from snowshed.scene.labels import label
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -53,12 +53,12 @@ def _index_text(parameter: str, target: str) -> str:
 
 def raises(table: pd.DataFrame, parameter: str, target: str) -> Finding:
     """Test whether S of a parameter is above zero."""
-    return positive(index(table, parameter, target), _index_text(parameter, target))
+    return is_positive(index(table, parameter, target), _index_text(parameter, target))
 
 
 def lowers(table: pd.DataFrame, parameter: str, target: str) -> Finding:
     """Test whether S of a parameter is below zero."""
-    return negative(index(table, parameter, target), _index_text(parameter, target))
+    return is_negative(index(table, parameter, target), _index_text(parameter, target))
 
 
 def hardly_matter(table: pd.DataFrame, target: str) -> Finding:
@@ -75,7 +75,7 @@ def cohesion_is_strongest(table: pd.DataFrame) -> Finding:
     magnitudes = {parameter: _magnitude(index(table, parameter, "height")) for parameter in others}
     rival = max(magnitudes, key=lambda parameter: magnitudes[parameter].value)
     lead = _magnitude(index(table, COHESION, "height")) - magnitudes[rival]
-    return positive(lead, f"|S| of β minus |S| of {label(rival).symbol}, the next, height")
+    return is_positive(lead, f"|S| of β minus |S| of {label(rival).symbol}, the next, height")
 
 
 def length_less_than_height(table: pd.DataFrame) -> Finding:
@@ -86,13 +86,13 @@ def length_less_than_height(table: pd.DataFrame) -> Finding:
         - _magnitude(index(table, parameter, "length"))
         for parameter in parameters
     ]
-    return positive(mean_of(differences), "mean |S| of height minus that of length")
+    return is_positive(mean_of(differences), "mean |S| of height minus that of length")
 
 
 def cohesion_gains_with_mass(table: pd.DataFrame) -> Finding:
     """Test whether S of beta for the height is larger after the last event than after the first."""
     gain = index(table, COHESION, "height") - index(table, COHESION, "height", last=False)
-    return positive(gain, "S of β for the height, last event minus first")
+    return is_positive(gain, "S of β for the height, last event minus first")
 
 
 def slope_needs_mass(table: pd.DataFrame) -> Finding:
@@ -106,7 +106,7 @@ def slope_needs_mass(table: pd.DataFrame) -> Finding:
                 is_small(estimate, MAX_MINOR_INDEX, f"{what}, event {event}")
                 for event, estimate in enumerate(before, 1)
             ),
-            Finding(positive(beyond, "").verdict, f"after the last: {last.text()}"),
+            Finding(is_positive(beyond, "").verdict, f"after the last: {last.text()}"),
         ]
     )
 
@@ -115,7 +115,7 @@ def length_effects_gain_with_mass(table: pd.DataFrame) -> Finding:
     """Test whether S of M and of beta for the length falls from the first event to the last."""
     return all_of(
         [
-            negative(
+            is_negative(
                 index(table, parameter, "length") - index(table, parameter, "length", last=False),
                 f"{_index_text(parameter, 'length')}, last event minus first",
             )

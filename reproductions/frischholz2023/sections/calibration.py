@@ -21,14 +21,16 @@ from snowshed.analysis.calibration.misfit import RANKING_QUANTITIES, statistics
 from snowshed.analysis.calibration.report import Calibration, calibrate, write
 from snowshed.base.formatting import number, percent
 from snowshed.plot.html_page import HtmlTable, Picture
-from snowshed.plot.labels import label
+from snowshed.scene.labels import label
 from snowshed.study.table import read_table
 
 if TYPE_CHECKING:
     import pandas as pd
 
-#: Relative standard deviation of the synthetic measurements, and the seed of their errors.
-UNCERTAINTY, ERRORS_SEED = 0.05, 1
+#: Relative standard deviation of the synthetic measurements.
+UNCERTAINTY = 0.05
+#: Seed of their errors.
+ERRORS_SEED = 1
 TEXT = (
     "The thesis prints the measured stacks as figures only, so the snow of the laboratory "
     "cannot be calibrated again. This section tests the procedure. A known snow, the calibrated "

@@ -147,13 +147,27 @@ def change_text(change: Estimate) -> str:
 
     Examples
     --------
-    >>> change_text(Estimate(-0.081, 0.02)), change_text(Estimate(0.0, 0.0))
-    ('-8 ± 2 %', 'none')
+    >>> change_text(Estimate(-0.081, 0.02)), change_text(Estimate(-0.001, 0.02))
+    ('-8 ± 2 %', '0 ± 2 %')
+    >>> change_text(Estimate(0.0, 0.0))
+    'none'
     """
     if change.value == 0 and change.noise == 0:
         return "none"
     noise = MISSING if np.isnan(change.noise) else f"{100 * change.noise:.0f}"
-    return f"{100 * change.value:+.0f} ± {noise} %"
+    return f"{signed_percentage(change.value)} ± {noise} %"
+
+
+def signed_percentage(share: float) -> str:
+    """Return a share as a whole percentage with its sign; zero has none.
+
+    Examples
+    --------
+    >>> signed_percentage(0.123), signed_percentage(-0.001)
+    ('+12', '0')
+    """
+    percentage = round(100 * share)
+    return f"{percentage:+d}" if percentage else "0"
 
 
 def quartiles_grid(stacks: pd.DataFrame) -> HtmlTable:

@@ -25,7 +25,7 @@ from snowshed.analysis.sensitivity.noise import seeding_noise
 from snowshed.analysis.sensitivity.report import evaluate_sensitivity
 from snowshed.analysis.sensitivity.stored import StudyRuns, read_study_runs
 from snowshed.plot.html_page import HtmlTable, Picture
-from snowshed.plot.labels import label
+from snowshed.scene.labels import label
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -80,17 +80,17 @@ def _index_runs(work: ThesisComputation) -> StudyRuns:
 
 
 def with_noise(table: pd.DataFrame, noise: pd.DataFrame, seeds: int) -> pd.DataFrame:
-    """Return the table of `fixation` with ``noise_m``, the deviation of ``mean_m`` by the seeding.
+    """Return a `fixation_table` with ``noise_m``, the deviation of ``mean_m`` by the seeding.
 
     Parameters
     ----------
     table
-        From `snowshed.analysis.sensitivity.fixation`.
+        From `snowshed.analysis.sensitivity.fixation_table`.
     noise
         From `snowshed.analysis.sensitivity.seeding_noise`, relative to the stack, from any study of
         the same scene.
     seeds
-        Seedings of each point.
+        Random seeds per point.
     """
     keys = list(zip(table["event"], table["target"]))
     relative = np.array([noise["noise"].get(key, np.nan) for key in keys])

@@ -123,7 +123,7 @@ def quartiles_grid(data: Mapping[str, RegressionResults]) -> HtmlTable:
             ours = _numbers(regressed.quartiles.loc[model, list(QUARTILES)])
             rows.append([f"{NAMES[model]}, here", f"predictions, {name}", *ours])
     for name, regressed in data.items():
-        rows.append(["none", name, *_numbers(regressed.quartiles.loc["data", list(QUARTILES)])])
+        rows.append(["(rows)", name, *_numbers(regressed.quartiles.loc["data", list(QUARTILES)])])
     return HtmlTable(["model", "of", *QUARTILES], rows, "ll" + "r" * len(QUARTILES))
 
 

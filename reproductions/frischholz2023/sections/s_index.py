@@ -23,7 +23,7 @@ from snowshed.analysis.sensitivity.parameter_values import PAIRS
 from snowshed.analysis.sensitivity.report import evaluate_sensitivity
 from snowshed.analysis.sensitivity.stored import read_study_runs
 from snowshed.plot.html_page import HtmlTable, Picture
-from snowshed.plot.labels import label
+from snowshed.scene.labels import label
 
 if TYPE_CHECKING:
     import pandas as pd

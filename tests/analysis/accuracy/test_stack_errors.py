@@ -10,7 +10,7 @@ from snowshed.scene import example_slide
 
 
 def stack(dx, height, length, **settings):
-    """Runs whose means are off by these shares of 0.1 m and 0.4 m."""
+    """Return recorded runs whose means deviate by these shares from 0.1 m and 0.4 m."""
     measured = [
         Measured("height", 0.1 * (1 + height), 0.1, 0.9),
         Measured("length", 0.4 * (1 + length), 0.4, 0.9),
@@ -54,7 +54,7 @@ def scene(**values):
         ({"numerics.scheme": "objective", "numerics.dx": 0.005}, 0.02, -0.03),
     ],
 )
-def test_the_error_is_that_of_the_nearest_recorded_runs(values, height, length):
+def test_the_error_comes_from_the_nearest_recorded_runs(values, height, length):
     error = stack_error(scene(**values), RECORDED)
     assert error.bias == {"height": pytest.approx(height), "length": pytest.approx(length)}
     assert error.scatter == {"height": 0.04, "length": 0.06}
@@ -66,11 +66,13 @@ def test_the_sentence_names_the_recorded_scene_and_the_sign_of_the_error():
         "error of the stack in recorded runs (lab-50 in 2D, event 5, scheme thesis, 2 cells"
     )
     assert "this scene has 1.5" in text
-    assert "height 30 % too large, length 10 % too small, against the finest recorded grid" in text
+    assert (
+        "height 30 % too large, length 10 % too small, relative to the finest recorded grid" in text
+    )
     assert text.endswith("single runs scatter by 4 % and 6 %")
 
 
-def test_scenes_without_a_stack_on_a_grid_have_none(tmp_path):
+def test_scenes_without_recorded_runs_have_no_error_estimate(tmp_path):
     assert stack_error(example_slide(tmp_path), RECORDED) is None
     assert stack_error(scene(), []) is None
 
@@ -85,13 +87,13 @@ def test_scenes_without_a_stack_on_a_grid_have_none(tmp_path):
         ({"scheme": "objective", "damping_length": 0.02}, "scheme objective with damping length"),
     ],
 )
-def test_nothing_is_recorded_for_other_mechanisms(values, label):
-    other = scene(**{f"numerics.{name}": value for name, value in values.items()}).resolve()
-    assert stack_error(other, RECORDED) is None
-    sentence = error_sentence(other)
+def test_the_sentence_names_mechanisms_without_recorded_runs(values, label):
+    resolved = scene(**{f"numerics.{name}": value for name, value in values.items()}).resolve()
+    assert stack_error(resolved, RECORDED) is None
+    sentence = error_sentence(resolved)
     assert sentence.startswith(f"error of the stack: no runs are recorded for {label}")
     assert sentence.endswith("; --check measures it")
-    mechanisms = Mechanisms.of_scene(other.data)
+    mechanisms = Mechanisms.of_scene(resolved.data)
     assert recorded_bias(2, 5, mechanisms).startswith(f"no runs are recorded for {label}")
 
 
@@ -106,10 +108,10 @@ def test_the_sentence_names_the_scheme_and_its_lengths():
     assert thick.endswith("are 50 % of the recorded slab's thickness, 25 % of this one's")
 
 
-def test_the_bias_of_all_resolved_grids():
+def test_the_recorded_bias_covers_all_resolved_grids():
     packaged = [m for m in load_recorded() if m.case == CASE]
     assert packaged
-    end = " cells in the slab, against the finest recorded grid of this scheme"
+    end = " cells in the slab, relative to the finest recorded grid of this scheme"
     thesis = recorded_bias(2, 5)
     assert thesis.startswith("stacks of lab-50 in 2D, event 5, scheme thesis were ")
     assert thesis.endswith(f"% too high with 2 to 4{end}")
@@ -120,5 +122,5 @@ def test_the_bias_of_all_resolved_grids():
     assert "event 2, scheme objective" in recorded_bias(3, 5, Mechanisms("objective"))
 
 
-def test_the_thickness_of_the_recorded_slab_is_that_of_the_preset():
+def test_the_recorded_slab_is_as_thick_as_that_of_the_preset():
     assert Scene.preset(PRESET).slab.thickness == PRESET_THICKNESS

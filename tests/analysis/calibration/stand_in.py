@@ -1,7 +1,7 @@
-"""A stack as a closed function of the snow, in place of simulations, and measurements of it.
+"""Stack dimensions from a formula in place of simulations, and synthetic measurements of them.
 
-It has the shape that the simulations have (height grows with every parameter and with the events,
-length falls with M and beta) and nothing else to do with them.
+As in simulations, height grows with every parameter and with the events, and length falls with M
+and beta. Otherwise the formula is arbitrary.
 """
 
 import itertools
@@ -28,7 +28,7 @@ TILTS, EVENTS, MEASURED_EVENTS = (40.0, 50.0), (1, 2, 3, 4, 5), (1, 3, 5)
 
 
 def stack(snow, tilt, event):
-    """Height and length, m."""
+    """Return height and length, m."""
     slope, pressure, cohesion = (np.asarray(snow, float) - LOW) / (HIGH - LOW)
     height = 0.035 * event**0.75 * (1 + 0.25 * slope + 0.2 * pressure**2 + 0.45 * cohesion)
     height *= 1 + 0.1 * slope * cohesion - 0.004 * (tilt - 40)
@@ -41,8 +41,8 @@ def thesis_triplets():
     return list(itertools.product([0.4, 0.5, 0.6, 0.7], [4e3, 5e3, 6e3, 7e3], [0.05, 0.1, 0.2]))
 
 
-def table_of(triplets, noise=0.02, seeds=(1, 2), random=0):
-    """A study's table of such stacks; every seed has its own noise (a share of the value)."""
+def study_table(triplets, noise=0.02, seeds=(1, 2), random=0):
+    """Return a study's table of stacks; every seed has its own noise (a share of the value)."""
     generator = np.random.default_rng(random)
     rows = []
     for snow, tilt, seed in itertools.product(triplets, TILTS, seeds):
@@ -58,28 +58,30 @@ def table_of(triplets, noise=0.02, seeds=(1, 2), random=0):
 
 
 def measured(snow, uncertainty=0.05, noise=0.02, random=0, quantities=("height", "length")):
-    """Synthetic measurements: the stack, its own seeding noise, and an error of measurement."""
+    """Return synthetic measurements: stacks with seeding noise and an error of measurement."""
     generator = np.random.default_rng(random)
-    found = []
+    measurements = []
     for tilt, event in itertools.product(TILTS, MEASURED_EVENTS):
-        true = dict(zip(("height", "length"), stack(snow, tilt, event)))
+        dimensions = dict(zip(("height", "length"), stack(snow, tilt, event)))
         for quantity in quantities:
-            run = true[quantity] * (1 + noise * generator.normal())
-            deviation = uncertainty * true[quantity]
+            run = dimensions[quantity] * (1 + noise * generator.normal())
+            deviation = uncertainty * dimensions[quantity]
             value = run + deviation * generator.normal()
-            found.append(Measurement(tilt, event, 1, quantity, value, deviation, len(found) + 2))
-    return found
+            measurements.append(
+                Measurement(tilt, event, 1, quantity, value, deviation, len(measurements) + 2)
+            )
+    return measurements
 
 
 def fill(folder, study, pending=0):
-    """Store such stacks as results of a study's runs; the last `pending` runs get none."""
+    """Store stacks as results of a study's runs, except for the last `pending` runs."""
     with Store.create(folder) as store:
         store.register(study.name, study.axes, study.runs())
         for number, run in enumerate(study.runs()[: len(study.runs()) - pending]):
             scene = json.loads(run.scene)
             names = ("critical_state_slope", "preconsolidation_pressure", "cohesion")
             snow = tuple(scene["snow"][name] for name in names)
-            table = table_of([snow], seeds=(scene["seeding"]["seed"],), random=number)
+            table = study_table([snow], seeds=(scene["seeding"]["seed"],), random=number)
             table = table[table["panel.tilt"] == scene["panel"]["tilt"]]
             rows = []
             for stacks in table.to_dict("records"):
@@ -90,13 +92,18 @@ def fill(folder, study, pending=0):
 
 
 def write_measurements(measurements, file):
-    """A measurements file, with one row per measured value."""
+    """Write a measurements file with a row for each measured value."""
     names = ["tilt_deg", "event", "round"]
     names += [f"{q}{end}" for q in ("height", "length") for end in ("_m", "_std_m")]
     lines = [",".join(names)]
-    for number, one in enumerate(measurements, 1):
+    for number, measurement in enumerate(measurements, 1):
         cells = dict.fromkeys(names, "")
-        cells.update(tilt_deg=one.tilt, event=one.event, round=number)
-        cells.update({f"{one.quantity}_m": one.value, f"{one.quantity}_std_m": one.uncertainty})
+        cells.update(tilt_deg=measurement.tilt, event=measurement.event, round=number)
+        cells.update(
+            {
+                f"{measurement.quantity}_m": measurement.value,
+                f"{measurement.quantity}_std_m": measurement.uncertainty,
+            }
+        )
         lines.append(",".join(str(cells[name]) for name in names))
     file.write_text("\n".join(lines) + "\n", encoding="utf-8")

@@ -1,4 +1,4 @@
-"""The command, from measurements to tables and figures; and recovery of real, coarse snow."""
+"""The command, from measurements to figures; and recovery of snow from coarse simulations."""
 
 import itertools
 import json
@@ -10,7 +10,7 @@ import xarray as xr
 from stand_in import COHESION, PARAMETERS, fill, measured, write_measurements
 
 from snowshed import Scene
-from snowshed.analysis import (
+from snowshed.analysis.calibration import (
     Measurement,
     calibrate,
     calibration_study,
@@ -29,7 +29,7 @@ def run(*arguments):
 
 @pytest.fixture(scope="module")
 def evaluated(tmp_path_factory):
-    """The folder of a calibration on the corners of the grid, whose runs are made up."""
+    """The folder of a calibration on the corners of the grid, with stacks from a formula."""
     folder = tmp_path_factory.mktemp("calibration")
     write_measurements(measured(TRUTH), folder / "stacks.csv")
     study = calibration_study(read_measurements(folder / "stacks.csv"), quick=True)
@@ -39,7 +39,7 @@ def evaluated(tmp_path_factory):
     return folder
 
 
-def test_tables_and_figures(evaluated):
+def test_tables_and_figures_are_written(evaluated):
     out = evaluated / "out"
     ranking = pd.read_csv(out / "ranking.csv")
     assert len(ranking) == 12 and ranking["rank"].tolist() == list(range(1, 13))
@@ -69,9 +69,9 @@ def test_without_a_library_the_error_says_what_to_install(
     hide(library)
     options = ("--stored", evaluated / "store", "-o", tmp_path / "out", "-q")
     assert run("calibrate", evaluated / "stacks.csv", *options) == 2
-    said = capsys.readouterr().err
-    assert f"needs {library}" in said and 'pip install "snowshed[calibration]"' in said
-    assert said.count("\n") == 1 and not (tmp_path / "out").exists()
+    message = capsys.readouterr().err
+    assert f"needs {library}" in message and 'pip install "snowshed[calibration]"' in message
+    assert message.count("\n") == 1 and not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize("library", ["emcee", "sklearn", "arviz", "corner", "xarray"])
@@ -79,7 +79,7 @@ def test_without_a_library_nothing_is_computed(
     evaluated, tmp_path, capsys, hide, monkeypatch, library
 ):
     def computes(*_, **__):
-        raise AssertionError("runs were computed, though nobody can evaluate them")
+        raise AssertionError("runs were computed that cannot be evaluated")
 
     monkeypatch.setattr("snowshed.cli.commands.designed_study.compute_study", computes)
     hide(library)
@@ -87,11 +87,11 @@ def test_without_a_library_nothing_is_computed(
     assert run("calibrate", evaluated / "stacks.csv", *options) == 2
     assert f"needs {library}" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
-    if library != "xarray":  # the cost is told without it
+    if library != "xarray":  # the dry run does without it
         assert run("calibrate", evaluated / "stacks.csv", *options, "--dry-run") == 0
 
 
-def test_what_it_prints(evaluated, capsys):
+def test_the_printed_tables_and_warnings(evaluated, capsys):
     from snowshed.cli.commands.calibrate import print_calibration
 
     stacks = read_simulated_stacks(evaluated / "store")
@@ -104,7 +104,7 @@ def test_what_it_prints(evaluated, capsys):
     assert "error of the model in height" in shown
 
 
-def test_runs_that_are_not_computed_are_told(evaluated, tmp_path, capsys):
+def test_missing_runs_are_reported(evaluated, tmp_path, capsys):
     from snowshed.cli.commands.calibrate import print_calibration
 
     grid = calibration_study(read_measurements(evaluated / "stacks.csv"))
@@ -121,7 +121,7 @@ def test_the_template_is_written(tmp_path, capsys):
     assert "stacks.csv: no measurement in it" in capsys.readouterr().err
 
 
-def test_plan_and_errors(tmp_path, capsys):
+def test_dry_run_and_errors(tmp_path, capsys):
     write_measurements(measured(TRUTH), tmp_path / "stacks.csv")
     options = (tmp_path / "stacks.csv", "-o", tmp_path / "out")
     assert run("calibrate", *options, "--quick", "--dry-run") == 0
@@ -144,8 +144,8 @@ def test_plan_and_errors(tmp_path, capsys):
 
 
 @pytest.mark.slow
-def test_real_snow_is_recovered_from_its_own_coarse_stacks(tmp_path):
-    """Measure a simulated snow with an error of 3 %, and find it from other runs and seedings."""
+def test_snow_parameters_are_recovered_from_coarse_simulations(tmp_path):
+    """Measurements of simulated stacks have an error of 3 %; the fit uses other runs and seeds."""
     scene = Scene.preset("lab-40").update({"dimension": 2, "numerics.dx": 0.03})
     scene.update({"events.count": 3, "snow.hardening_factor": 0.1, "snow.youngs_modulus": 1e6})
     spans = {
@@ -155,9 +155,11 @@ def test_real_snow_is_recovered_from_its_own_coarse_stacks(tmp_path):
     }
     tilts = axis("panel.tilt", [40, 50])
     truth = {PARAMETERS[0]: 0.5, PARAMETERS[1]: 5e3, COHESION: 0.25}
-    known = Study(scene, [[tilts, Factor({p: [v] for p, v in truth.items()})]], "known", [901])
+    truth_study = Study(
+        scene, [[tilts, Factor({p: [v] for p, v in truth.items()})]], "known", [901]
+    )
     study = Study(scene, [[tilts, latin_hypercube(spans, 40)]], "sample", [1])
-    table = known.run(tmp_path, jobs=1, threads=1)
+    table = truth_study.run(tmp_path, jobs=1, threads=1)
     random = np.random.default_rng(7)
     measurements = []
     for row, quantity in itertools.product(table.to_dict("records"), ("height", "length")):
@@ -166,10 +168,10 @@ def test_real_snow_is_recovered_from_its_own_coarse_stacks(tmp_path):
         at = (float(row["panel.tilt"]), int(row["event"]), 1)
         measurements.append(Measurement(*at, quantity, noisy, 0.03 * value))
     study.run(tmp_path, jobs=1, threads=1)
-    found = calibrate(measurements, read_simulated_stacks(tmp_path, "sample"))
-    ranges = found.ranges.set_index("parameter")
+    calibration = calibrate(measurements, read_simulated_stacks(tmp_path, "sample"))
+    ranges = calibration.ranges.set_index("parameter")
     print(json.dumps(ranges.reset_index().to_dict("records"), indent=1))
     for path, true in truth.items():
         assert ranges.loc[path, "lower_95"] < true < ranges.loc[path, "upper_95"]
     width = (ranges["upper_95"] - ranges["lower_95"]) / (ranges["high"] - ranges["low"])
-    assert width.min() < 0.75  # and something was learnt
+    assert width.min() < 0.75  # the data narrow a range

@@ -1,9 +1,9 @@
-"""Measurement files: what is read, and what is refused with line and column."""
+"""Measurement files: their values, and errors with line and column."""
 
 import pytest
 
 from snowshed import InputError
-from snowshed.analysis import measurements_template, read_measurements
+from snowshed.analysis.calibration import measurements_template, read_measurements
 from snowshed.analysis.calibration.measurements import COLUMNS
 
 HEADER = "tilt_deg,event,height_m,height_std_m,length_m,length_std_m"
@@ -15,16 +15,18 @@ def read(tmp_path, text):
     return read_measurements(tmp_path / "stacks.csv")
 
 
-def test_values_uncertainties_and_lines(tmp_path):
-    found = read(tmp_path, f"# a comment\n{HEADER}\n\n40,1,0.05,0.005,,\n50, 2 ,,,0.3,0.02\n")
-    assert [(one.tilt, one.event, one.quantity, one.value, one.uncertainty, one.line)
-            for one in found] == [
+def test_values_uncertainties_and_lines_are_read(tmp_path):
+    measurements = read(
+        tmp_path, f"# a comment\n{HEADER}\n\n40,1,0.05,0.005,,\n50, 2 ,,,0.3,0.02\n"
+    )
+    assert [(row.tilt, row.event, row.quantity, row.value, row.uncertainty, row.line)
+            for row in measurements] == [
         (40, 1, "height", 0.05, 0.005, 4),
         (50, 2, "length", 0.3, 0.02, 5),
     ]  # fmt: skip
 
 
-def test_the_template_holds_no_number_that_nobody_measured(tmp_path):
+def test_the_template_holds_no_measured_values(tmp_path):
     lines = [line for line in measurements_template().splitlines() if not line.startswith("#")]
     assert lines[0] == ",".join(COLUMNS) and len(lines) == 1 + 2 * 5
     assert all(line.split(",")[3:] == [""] * 8 for line in lines[1:])
@@ -33,13 +35,13 @@ def test_the_template_holds_no_number_that_nobody_measured(tmp_path):
     filled = measurements_template().replace(
         "\n40,1,1,,,,,,,,", "\n40,1,1,0.05,0.005,0.2,0.02,0.1,0.01,0.3,0.01"
     )
-    assert [one.quantity for one in read(tmp_path, filled)] == ["height", "length", "head", "tail"]
+    assert [row.quantity for row in read(tmp_path, filled)] == ["height", "length", "head", "tail"]
 
 
 def test_rounds_repeat_an_experiment(tmp_path):
     header = "tilt_deg,event,round,height_m,height_std_m"
-    found = read(tmp_path, f"{header}\n40,1,1,0.05,0.005\n40,1,2,0.06,0.005\n")
-    assert [one.round for one in found] == [1, 2]
+    measurements = read(tmp_path, f"{header}\n40,1,1,0.05,0.005\n40,1,2,0.06,0.005\n")
+    assert [row.round for row in measurements] == [1, 2]
     with pytest.raises(InputError, match="line 3: tilt 40, event 1, round 1 is in line 2 already"):
         read(tmp_path, f"{header}\n40,1,1,0.05,0.005\n40,1,,0.06,0.005\n")
 
@@ -80,7 +82,7 @@ def test_rounds_repeat_an_experiment(tmp_path):
         ),
     ],
 )
-def test_what_is_wrong_is_named(tmp_path, text, message):
+def test_errors_name_line_and_column(tmp_path, text, message):
     with pytest.raises(InputError) as caught:
         read(tmp_path, text)
     assert str(caught.value).partition("stacks.csv")[2][2:].startswith(message)

@@ -1,4 +1,4 @@
-"""The clearance answer: what it counts, its probabilities, its statistics, its words."""
+"""The clearance answer: burials, probabilities, statistics, texts."""
 
 import json
 import os
@@ -12,17 +12,23 @@ from helpers.station_files import days, elements, ghcn
 from plot.browser import check_page
 
 from snowshed import InputError
-from snowshed.analysis import Design, Ranges, required_clearance, split_winters
-from snowshed.analysis.clearance import answer_text, statistics
-from snowshed.analysis.clearance.answer import STUDY, forecast
+from snowshed.analysis.clearance import (
+    PanelDesign,
+    SnowRanges,
+    answer_text,
+    required_clearance,
+    split_winters,
+    statistics,
+)
+from snowshed.analysis.clearance.answer import STUDY, expected_duration
 from snowshed.analysis.clearance.report import write_report
 from snowshed.analysis.clearance.statistics import burial_interval, levels_of, shares_of
 from snowshed.cli.main import main
 from snowshed.results.folder import read_events
 from snowshed.results.season_folder import SeasonFolder
 from snowshed.season import SeasonSettings, run_season
-from snowshed.season.generator import EXAMPLE_CLIMATE, Climate, MonthClimate
-from snowshed.season.source import SnowSource
+from snowshed.season.weather.generator import EXAMPLE_CLIMATE, Climate, MonthClimate
+from snowshed.season.weather.source import SnowSource
 from snowshed.study.errors import StudyInterrupted
 from snowshed.study.table import read_table
 
@@ -34,12 +40,14 @@ SHORT = Climate(
         2: MonthClimate(0.0, 0.0, 1.0, 0.1, -4.0, 3.0),
     }
 )
-DESIGN = Design(0.6, 60.0)
-KNOWN = Ranges({"friction": (0.4, 0.4), "adhesion": (10.0, 10.0), "sliding": (0.2, 0.2)}, draws=1)
+DESIGN = PanelDesign(0.6, 60.0)
+KNOWN = SnowRanges(
+    {"friction": (0.4, 0.4), "adhesion": (10.0, 10.0), "sliding_friction": (0.2, 0.2)}, draws=1
+)
 HEIGHT = 0.45
 
 
-def answer_of(winters, folder, heights=(HEIGHT,), **options):
+def clearance_answer(winters, folder, heights=(HEIGHT,), **options):
     return required_clearance(DESIGN, winters, heights, folder, ranges=KNOWN, **options)
 
 
@@ -51,12 +59,12 @@ def winters():
 @pytest.fixture(scope="module")
 def answer(winters, tmp_path_factory):
     folder = tmp_path_factory.mktemp("clearance") / "runs"
-    return answer_of(winters, folder, (0.25, HEIGHT, 0.9)), folder
+    return clearance_answer(winters, folder, (0.25, HEIGHT, 0.9)), folder
 
 
 def test_stacks_age_between_slide_offs_as_in_a_season(answer, tmp_path):
-    found, folder = answer
-    case = max(found.cases, key=lambda one: sum(day.released for day in one.days))
+    result, folder = answer
+    case = max(result.cases, key=lambda case: sum(day.released for day in case.days))
     run = case.run_key(HEIGHT)
     table = read_table(folder, STUDY)
     rows = table[table["hash"] == run.hash]
@@ -72,12 +80,12 @@ def test_stacks_age_between_slide_offs_as_in_a_season(answer, tmp_path):
     assert still.run_key(HEIGHT).hash != run.hash
 
 
-def test_it_counts_the_burials_that_seasons_have(answer, winters, tmp_path):
-    """The study's seasons are those of `run_season`, which reads other files."""
-    found, _ = answer
-    table = found.table().set_index(["winter", "height_m"])
-    for case in found.cases:
-        for height in {one for name, one in table.index if name == case.winter.name}:
+def test_burials_agree_with_those_of_seasons(answer, winters, tmp_path):
+    """The study's seasons are buried as those of `run_season`, which reads other files."""
+    result, _ = answer
+    table = result.table().set_index(["winter", "height_m"])
+    for case in result.cases:
+        for height in {edge for name, edge in table.index if name == case.winter.name}:
             out = tmp_path / f"{case.winter.name[:4]}-{height:g}"
             season = run_season(
                 case.winter.days,
@@ -88,41 +96,43 @@ def test_it_counts_the_burials_that_seasons_have(answer, winters, tmp_path):
             )
             touched = table.loc[(case.winter.name, height), "touched"]
             assert touched == (season.contact is not None), (case.winter.name, height)
-    assert 0 < table["touched"].mean() < 1  # both are there
+    assert 0 < table["touched"].mean() < 1  # some seasons have a burial, some none
 
 
-def test_a_higher_edge_is_needed_between_the_heights_that_decide(answer):
-    found, _ = answer
-    table = found.table()
+def test_the_required_height_lies_between_buried_and_free_heights(answer):
+    result, _ = answer
+    table = result.table()
     for _, own in table.groupby("case"):
         required = own["required_m"].iloc[0]
         assert (own["height_m"][own["touched"] == 1] <= required).all()
         assert (own["height_m"][own["touched"] == 0] >= required).all()
 
 
-def test_interrupted_and_resumed_it_is_the_same(answer, winters, tmp_path):
-    found, _ = answer
+def test_a_resumed_answer_equals_an_uninterrupted_one(answer, winters, tmp_path):
+    result, _ = answer
 
     def interrupt(progress):
         if progress.done >= 1:
             os.kill(os.getpid(), signal.SIGINT)
 
     with pytest.raises(StudyInterrupted):
-        answer_of(winters, tmp_path / "runs", (0.25, HEIGHT, 0.9), jobs=1, progress=interrupt)
-    again = answer_of(winters, tmp_path / "runs", (0.25, HEIGHT, 0.9))
-    assert again.table().to_csv() == found.table().to_csv()
+        clearance_answer(
+            winters, tmp_path / "runs", (0.25, HEIGHT, 0.9), jobs=1, progress=interrupt
+        )
+    resumed = clearance_answer(winters, tmp_path / "runs", (0.25, HEIGHT, 0.9))
+    assert resumed.table().to_csv() == result.table().to_csv()
 
 
 @pytest.fixture(scope="module")
 def report(answer, tmp_path_factory):
     """The folder of the answer's pages and files."""
-    found, _ = answer
+    result, _ = answer
     folder = tmp_path_factory.mktemp("report")
-    write_report([found], KNOWN, folder, ["a note"])
+    write_report([result], KNOWN, folder, ["a note"])
     return folder
 
 
-def test_the_page_and_the_summary(report):
+def test_the_contents_of_page_and_summary(report):
     page = (report / "clearance.html").read_text()
     assert "must be" in page and "Assumptions" in page and "Gumbel" in page
     assert "http" not in page.replace("http://www.w3.org", "")
@@ -132,24 +142,24 @@ def test_the_page_and_the_summary(report):
     assert 'href="worst-winter-0.6-60.html"' in page and "slide-offs" in view
 
 
-def test_its_pages_can_be_read(report):
+def test_its_pages_are_readable_on_telephone_and_screen(report):
     check_page(report / "clearance.html")
     check_page(report / "worst-winter-0.6-60.html")
 
 
-def test_a_forecast_counts_the_seasons(winters):
-    seconds, seasons = forecast(DESIGN, winters, [HEIGHT], ranges=KNOWN)
+def test_the_expected_duration_counts_the_seasons(winters):
+    seconds, seasons = expected_duration(DESIGN, winters, [HEIGHT], ranges=KNOWN)
     assert seconds > 0.0 and seasons == 3
 
 
 @pytest.mark.slow
-def test_its_probability_is_that_of_counting(tmp_path):
-    """Known friction and adhesion: burial in 200 synthetic winters and in 200 others."""
-    asked = split_winters(SHORT.winters(200, seed=11))
-    counted = split_winters(SHORT.winters(200, seed=12))
-    told = answer_of(asked, tmp_path / "runs").burial_probability(HEIGHT)
+def test_burial_probability_is_the_share_of_winters(tmp_path):
+    """The probability from 200 synthetic winters agrees with burials counted in 200 others."""
+    first_winters = split_winters(SHORT.winters(200, seed=11))
+    other_winters = split_winters(SHORT.winters(200, seed=12))
+    probability = clearance_answer(first_winters, tmp_path / "runs").burial_probability(HEIGHT)
     buried = []
-    for number, case in enumerate(answer_cases(counted)):
+    for number, case in enumerate(answer_cases(other_winters)):
         season = run_season(
             case.winter.days,
             case.panel_scene(HEIGHT),
@@ -159,10 +169,10 @@ def test_its_probability_is_that_of_counting(tmp_path):
         )
         buried.append(season.contact is not None)
     share = float(np.mean(buried))
-    print(f"told {told}, counted {share}")
+    print(f"probability {probability}, share {share}")
     error = np.sqrt(2.0 * share * (1.0 - share) / 200.0)
     assert 0.05 < share < 0.95
-    assert abs(told - share) < 2.6 * error  # 99 %
+    assert abs(probability - share) < 2.6 * error  # 99 %
 
 
 def answer_cases(winters):
@@ -171,9 +181,9 @@ def answer_cases(winters):
     return cases_of(DESIGN, winters, KNOWN.draw(len(winters)), SeasonSettings(), {})
 
 
-def test_the_error_of_the_grid_is_that_of_the_scheme(answer, winters):
-    """This holds for every scheme of the seasons; a scheme without records is named, too."""
-    found, _ = answer
+def test_the_error_of_the_grid_follows_from_the_scheme(answer, winters):
+    """A scheme without recorded runs is named, too."""
+    result, _ = answer
     for base, text in (
         ({}, "stacks of lab-50 in 2D, event 5, scheme thesis were"),
         (
@@ -185,16 +195,16 @@ def test_the_error_of_the_grid_is_that_of_the_scheme(answer, winters):
             "no runs are recorded for scheme thesis with affine",
         ),
     ):
-        cases = [replace(case, base=base) for case in found.cases]
-        warning = answer_text.warnings([replace(found, cases=cases)])[0]
+        cases = [replace(case, base=base) for case in result.cases]
+        warning = answer_text.warnings([replace(result, cases=cases)])[0]
         assert warning.startswith(f"the intervals leave out the error of the grid: {text}")
 
 
-def test_relations_that_are_off_have_sentences_of_their_own(answer):
-    found, _ = answer
+def test_disabled_relations_are_stated(answer):
+    result, _ = answer
     off = SeasonSettings(settling=None, strength=None)
-    cases = [replace(case, base_settings=off) for case in found.cases]
-    texts = answer_text.assumptions(replace(found, cases=cases))
+    cases = [replace(case, base_settings=off) for case in result.cases]
+    texts = answer_text.assumptions(replace(result, cases=cases))
     assert "Snow does not settle." in texts
     assert "Strength and stiffness of a slab do not depend on its density." in texts
 
@@ -202,7 +212,7 @@ def test_relations_that_are_off_have_sentences_of_their_own(answer):
 # --- statistics ----------------------------------------------------------------------------
 
 
-def test_confidence_holds_the_true_height_as_often_as_it_says(monkeypatch):
+def test_confidence_intervals_have_their_coverage(monkeypatch):
     """Required heights from a known Gumbel distribution, 30 winters with two draws each."""
     monkeypatch.setattr(statistics, "RESAMPLES", 200)
     random = np.random.default_rng(5)
@@ -216,7 +226,7 @@ def test_confidence_holds_the_true_height_as_often_as_it_says(monkeypatch):
     assert inside >= 75
 
 
-def test_causes_get_the_variance_that_they_make():
+def test_causes_get_the_variance_that_they_contribute():
     random = np.random.default_rng(1)
     winters = np.repeat(np.arange(20.0), 5)
     adhesion, friction = random.random(100), random.random(100)
@@ -229,7 +239,7 @@ def test_causes_get_the_variance_that_they_make():
     assert parts["adhesion"] == pytest.approx(0.25 / 12 / (0.25 / 12 + 0.09), abs=0.12)
 
 
-def test_no_burial_in_ten_winters_is_no_proof():
+def test_no_burial_in_ten_winters_leaves_a_wide_interval():
     assert burial_interval(0.0, 10) == (0.0, pytest.approx(0.259, abs=1e-3))
     assert burial_interval(1.0, 10)[1] == 1.0
 
@@ -237,18 +247,20 @@ def test_no_burial_in_ten_winters_is_no_proof():
 # --- synthetic winters --------------------------------------------------------------------------
 
 
-def test_made_winters_have_the_climate_that_they_are_fitted_to():
+def test_synthetic_winters_reproduce_the_climate():
     fitted = Climate.fit(EXAMPLE_CLIMATE.winters(60, seed=4))
-    for month, one in EXAMPLE_CLIMATE.months.items():
-        again = fitted.months[month]
-        assert again.after_snow == pytest.approx(one.after_snow, abs=0.06)
-        assert again.after_dry == pytest.approx(one.after_dry, abs=0.04)
-        assert again.shape * again.scale == pytest.approx(one.shape * one.scale, rel=0.15)
-        assert again.deviation == pytest.approx(one.deviation, rel=0.1)
+    for month, original in EXAMPLE_CLIMATE.months.items():
+        refitted = fitted.months[month]
+        assert refitted.after_snow == pytest.approx(original.after_snow, abs=0.06)
+        assert refitted.after_dry == pytest.approx(original.after_dry, abs=0.04)
+        assert refitted.shape * refitted.scale == pytest.approx(
+            original.shape * original.scale, rel=0.15
+        )
+        assert refitted.deviation == pytest.approx(original.deviation, rel=0.1)
     assert fitted.persistence == pytest.approx(EXAMPLE_CLIMATE.persistence, abs=0.1)
 
 
-def test_a_climate_is_not_fitted_to_days_that_nobody_knows():
+def test_a_climate_is_not_fitted_to_missing_days():
     rows = EXAMPLE_CLIMATE.winters(3, seed=4)
     unknown = [
         replace(row, snowfall=0.0, source=SnowSource.MISSING, date=row.date.replace(year=1990))
@@ -275,14 +287,14 @@ def test_the_same_seed_makes_the_same_winters():
         (["--slope-length", "-4"], "slope length: -4 m"),
     ],
 )
-def test_bad_questions_are_refused(options, message, tmp_path, capsys):
+def test_invalid_options_are_refused(options, message, tmp_path, capsys):
     file = tmp_path / "winters.csv"
     rows = "".join(
         f"{r.date.date()},{r.snowfall},{r.temperature}\n" for r in SHORT.winters(1, seed=1)
     )
     file.write_text(f"date,snowfall_m,temperature_c\n{rows}")
-    given = ["clearance", str(file), "--slope-length", "1", "--tilt", "60", *options]
-    assert main([*given, "-o", str(tmp_path / "out")]) == 2
+    command = ["clearance", str(file), "--slope-length", "1", "--tilt", "60", *options]
+    assert main([*command, "-o", str(tmp_path / "out")]) == 2
     assert message in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
 
@@ -292,27 +304,27 @@ def test_too_short_weather_is_refused():
         split_winters(SHORT.winters(1, seed=1)[:20])
 
 
-def test_the_answer_says_from_how_many_winters_it_is(tmp_path, capsys):
-    """Snow was observed in one of three winters; the others do not prevent an answer."""
+def test_the_answer_states_how_many_winters_count(tmp_path, capsys):
+    """Snow was observed in only one of three winters; the others are left out."""
     rows = [
         (day, elements(day, snow=150.0 if day.year == 2000 or day < date(2001, 7, 1) else None))
         for day in days(date(2000, 10, 1), date(2003, 5, 31))
     ]
     file, out = ghcn(tmp_path / "station.csv", rows), tmp_path / "out"
-    asked = ["clearance", str(file), "--slope-length", "0.6", "--tilt", "60", "--draws", "1"]
-    known = ["--range", "friction=0.4", "--range", "adhesion=500", "--range", "sliding=0.2"]
-    assert main([*asked, *known, "--heights", "0.5,2", "-o", str(out)]) == 0
+    command = ["clearance", str(file), "--slope-length", "0.6", "--tilt", "60", "--draws", "1"]
+    ranges = ["--range", "friction=0.4", "--range", "adhesion=500", "--range", "sliding=0.2"]
+    assert main([*command, *ranges, "--heights", "0.5,2", "-o", str(out)]) == 0
     shown = " ".join(capsys.readouterr().out.split())
     assert "1 of 3 winters and the uncertain snow parameters, without the error of the" in shown
     assert "the intervals leave out the error of the grid: stacks of lab-50 in 2D, event 5" in shown
     assert "left out are the winters" in shown and "2001/02 to 2002/03 (0 %)" in shown
     assert "Where the snow comes from" in shown and "new snow" in shown
     summary = json.loads((out / "clearance.json").read_text())
-    counts = {one["winter"]: one["counts"] for one in summary["winters_of_the_file"]}
+    counts = {winter["winter"]: winter["counts"] for winter in summary["winters_of_the_file"]}
     assert counts == {"2000/01": True, "2001/02": False, "2002/03": False}
     assert summary["coverage"] == 0.9 and "1 of 3" in summary["warnings"][0]
     page = (out / "clearance.html").read_text()
     assert "1 of 3 winters" in page and "2001/02 to 2002/03 (0 %)" in page
     assert "Where the snow comes from" in page
-    assert main([*asked, "--coverage", "2x", "-o", str(tmp_path / "no")]) == 2
+    assert main([*command, "--coverage", "2x", "-o", str(tmp_path / "no")]) == 2
     assert "--coverage: '2x'; allowed: 0 to 1" in capsys.readouterr().err

@@ -6,7 +6,7 @@ from contextlib import closing
 import pytest
 from helpers.processes import kill_with_children, snowshed_command, wait_for
 
-from snowshed.season.generator import Climate, MonthClimate
+from snowshed.season.weather.generator import Climate, MonthClimate
 from snowshed.study.database import FILE
 
 OFTEN = MonthClimate(0.08, 0.3, 1.5, 0.06, -4.0, 3.0)
@@ -27,7 +27,7 @@ def weather(tmp_path_factory):
 
 
 def finished(folder):
-    """Return the time of each event of the finished seasons, s; another run takes another time."""
+    """Return the computing time, s, of each event in finished seasons, by which runs differ."""
     file = folder / STORE
     if not file.exists():
         return {}
@@ -37,7 +37,7 @@ def finished(folder):
                 "SELECT hash, event, wall_s FROM event_timing JOIN run USING (hash) "
                 "WHERE status = 'done'"
             ).fetchall()
-    except sqlite3.OperationalError:  # its tables are being made
+    except sqlite3.OperationalError:  # its tables are being created
         return {}
     return {(hash_, event): seconds for hash_, event, seconds in rows}
 
@@ -52,28 +52,26 @@ def files(folder):
 
 
 @pytest.fixture(scope="module")
-def whole(weather, tmp_path_factory):
-    """The folder of the answer that nobody kills."""
-    folder = tmp_path_factory.mktemp("whole") / "answer"
+def reference(weather, tmp_path_factory):
+    """The folder of an answer that is not killed."""
+    folder = tmp_path_factory.mktemp("reference") / "answer"
     command = answer(weather, folder, 2)
     assert command.communicate(timeout=240)[1] == "" and command.returncode == 0
     return folder
 
 
 @pytest.mark.parametrize("seasons", [2, pytest.param(6, marks=pytest.mark.slow)])
-def test_killed_with_finished_seasons_it_goes_on_to_the_same_bytes(
-    weather, whole, tmp_path, seasons
-):
+def test_a_killed_answer_resumes_to_the_same_files(weather, reference, tmp_path, seasons):
     killed = answer(weather, tmp_path / "killed", 2)
     wait_for(lambda: len({hash_ for hash_, _ in finished(tmp_path / "killed")}) >= seasons)
     kill_with_children(killed)
-    kept = finished(tmp_path / "killed")
-    assert len(kept) < len(finished(whole))
+    finished_before = finished(tmp_path / "killed")
+    assert len(finished_before) < len(finished(reference))
     assert files(tmp_path / "killed") == {}
 
-    again = answer(weather, tmp_path / "killed", 1)
-    assert again.communicate(timeout=240)[1] == "" and again.returncode == 0
-    assert kept.items() <= finished(tmp_path / "killed").items()
-    expected = files(whole)
+    resumed = answer(weather, tmp_path / "killed", 1)
+    assert resumed.communicate(timeout=240)[1] == "" and resumed.returncode == 0
+    assert finished_before.items() <= finished(tmp_path / "killed").items()
+    expected = files(reference)
     assert {"clearance.html", "clearance.csv", "clearance.json"} < expected.keys()
     assert files(tmp_path / "killed") == expected

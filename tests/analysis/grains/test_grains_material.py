@@ -20,8 +20,8 @@ E, NU, M, BETA, XI, P0 = 4e6, 0.25, 0.8, 0.15, 0.3, 2e4
 SNOW = RateEquations(E, NU, M, BETA, XI, dimension=3)
 
 
-def curve_of(states, rate, times, broken):
-    """What a loading test would measure: forces over initial areas; compression is positive."""
+def loading_curve(states, rate, times, broken):
+    """Return the curve of a loading test: forces over initial areas; compression is positive."""
     stress = np.vstack([np.zeros(3), -SNOW.stress(states)])  # Kirchhoff
     stretch = np.exp(np.multiply.outer(np.concatenate([[0.0], times]), rate))
     nominal = stress / stretch
@@ -36,14 +36,14 @@ def curve_of(states, rate, times, broken):
     return LoadingCurve(columns)
 
 
-def path(rate, end, count=400, broken=lambda times: 0.0 * times):
+def loaded(rate, end, count=400, broken=lambda times: 0.0 * times):
     times = evenly(end, count)
     rate = np.array(rate)
-    return curve_of(SNOW.integrate(SNOW.initial_state(P0), rate, times), rate, times, broken)
+    return loading_curve(SNOW.integrate(SNOW.initial_state(P0), rate, times), rate, times, broken)
 
 
 def sheared(normal):
-    """Shear up to the yield surface under equal pressure on all sides, and less afterwards."""
+    """Return a shear test under equal pressure that reaches the yield surface, then weakens."""
     peak = M * np.sqrt((normal + BETA * P0) * (P0 - normal) / (1 + 2 * BETA) / 3)
     strain = np.linspace(0, 0.02, 50)
     rising = strain <= strain[10]
@@ -59,7 +59,7 @@ def sheared(normal):
 
 
 def stretched():
-    """Tension up to the yield surface without stress sideways, and less afterwards."""
+    """Return a tension test without lateral stress that reaches the yield surface, then weakens."""
     ends = [0.0, 2e4]
     for _ in range(100):  # the tension on the yield surface, by bisection
         tension = 0.5 * sum(ends)
@@ -76,8 +76,8 @@ def stretched():
 
 @pytest.fixture(scope="module")
 def curves():
-    isotropic = path((-1.0, -1.0, -1.0), 0.127)
-    # The law hardens beyond its yield stress, which is made the peak below 5 %.
+    isotropic = loaded((-1.0, -1.0, -1.0), 0.127)
+    # Up to 5 % strain, the curve is capped at the yield stress, beyond which the law hardens.
     pressure = readings.invariants(isotropic, isotropic=True)[0]
     early = isotropic["axial_strain"] <= 0.05
     capped = np.where(early, np.minimum(1.0, P0 / np.maximum(pressure, 1.0)), 1.0)
@@ -85,22 +85,22 @@ def curves():
     for name in ("top_stress_pa", "bottom_stress_pa", "side_stress_pa"):
         columns[name] = columns[name] * capped
     return {
-        ("confined", 0): path((0.0, 0.0, -1.0), 5e-3, 2000, broken=lambda t: 1.0 * (t > 1e-4)),
+        ("confined", 0): loaded((0.0, 0.0, -1.0), 5e-3, 2000, broken=lambda t: 1.0 * (t > 1e-4)),
         ("isotropic", 0): LoadingCurve(columns),
-        ("compaction", 0): path((-1.0, -1.0, -1.0), 0.127),
+        ("compaction", 0): loaded((-1.0, -1.0, -1.0), 0.127),
         ("tension", 0): stretched(),
         **{(f"shear under {part} p0", 0): sheared(part * P0) for part in NORMAL_STRESSES},
     }
 
 
-def test_each_reading_finds_what_the_law_was_made_with():
-    elastic, linearity = readings.elasticity(path((0.0, 0.0, -1.0), 1e-4, 20))
+def test_each_reading_recovers_the_parameters_of_the_law():
+    elastic, linearity = readings.elasticity(loaded((0.0, 0.0, -1.0), 1e-4, 20))
     assert elastic.youngs_modulus == pytest.approx(E, rel=1e-3)
     assert elastic.poissons_ratio == pytest.approx(NU, rel=1e-3)
     assert linearity > 0.9999
-    found = readings.hardening(path((-1.0, -1.0, -1.0), 0.127), Elasticity(E, NU), P0)
-    assert found.factor == pytest.approx(XI, rel=1e-3)
-    assert found.residual < 0.01 and 1.0 <= found.excess < 1.1  # of the elastic rows at first
+    hardening = readings.hardening(loaded((-1.0, -1.0, -1.0), 0.127), Elasticity(E, NU), P0)
+    assert hardening.factor == pytest.approx(XI, rel=1e-3)
+    assert hardening.residual < 0.01 and 1.0 <= hardening.excess < 1.1  # from the elastic rows
     points = [readings.shear_strength(sheared(5e3)), readings.tension(stretched())]
     surface = fit_yield_surface(*np.array(points).T / P0)
     assert (surface.slope, surface.cohesion) == pytest.approx((M, BETA), rel=1e-5)
@@ -108,7 +108,7 @@ def test_each_reading_finds_what_the_law_was_made_with():
 
 
 @pytest.mark.parametrize("factor", [1e-9, 0.1, 1.0, 900.0])
-def test_hardening_is_its_closed_form(factor):
+def test_hardening_has_a_closed_form(factor):
     bulk, compaction = E / (3 - 6 * NU), np.linspace(0.0, 0.6, 50)
     expected = bulk * np.sinh(np.arcsinh(P0 / bulk) + factor * compaction)
     law = CamClayFit(300.0, Elasticity(E, NU), M, P0, BETA, factor)
@@ -120,12 +120,12 @@ def test_confined_compression_yields_where_the_rate_equations_do():
     law = CamClayFit(300.0, Elasticity(E, NU), M, P0, BETA, XI)
     times = evenly(2e-2, 4000)
     states = SNOW.integrate(SNOW.initial_state(P0), np.array([0.0, 0.0, -1.0]), times)
-    first = np.flatnonzero(np.abs(states[:, -1] - states[0, -1]) > 1e-12)[0]  # or dilates
+    first = np.flatnonzero(np.abs(states[:, -1] - states[0, -1]) > 1e-12)[0]  # hardens or dilates
     assert -SNOW.stress(states)[first, 2] == pytest.approx(law.confined_yield(), rel=2e-3)
 
 
 def test_rows_after_the_first_broken_bond_do_not_count(curves):
-    broken = path((0.0, 0.0, -1.0), 5e-3, 200, broken=lambda times: np.floor(times / 2e-4))
+    broken = loaded((0.0, 0.0, -1.0), 5e-3, 200, broken=lambda times: np.floor(times / 2e-4))
     assert readings.elasticity(broken)[0].youngs_modulus == pytest.approx(E, rel=1e-3)
 
 
@@ -144,16 +144,16 @@ def test_the_fit_finds_all_parameters(curves):
 def test_another_modulus_keeps_the_hardening(curves):
     laws = [fit_material(curves, 300.0, modulus=factor * E).law for factor in (0.5, 1.0, 3.0)]
     plastic = np.linspace(0.0, 0.4, 400)
-    found = []
+    pressures = []
     for law in laws:
         pressure = law.hardened(plastic)
         total = plastic + pressure / law.elastic.bulk_modulus
-        found.append(np.interp([0.2, 0.35], total, pressure))
-    assert found[0] == pytest.approx(found[1], rel=0.1)
-    assert found[2] == pytest.approx(found[1], rel=0.1)
+        pressures.append(np.interp([0.2, 0.35], total, pressure))
+    assert pressures[0] == pytest.approx(pressures[1], rel=0.1)
+    assert pressures[2] == pytest.approx(pressures[1], rel=0.1)
 
 
-def test_what_means_nothing_is_refused(curves):
+def test_impossible_fits_are_refused(curves):
     with pytest.raises(InputError, match="large elastic strains only"):
         fit_material(curves, 300.0, modulus=2e4)
     with pytest.raises(InputError, match="too soft for the hardening"):
@@ -168,26 +168,26 @@ def test_what_means_nothing_is_refused(curves):
         fit_material(loose, 300.0)
 
 
-def test_a_yield_surface_is_near_what_it_cannot_have():
+def test_a_yield_surface_fits_impossible_strengths_with_a_residual():
     """Strengths that no surface has leave a residual; the surface always has shear strength."""
     p, q = np.array([-0.3, 0.1, 0.3, 0.8]), np.array([0.9, 0.3, 0.35, 1.7])
-    found = fit_yield_surface(p, q)
-    assert found.slope > 0.1 and 0.1 < found.residual < 1.0
+    surface = fit_yield_surface(p, q)
+    assert surface.slope > 0.1 and 0.1 < surface.residual < 1.0
     with pytest.raises(InputError, match="no shear"):
         fit_yield_surface(p, 0 * q)
     with pytest.raises(InputError, match="no yield surface"):
         fit_yield_surface(np.array([1.5]), np.array([0.2]))
 
 
-def test_ranges_tell_the_scatter():
-    found = Range.of([1.0, 2.0, 4.0])
-    assert found.value == pytest.approx(2.0)
-    assert found.deviation == pytest.approx(np.log(2.0))
-    assert found.low < 2.0 < found.high
+def test_ranges_follow_from_the_scatter():
+    fitted_range = Range.of([1.0, 2.0, 4.0])
+    assert fitted_range.value == pytest.approx(2.0)
+    assert fitted_range.deviation == pytest.approx(np.log(2.0))
+    assert fitted_range.low < 2.0 < fitted_range.high
     assert np.isnan(Range.of([3.0]).low)
 
 
-def test_the_file_is_a_snow_of_scenes_and_says_where_it_comes_from(curves, tmp_path):
+def test_the_file_is_a_snow_with_its_provenance(curves, tmp_path):
     fitted = fit_material(curves, 300.0)
     file = write_snow(tmp_path, fitted, {"samples": []})
     snow = Snow.load(file)
@@ -195,16 +195,16 @@ def test_the_file_is_a_snow_of_scenes_and_says_where_it_comes_from(curves, tmp_p
     assert set(snow.to_data()) == set(json.loads(file.read_text())) - {"provenance"}
     provenance = json.loads(file.read_text())["provenance"]
     assert provenance["ranges"]["cohesion"]["value"] == pytest.approx(BETA, rel=0.01)
-    assert provenance["ranges"]["cohesion"]["low"] is None  # of one sample no range is known
+    assert provenance["ranges"]["cohesion"]["low"] is None  # a single sample gives no range
 
 
-def test_a_snow_by_name_or_file(tmp_path):
+def test_a_snow_is_a_preset_or_a_file(tmp_path):
     file = tmp_path / "mine.json"
     file.write_text('{"density": 150, "provenance": {"by": "hand"}}')
-    assert Snow.named(str(file)).density == 150
-    assert Snow.named("calibrated").density == 210
+    assert Snow.preset_or_file(str(file)).density == 150
+    assert Snow.preset_or_file("calibrated").density == 210
     with pytest.raises(InputError, match=r"calibrated.*JSON file"):
-        Snow.named("claibrated")
+        Snow.preset_or_file("claibrated")
     file.write_text('{"densty": 150}')
     with pytest.raises(InputError, match=r"mine.json: .*densty"):
-        Snow.named(str(file))
+        Snow.preset_or_file(str(file))

@@ -5,10 +5,9 @@ import json
 import numpy as np
 import pandas as pd
 import pytest
-from made_up_rows import few_inputs, made_up_rows, smooth_length, thesis_inputs, write_table
+from synthetic_rows import few_inputs, smooth_length, synthetic_rows, thesis_inputs, write_table
 
-from snowshed.analysis import RegressionInterrupted, geometry_study, predict
-from snowshed.analysis.regression import pipeline
+from snowshed.analysis.regression import RegressionInterrupted, geometry_study, pipeline, predict
 from snowshed.cli.main import main
 from snowshed.study import Study
 
@@ -22,7 +21,7 @@ def run(*arguments):
 @pytest.mark.parametrize("between", ["carry", "reseed"])
 def test_the_geometry_study_is_the_thesis_data_set(tmp_path, between):
     assert run("geometry", "--between", between, "-o", tmp_path / "geometry.toml") == 0
-    runs = [json.loads(one.scene) for one in Study.load(tmp_path / "geometry.toml").runs()]
+    runs = [json.loads(planned.scene) for planned in Study.load(tmp_path / "geometry.toml").runs()]
     rows = {
         (event, scene["panel"]["height"], scene["panel"]["length"], scene["panel"]["tilt"])
         for scene in runs
@@ -38,7 +37,7 @@ def test_the_geometry_study_is_the_thesis_data_set(tmp_path, between):
         assert (scene["snow"]["critical_state_slope"], scene["snow"]["cohesion"]) == (0.5, 0.2)
 
 
-def test_the_trial_is_small(capsys):
+def test_the_trial_study_is_coarse(capsys):
     assert run("geometry", "--trial") == 0
     shown = capsys.readouterr().out
     assert shown == geometry_study(trial=True).to_toml() and "numerics.dx = 0.05" in shown
@@ -61,20 +60,20 @@ def test_the_trial_is_small(capsys):
 def test_without_a_library_the_error_says_what_to_install(
     tmp_path, capsys, monkeypatch, hide, library, arguments
 ):
-    write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv")
+    write_table(synthetic_rows(few_inputs()), tmp_path / "rows.csv")
     hide(library)
     monkeypatch.chdir(tmp_path)
     assert run("regress", *arguments, "-o", "out", *FEW, "-q") == 2
-    said = capsys.readouterr().err
+    message = capsys.readouterr().err
     extra = "study" if library == "pyarrow" else "regression"
-    assert f"needs {library}" in said and said.count("\n") == 1
-    assert f'pip install "snowshed[{extra}]"' in said
+    assert f"needs {library}" in message and message.count("\n") == 1
+    assert f'pip install "snowshed[{extra}]"' in message
 
 
 @pytest.fixture(scope="module")
 def regressed(tmp_path_factory):
     folder = tmp_path_factory.mktemp("regressed")
-    write_table(made_up_rows(few_inputs(), noise=0.001), folder / "rows.csv")
+    write_table(synthetic_rows(few_inputs(), noise=0.001), folder / "rows.csv")
     arguments = ["regress", folder / "rows.csv", "-o", folder / "out", *FEW, "-q"]
     assert run(*arguments, "--kind", "linear", "--kind", "gaussian-process") == 0
     return folder
@@ -89,37 +88,37 @@ def test_regress_writes_models_tables_and_figures(regressed):
         assert errors.loc["gaussian-process", "held_out_error"] < errors.loc["linear"].iloc[0]
         assert (errors["fits"] > 0).all() and (errors["cpu_s"] > 0).all()
         quartiles = pd.read_csv(out / target / "quartiles.csv", index_col="model")
-        near = quartiles.loc["gaussian-process"] / quartiles.loc["data"]
-        np.testing.assert_allclose(near, 1, atol=0.1)
+        relative = quartiles.loc["gaussian-process"] / quartiles.loc["data"]
+        np.testing.assert_allclose(relative, 1, atol=0.1)
         for name in ("selection", "hyperparameters", "qq", "predictions", "cost"):
             assert (out / target / f"{name}.png").stat().st_size > 5000
         assert (out / target / "linear.txt").read_text().startswith(f"{target} = ")
     assert (out / "model.npz").is_file()
 
 
-def test_the_linear_expression_is_the_linear_model(regressed):
-    """Evaluated by hand it gives what the model predicts."""
+def test_the_linear_expression_agrees_with_the_linear_model(regressed):
+    """Its terms, evaluated by hand, give the model's prediction."""
     text = (regressed / "out" / "length" / "linear.txt").read_text().strip().removesuffix(", m")
     offset, *terms = text.partition(" = ")[2].split()
     inputs = {"event": 2, "panel.height": 3.0, "panel.length": 2.0, "panel.tilt": 50.0}
     slopes = dict(zip(terms[1::2], map(float, terms[::2])))
     value = float(offset) + sum(slopes[name] * inputs[name] for name in inputs)
     model = regressed / "out" / "model.npz"
-    found = predict(height=3, length=2, tilt=50, events=2, model=model, kind="linear").table
-    answer = found[(found["target"] == "length") & (found["event"] == 2)]["value"].item()
+    table = predict(height=3, length=2, tilt=50, events=2, model=model, kind="linear").table
+    answer = table[(table["target"] == "length") & (table["event"] == 2)]["value"].item()
     assert value == pytest.approx(answer, rel=1e-3)
 
 
-def test_height_and_length_are_predicted_beside_the_ratio(regressed):
+def test_height_and_length_are_predicted_with_the_ratio(regressed):
     model = regressed / "out" / "model.npz"
-    found = predict(height=2, length=3, tilt=50, events=2, model=model)
-    table = found.table.set_index(["event", "target"])["value"]
+    prediction = predict(height=2, length=3, tilt=50, events=2, model=model)
+    table = prediction.table.set_index(["event", "target"])["value"]
     truth = smooth_length(np.array([[2, 2, 3, 50]]))[0]
     assert table[2, "length"] == pytest.approx(truth, rel=0.05)
     assert table[2, "ratio"] == pytest.approx(table[2, "height"] / table[2, "length"], rel=0.05)
 
 
-def test_predict_answers_text_and_as_json(regressed, capsys):
+def test_predict_prints_text_or_json(regressed, capsys):
     question = ["predict", "--height", 2, "--length", 4, "--tilt", 50, "--events", 3]
     question += ["--model", regressed / "out" / "model.npz"]
     assert run(*question) == 0
@@ -131,7 +130,7 @@ def test_predict_answers_text_and_as_json(regressed, capsys):
     assert len(answer["predictions"]) == 9 and answer["extrapolated"] is False
 
 
-def test_outside_the_data_predict_ends_with_2_unless_forced(regressed, capsys):
+def test_predict_refuses_panels_outside_the_data_unless_forced(regressed, capsys):
     question = ["predict", "--height", 9, "--length", 4, "--tilt", 50, "--events", 1]
     question += ["--model", regressed / "out" / "model.npz"]
     assert run(*question) == 2
@@ -161,7 +160,7 @@ def test_outside_the_data_predict_ends_with_2_unless_forced(regressed, capsys):
         (["predict", "--height", "2", "--length", "2"], "--tilt"),
     ],
 )
-def test_bad_input_is_one_line_code_2_and_nothing_behind(
+def test_bad_input_gives_one_line_code_2_and_no_files(
     regressed, tmp_path, monkeypatch, capsys, arguments, message
 ):
     monkeypatch.chdir(tmp_path)
@@ -173,7 +172,9 @@ def test_bad_input_is_one_line_code_2_and_nothing_behind(
     assert [path.name for path in tmp_path.iterdir()] == ["rows.csv"]
 
 
-def test_an_interrupt_ends_with_130_and_says_how_to_go_on(regressed, tmp_path, monkeypatch, capsys):
+def test_an_interrupt_ends_with_130_and_says_how_to_resume(
+    regressed, tmp_path, monkeypatch, capsys
+):
     def interrupted(*arguments, **options):
         raise RegressionInterrupted(tmp_path / "out")
 

@@ -8,15 +8,15 @@ import pandas as pd
 import pytest
 
 from snowshed import InputError, Scene, run_events
-from snowshed.analysis import OutsideDataError, load_model, predict
+from snowshed.analysis.regression import OutsideDataError, load_model, predict
 from snowshed.analysis.regression.dataset import MODEL, MODEL_BETWEEN, geometry_rows, geometry_table
 from snowshed.analysis.regression.geometry import BETWEEN, geometry_study
 
 PANEL = ["panel.height", "panel.length", "panel.tilt"]
 
 
-def scenes_of(**settings):
-    """The complete scenes of the study, by height, length and tilt of the panel."""
+def panel_scenes(**settings):
+    """Return the scenes of the study, by height, length and tilt of the panel."""
     scenes = [json.loads(run.scene) for run in geometry_study(**settings).runs()]
     names = ("height", "length", "tilt")
     return {tuple(scene["panel"][name] for name in names): scene for scene in scenes}
@@ -24,7 +24,7 @@ def scenes_of(**settings):
 
 @pytest.mark.parametrize("between", BETWEEN)
 def test_the_rows_are_those_of_the_study(between):
-    panels = set(scenes_of(between=between))
+    panels = set(panel_scenes(between=between))
     rows = geometry_rows(between)
     assert len(rows) == 610 and len(panels) == 122
     assert {tuple(row) for row in rows.inputs[:, 1:]} == panels
@@ -33,14 +33,14 @@ def test_the_rows_are_those_of_the_study(between):
 
 def test_short_panels_have_more_seeds():
     panels = [json.loads(run.scene)["panel"] for run in geometry_study(seeds=16).runs()]
-    counts = Counter((one["length"], one["height"], one["tilt"]) for one in panels)
+    counts = Counter((panel["length"], panel["height"], panel["tilt"]) for panel in panels)
     assert len(counts) == 122
     for (length, _, _), count in counts.items():
         assert count == (16 if length <= 1 else 6 if length <= 2 else 3 if length <= 4 else 1)
 
 
-def test_the_rows_of_the_model_have_both_readings():
-    """By the thesis's trimming at equal pace a stack is longer, with the same snow."""
+def test_the_rows_of_the_model_have_both_trimming_rules():
+    """Trimming at equal pace, as in the thesis, gives longer stacks of the same snow."""
     first, second = (geometry_rows(measure=name) for name in ("outermost_first", "equal_pace"))
     assert geometry_rows().settings["trimming"] == "outermost_first"
     longer = second.targets["length"] / first.targets["length"]
@@ -52,29 +52,29 @@ def test_all_stacks_of_the_model_came_to_rest():
 
 
 @pytest.mark.parametrize("between", BETWEEN)
-def test_snow_is_neither_lost_nor_left_on_the_panel(between):
+def test_snow_is_conserved_between_stack_and_panel(between):
     table = pd.read_csv(geometry_table(between))
     slab = 210 * 0.05 * table["panel.length"]
-    there = table["mass_kg"] + table["on_panel_kg"]
-    np.testing.assert_allclose(there, slab * table["event"], rtol=1e-3)
+    mass = table["mass_kg"] + table["on_panel_kg"]
+    np.testing.assert_allclose(mass, slab * table["event"], rtol=1e-3)
 
 
-def test_a_row_is_what_its_scene_gives(tmp_path):
-    """The first event below a panel whose stacks hardly scatter, computed again.
+def test_a_row_is_reproduced_by_its_scene(tmp_path):
+    """The first event below a panel whose stacks hardly scatter is computed again.
 
-    Other vector instructions round differently, and the stack differs as with another seed.
+    Other vector instructions round differently, which changes the stack as another seed does.
     """
     panel = (2.0, 2.0, 70.0)
     table = pd.read_csv(geometry_table())
     row = table[(table[PANEL] == panel).all(axis=1) & (table["event"] == 1)].iloc[0]
-    scene = Scene.from_data(scenes_of(dx=row["dx"])[panel])
+    scene = Scene.from_data(panel_scenes(dx=row["dx"])[panel])
     scene.update({"events.count": 1, "seeding.seed": int(row["seed"])})
-    found = run_events(scene, tmp_path / "out").iloc[0]
-    assert found["height_m"] == pytest.approx(row["height_m"], rel=0.05)
-    assert found["length_m"] == pytest.approx(row["length_m"], rel=0.05)
+    event = run_events(scene, tmp_path / "out").iloc[0]
+    assert event["height_m"] == pytest.approx(row["height_m"], rel=0.05)
+    assert event["length_m"] == pytest.approx(row["length_m"], rel=0.05)
 
 
-def test_the_model_is_of_these_rows():
+def test_the_model_was_fitted_to_these_rows():
     rows, model = geometry_rows(), load_model(MODEL)
     np.testing.assert_array_equal(model.inputs, rows.inputs)
     assert model.targets == ["ratio", "height", "length"] and model.kinds[0] == "rbf"
@@ -86,14 +86,14 @@ def test_the_model_is_of_these_rows():
 def test_predictions_without_a_model_file_are_near_the_rows():
     rows = geometry_rows()
     for height, length, tilt in ((2.0, 4.0, 60.0), (1.5, 8.0, 40.0), (3.0, 2.0, 40.0)):
-        found = predict(height=height, length=length, tilt=tilt, events=5).table
-        here = (rows.inputs[:, 1:] == (height, length, tilt)).all(axis=1)
+        table = predict(height=height, length=length, tilt=tilt, events=5).table
+        is_panel = (rows.inputs[:, 1:] == (height, length, tilt)).all(axis=1)
         for target, values in rows.targets.items():
-            ours = found[found["target"] == target]
-            assert (np.abs(ours["value"] - values[here]) < 2 * ours["spread"]).all()
+            predicted = table[table["target"] == target]
+            assert (np.abs(predicted["value"] - values[is_panel]) < 2 * predicted["spread"]).all()
 
 
-def test_outside_its_data_the_model_refuses():
+def test_the_model_refuses_panels_outside_its_data():
     with pytest.raises(OutsideDataError, match="panel length 12 m is outside the data"):
         predict(height=2, length=12, tilt=40, events=5)
     with pytest.raises(InputError, match="between: 'x' is unknown; allowed: carry, reseed"):

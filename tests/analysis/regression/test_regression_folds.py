@@ -1,15 +1,14 @@
-"""Folds, the nested cross-validation over them, and what is kept of it."""
+"""Folds, the nested cross-validation over them, and its files."""
 
 import signal
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from made_up_rows import few_inputs, made_up_rows
+from synthetic_rows import few_inputs, synthetic_rows
 
 from snowshed import InputError
-from snowshed.analysis import CrossValidation, RegressionInterrupted, regress
-from snowshed.analysis.regression import nested
+from snowshed.analysis.regression import CrossValidation, RegressionInterrupted, nested, regress
 from snowshed.analysis.regression.fold_result import FoldResult
 from snowshed.analysis.regression.folds import ShuffledGroupKFold
 from snowshed.analysis.regression.kinds import kinds, kinds_named
@@ -17,14 +16,14 @@ from snowshed.analysis.regression.nested import cross_validate
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.task import FoldTask, compute
 
-ROWS = made_up_rows(few_inputs())
+ROWS = synthetic_rows(few_inputs())
 X = ROWS.inputs
 SMALL = CrossValidation(rounds=2, folds=3, inner_folds=2)
 LINEAR = kinds_named(["linear"])
 
 
 @pytest.mark.parametrize("by", ["rows", "panels"])
-def test_every_row_is_validated_once_a_round_and_tested_once_a_fold(by):
+def test_every_row_is_validated_once_per_round_and_tested_once_per_fold(by):
     scheme = CrossValidation(rounds=1, folds=4, inner_folds=3, by=by)
     groups = scheme.groups(ROWS)
     outer = list(scheme.outer(0).split(ROWS.inputs, groups=groups))
@@ -49,13 +48,13 @@ def test_every_row_is_validated_once_a_round_and_tested_once_a_fold(by):
 
 
 def test_rounds_differ_and_repeat():
-    first, second, again = (next(SMALL.outer(round_).split(X))[1] for round_ in (0, 1, 0))
+    first, second, repeated = (next(SMALL.outer(round_).split(X))[1] for round_ in (0, 1, 0))
     assert set(first) != set(second)
-    np.testing.assert_array_equal(first, again)
+    np.testing.assert_array_equal(first, repeated)
 
 
 def test_the_folds_are_those_of_the_published_models():
-    """Parts of a permutation by NumPy: other folds would make other models of the same rows."""
+    """Folds are parts of NumPy's permutation: other folds give other models of the same rows."""
     panels = np.repeat([3, 5, 8, 9], 3)
     for groups, units in ((None, range(12)), (panels, [3, 5, 8, 9])):
         of_row = np.arange(12) if groups is None else groups
@@ -86,15 +85,15 @@ def test_too_few_rows_are_refused(tmp_path):
 
 
 @pytest.mark.parametrize("name", list(kinds()))
-def test_each_kind_predicts_what_it_has_not_seen(name):
-    """Scores are those of the predictions, and far better than the mean as a predictor."""
-    rows = made_up_rows(few_inputs(), noise=0.001)
+def test_each_kind_predicts_held_out_rows(name):
+    """Scores are those of the predictions, and far better than those of the median."""
+    rows = synthetic_rows(few_inputs(), noise=0.001)
     values = rows.targets["ratio"]
     result = compute(FoldTask("ratio", name, 0, 0), rows, CrossValidation(folds=3, inner_folds=2))
     errors = np.abs(result.held_out - values[result.validation])
     assert result.validation_score == pytest.approx(np.median(errors))
-    plain = np.median(np.abs(values - np.median(values)))
-    assert result.validation_score < plain * (0.6 if name == "linear" else 0.35)
+    baseline = np.median(np.abs(values - np.median(values)))
+    assert result.validation_score < baseline * (0.6 if name == "linear" else 0.35)
     inputs = Scaling.of(rows.inputs).scaled(rows.inputs)
     scaled = (values - values.mean()) / values.std()
     final = kinds()[name].estimator(result.parameters).fit(inputs, scaled)
@@ -105,14 +104,14 @@ def test_each_kind_predicts_what_it_has_not_seen(name):
         np.testing.assert_allclose(scaled * values.std() + values.mean(), expected)
 
 
-def test_a_result_survives_its_file(tmp_path):
+def test_a_result_is_read_back_from_its_file(tmp_path):
     result = compute(FoldTask("height", "linear", 0, 1), ROWS, SMALL)
     result.save(tmp_path / "a" / "b.npz")
-    back = FoldResult.load(tmp_path / "a" / "b.npz", result.expansion.points)
-    assert back.parameters == result.parameters and back.fits == result.fits
-    np.testing.assert_array_equal(back.predictions, result.predictions)
-    np.testing.assert_array_equal(back.held_out, result.held_out)
-    np.testing.assert_array_equal(back.expansion.coefficients, result.expansion.coefficients)
+    loaded = FoldResult.load(tmp_path / "a" / "b.npz", result.expansion.points)
+    assert loaded.parameters == result.parameters and loaded.fits == result.fits
+    np.testing.assert_array_equal(loaded.predictions, result.predictions)
+    np.testing.assert_array_equal(loaded.held_out, result.held_out)
+    np.testing.assert_array_equal(loaded.expansion.coefficients, result.expansion.coefficients)
     assert FoldResult.load(tmp_path / "none.npz", result.expansion.points) is None
     (tmp_path / "cut.npz").write_bytes((tmp_path / "a" / "b.npz").read_bytes()[:500])
     assert FoldResult.load(tmp_path / "cut.npz", result.expansion.points) is None
@@ -126,13 +125,13 @@ def predictions(results):
     return {task: result.predictions.tolist() for task, result in results.items()}
 
 
-def test_an_interrupted_regression_goes_on_where_it_was(tmp_path, monkeypatch):
-    whole = run(tmp_path / "whole")
-    done = []
+def test_an_interrupted_regression_resumes(tmp_path, monkeypatch):
+    uninterrupted = run(tmp_path / "uninterrupted")
+    computed = []
 
     def compute_then_interrupt(task, rows, scheme):
-        done.append(task)
-        if len(done) == 3:
+        computed.append(task)
+        if len(computed) == 3:
             signal.raise_signal(signal.SIGINT)
         return compute(task, rows, scheme)
 
@@ -140,30 +139,30 @@ def test_an_interrupted_regression_goes_on_where_it_was(tmp_path, monkeypatch):
     with pytest.raises(RegressionInterrupted, match="the same command resumes"):
         run(tmp_path / "parts")
     written = list((tmp_path / "parts").rglob("*.npz"))
-    assert len(done) == 3 and len(written) == 3
+    assert len(computed) == 3 and len(written) == 3
     leftover = written[0].with_name(".partial-0123456789abcdef-000-000.npz")
-    leftover.touch()  # as of a process that was killed
-    seen = []
-    resumed = run(tmp_path / "parts", progress=seen.append)
-    assert len(done) == 6 and not leftover.exists()
-    assert predictions(resumed) == predictions(whole)
-    assert (seen[0].done, seen[-1].done, seen[-1].count) == (3, 6, 6)
-    assert seen[-1].fraction == pytest.approx(1)
+    leftover.touch()  # as a killed process leaves it
+    reports = []
+    resumed = run(tmp_path / "parts", progress=reports.append)
+    assert len(computed) == 6 and not leftover.exists()
+    assert predictions(resumed) == predictions(uninterrupted)
+    assert (reports[0].done, reports[-1].done, reports[-1].count) == (3, 6, 6)
+    assert reports[-1].fraction == pytest.approx(1)
 
 
-def test_rounds_may_be_added(tmp_path):
+def test_rounds_can_be_added(tmp_path):
     run(tmp_path / "out", scheme=replace(SMALL, rounds=1))
-    seen = []
-    more = run(tmp_path / "out", progress=seen.append)
-    assert (seen[0].done, seen[-1].count) == (3, 6)
-    assert predictions(more) == predictions(run(tmp_path / "whole"))
+    reports = []
+    extended = run(tmp_path / "out", progress=reports.append)
+    assert (reports[0].done, reports[-1].count) == (3, 6)
+    assert predictions(extended) == predictions(run(tmp_path / "at_once"))
     with pytest.raises(InputError, match="with other folds"):
         run(tmp_path / "out", scheme=replace(SMALL, folds=4))
 
 
 def test_processes_give_the_same_results(tmp_path):
-    alone, shared = run(tmp_path / "one"), run(tmp_path / "two", jobs=2)
-    assert predictions(alone) == predictions(shared)
+    serial, parallel = run(tmp_path / "one"), run(tmp_path / "two", jobs=2)
+    assert predictions(serial) == predictions(parallel)
 
 
 def test_a_folder_of_something_else_is_refused(tmp_path):
@@ -174,7 +173,7 @@ def test_a_folder_of_something_else_is_refused(tmp_path):
         run(tmp_path / "damaged")
     with pytest.raises(InputError, match="holds a regression of another table, with other folds"):
         cross_validate(
-            made_up_rows(few_inputs(), seed=2),
+            synthetic_rows(few_inputs(), seed=2),
             tmp_path / "out",
             targets=["ratio"],
             kinds=LINEAR,

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from snowshed import InputError
-from snowshed.analysis import CrossValidation, predict, read_rows, regress
+from snowshed.analysis.regression import CrossValidation, predict, read_rows, regress
 from snowshed.analysis.regression.model_file import load_model
 from snowshed.cli.main import main
 
@@ -14,7 +14,7 @@ INPUTS = ("snow.cohesion", "panel.friction")
 
 @pytest.fixture(scope="module")
 def table(tmp_path_factory):
-    """Stacks that grow with the cohesion and shrink with the friction, of one panel."""
+    """Stacks of a panel that grow with the cohesion and shrink with the friction."""
     rows = [
         {
             "hash": "1", "snow.cohesion": c, "panel.friction": f, "panel.tilt": 50.0, "seed": 1,
@@ -39,23 +39,23 @@ def regressed(table):
     return folder
 
 
-def test_a_prediction_takes_these_inputs(regressed):
+def test_predictions_take_the_inputs_of_the_model(regressed):
     file = regressed / "model.npz"
     assert load_model(file).names == ("event", *INPUTS)
-    asked = {"snow.cohesion": [0.05, 0.25], "panel.friction": 0.2}
-    found = predict(inputs=asked, events=2, model=file)
-    wanted = 2 * (0.1 + 0.2 * np.array([0.05, 0.25]) - 0.05 * 0.2)
-    assert found.array("height")[:, 1] == pytest.approx(wanted, rel=0.03)
-    assert found.settings["panel.tilt"] == "50.0"
-    frame = pd.DataFrame({**asked, "events": 2}, index=["weak", "strong"])
+    panels = {"snow.cohesion": [0.05, 0.25], "panel.friction": 0.2}
+    prediction = predict(inputs=panels, events=2, model=file)
+    expected = 2 * (0.1 + 0.2 * np.array([0.05, 0.25]) - 0.05 * 0.2)
+    assert prediction.array("height")[:, 1] == pytest.approx(expected, rel=0.03)
+    assert prediction.settings["panel.tilt"] == "50.0"
+    frame = pd.DataFrame({**panels, "events": 2}, index=["weak", "strong"])
     assert predict(frame, model=file).table["panel"].unique().tolist() == ["weak", "strong"]
 
 
-def test_questions_that_the_model_does_not_know_are_refused(regressed):
+def test_questions_with_other_inputs_are_refused(regressed):
     file = regressed / "model.npz"
-    sound = {"snow.cohesion": 0.1, "panel.friction": 0.2}
+    valid = {"snow.cohesion": 0.1, "panel.friction": 0.2}
     with pytest.raises(InputError, match=r"height: not an input of this model; allowed: snow\.co"):
-        predict(height=2, inputs=sound, events=1, model=file)
+        predict(height=2, inputs=valid, events=1, model=file)
     with pytest.raises(InputError, match=r"panel\.friction: missing; needed are snow\.cohesion"):
         predict(inputs={"snow.cohesion": 0.1}, events=1, model=file)
     with pytest.raises(InputError, match=r"cohesion factor 0\.5 is outside the data"):
@@ -82,15 +82,15 @@ def test_inputs_that_do_not_fit_the_table_are_refused(table, inputs, message):
         read_rows(table, inputs=inputs)
 
 
-def test_the_commands(table, tmp_path, capsys):
+def test_commands_take_the_inputs(table, tmp_path, capsys):
     out = str(tmp_path / "out")
-    wanted = [word for name in INPUTS for word in ("--input", name)]
+    inputs = [word for name in INPUTS for word in ("--input", name)]
     quick = ["--kind", "linear", "--rounds", "1", "--folds", "3", "--inner-folds", "2"]
-    assert main(["regress", str(table), *wanted, *quick, "--jobs", "1", "-o", out]) == 0
+    assert main(["regress", str(table), *inputs, *quick, "--jobs", "1", "-o", out]) == 0
     assert (tmp_path / "out" / "height" / "predictions.png").is_file()
     capsys.readouterr()
-    asked = ["--input", "snow.cohesion=0.1", "--input", "panel.friction=0.3"]
-    assert main(["predict", *asked, "--events", "1", "--model", out + "/model.npz"]) == 0
+    values = ["--input", "snow.cohesion=0.1", "--input", "panel.friction=0.3"]
+    assert main(["predict", *values, "--events", "1", "--model", out + "/model.npz"]) == 0
     assert "Stack below the panel: β 0.1, panel friction 0.3" in capsys.readouterr().out
     assert main(["predict", "--input", "snow.cohesion", "--model", out + "/model.npz"]) == 2
     assert "snow.cohesion: not PATH=NUMBER" in capsys.readouterr().err

@@ -1,4 +1,4 @@
-"""Models: their file, their predictions, and how far those may be trusted."""
+"""Models: files, predictions, and their spread and domain."""
 
 import contextlib
 import json
@@ -9,10 +9,10 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
-from made_up_rows import few_inputs, made_up_rows, smooth_ratio, thesis_inputs
+from synthetic_rows import few_inputs, smooth_ratio, synthetic_rows, thesis_inputs
 
 from snowshed import InputError
-from snowshed.analysis import OutsideDataError, load_model, predict, save_model
+from snowshed.analysis.regression import OutsideDataError, load_model, predict, save_model
 from snowshed.analysis.regression.ensemble import Ensemble
 from snowshed.analysis.regression.kinds import kinds
 from snowshed.analysis.regression.model_file import Member, StackModel
@@ -25,7 +25,7 @@ from snowshed.analysis.regression.spread import (
     predict_unseen_panels,
     stack_spread,
 )
-from snowshed.base.pool.threads import one_thread
+from snowshed.analysis.regression.threads import one_thread
 from snowshed.cli.commands.predict import print_prediction
 from snowshed.snow.stack.quantities import MEASURES
 
@@ -34,7 +34,7 @@ PARAMETERS = {"epsilon": 0.01, "C": 100.0, "gamma": 0.1}
 
 
 def ensemble_model(rows, target="ratio", rounds=2, folds=5):
-    """An RBF model as `regress` makes one, with parameters given instead of searched."""
+    """Return an RBF model as `regress` makes it, but with given parameters."""
     kind = kinds()["rbf"]
     inputs = Scaling.of(rows.inputs).scaled(rows.inputs)
     values = rows.targets[target]
@@ -47,13 +47,13 @@ def ensemble_model(rows, target="ratio", rounds=2, folds=5):
         np.array([model.intercept for model in models]),
         np.full((folds, 4), PARAMETERS["gamma"]),
     )
-    found = predict_unseen_panels(kind, [choices] * rounds, rows, target)
+    held_out = predict_unseen_panels(kind, [choices] * rounds, rows, target)
     deviation = ensemble.predict(inputs).std(axis=0) * values.std()
-    spread = stack_spread(rows, target, found, deviation)
+    spread = stack_spread(rows, target, held_out, deviation)
     return Member(ensemble, float(values.mean()), float(values.std()), spread)
 
 
-def model_of(rows):
+def stack_model(rows):
     with one_thread():
         members = {("ratio", "rbf"): ensemble_model(rows)}
     return StackModel(rows.inputs, members, "made up", "stack")
@@ -61,13 +61,13 @@ def model_of(rows):
 
 @pytest.fixture(scope="module")
 def model():
-    return model_of(made_up_rows(noise=NOISE))
+    return stack_model(synthetic_rows(noise=NOISE))
 
 
 @pytest.fixture(scope="module")
 def model_of_means():
-    """Of rows that are means of four stacks each."""
-    return model_of(made_up_rows(np.tile(thesis_inputs(), (4, 1)), noise=NOISE))
+    """A model of rows that are means of four stacks."""
+    return stack_model(synthetic_rows(np.tile(thesis_inputs(), (4, 1)), noise=NOISE))
 
 
 @pytest.fixture
@@ -76,15 +76,15 @@ def file(model, tmp_path):
     return tmp_path / "model.npz"
 
 
-def test_a_model_survives_its_file(model, file):
-    back = load_model(file)
-    assert (back.title, back.measure, back.targets, back.kinds) == (
+def test_a_model_is_read_back_from_its_file(model, file):
+    loaded = load_model(file)
+    assert (loaded.title, loaded.measure, loaded.targets, loaded.kinds) == (
         "made up",
         "stack",
         ["ratio"],
         ["rbf"],
     )
-    ours, theirs = model.members["ratio", "rbf"], back.members["ratio", "rbf"]
+    ours, theirs = model.members["ratio", "rbf"], loaded.members["ratio", "rbf"]
     assert theirs.spread == ours.spread
     question = Scaling.of(model.inputs).scaled(np.array([[2.0, 2.5, 3.0, 50.0]]))
     np.testing.assert_array_equal(
@@ -93,39 +93,39 @@ def test_a_model_survives_its_file(model, file):
 
 
 def test_a_prediction_is_near_the_formula(file):
-    found = predict(height=2.5, length=5, tilt=55, events=5, model=file)
-    assert not found.extrapolated and found.kind == "rbf"
+    prediction = predict(height=2.5, length=5, tilt=55, events=5, model=file)
+    assert not prediction.extrapolated and prediction.kind == "rbf"
     truth = smooth_ratio(np.array([[event, 2.5, 5, 55] for event in range(1, 6)]))
-    off = np.abs(found.table["value"] - truth)
-    assert (off < 2.5 * NOISE).all()
-    assert (found.table["spread"] < 2.5 * NOISE).all() and (
-        found.table["spread"] > 0.5 * NOISE
+    errors = np.abs(prediction.table["value"] - truth)
+    assert (errors < 2.5 * NOISE).all()
+    assert (prediction.table["spread"] < 2.5 * NOISE).all() and (
+        prediction.table["spread"] > 0.5 * NOISE
     ).all()
-    assert (found.table["low"] < found.table["value"]).all()
+    assert (prediction.table["low"] < prediction.table["value"]).all()
 
 
-def test_a_model_that_is_read_once_answers_alike(model, file):
+def test_a_model_predicts_like_its_file(model, file):
     questions = {"height": 2.5, "length": 5, "tilt": 55, "events": 3}
     pd.testing.assert_frame_equal(
         predict(model=model, **questions).table, predict(model=file, **questions).table
     )
 
 
-def test_what_the_data_have_in_common_is_kept(model, tmp_path):
+def test_settings_shared_by_all_rows_are_stored(model, tmp_path):
     settings = {"panel.friction": "0.8", "dx": "0.025", "trimming": "outermost_first"}
-    told = replace(model, settings=settings, measure="body")
-    save_model(told, tmp_path / "told.npz")
-    found = predict(height=2, length=2, tilt=40, events=1, model=tmp_path / "told.npz")
-    assert (found.settings, found.measure) == (told.settings, "body")
+    described = replace(model, settings=settings, measure="body")
+    save_model(described, tmp_path / "described.npz")
+    prediction = predict(height=2, length=2, tilt=40, events=1, model=tmp_path / "described.npz")
+    assert (prediction.settings, prediction.measure) == (described.settings, "body")
 
 
-def test_a_model_of_before_is_of_the_reading_there_was(model, tmp_path, capsys):
-    """Any measure there is can be told."""
-    save_model(replace(model, settings={"dx": "0.025"}), tmp_path / "before.npz")
-    found = predict(height=2, length=2, tilt=40, events=1, model=tmp_path / "before.npz")
-    assert found.settings["trimming"] == "equal_pace"
+def test_a_model_without_trimming_rule_uses_equal_pace(model, tmp_path, capsys):
+    """A file without a trimming rule means equal_pace; every measure can be printed."""
+    save_model(replace(model, settings={"dx": "0.025"}), tmp_path / "old.npz")
+    prediction = predict(height=2, length=2, tilt=40, events=1, model=tmp_path / "old.npz")
+    assert prediction.settings["trimming"] == "equal_pace"
     for measure in MEASURES:
-        print_prediction(replace(found, measure=measure), "Stack")
+        print_prediction(replace(prediction, measure=measure), "Stack")
         shown = " ".join(capsys.readouterr().out.split())
         assert MEASURES[measure].label in shown and "trimming equal_pace" in shown
 
@@ -138,37 +138,37 @@ def test_a_model_of_before_is_of_the_reading_there_was(model, tmp_path, capsys):
         ({"transfer": "affine_flip"}, "no runs are recorded for scheme thesis with affine flip"),
     ],
 )
-def test_the_error_of_the_grid_is_that_of_the_scheme(model, tmp_path, capsys, settings, text):
+def test_the_error_of_the_grid_follows_from_the_scheme(model, tmp_path, capsys, settings, text):
     save_model(replace(model, settings=settings), tmp_path / "model.npz")
-    told = predict(height=2, length=2, tilt=40, events=1, model=tmp_path / "model.npz")
-    print_prediction(told, "Stack")
+    prediction = predict(height=2, length=2, tilt=40, events=1, model=tmp_path / "model.npz")
+    print_prediction(prediction, "Stack")
     assert text in " ".join(capsys.readouterr().out.split())
 
 
-def test_no_answer_is_negative(model):
-    """Nor are the ends of its interval swapped if a model falls below zero."""
+def test_no_prediction_is_negative(model):
+    """A model below zero predicts zero, and so do the ends of its interval."""
     ((key, member),) = model.members.items()
     below = replace(model, members={key: replace(member, mean=-10.0)})
     table = predict(height=2, length=2, tilt=40, events=2, model=below).table
     assert (table[["value", "low", "high"]] == 0).all(axis=None)
 
 
-@pytest.mark.parametrize("which", ["model", "model_of_means"])
-def test_spread_and_interval_hold_as_many_stacks_as_they_say(which, request):
-    """New panels inside the data, with new noise, that no model has seen."""
-    model = request.getfixturevalue(which)
+@pytest.mark.parametrize("fixture", ["model", "model_of_means"])
+def test_spread_and_interval_contain_their_share_of_stacks(fixture, request):
+    """New panels inside the data have new noise."""
+    model = request.getfixturevalue(fixture)
     rng = np.random.default_rng(5)
     inside = rng.uniform((2, 0.5, 40), (4, 8, 70), (300, 3))
     questions = np.column_stack([rng.integers(1, 6, 300), inside])
     stacks = smooth_ratio(questions) + rng.normal(0, NOISE, 300)
     member = model.members["ratio", "rbf"]
     scaled = Scaling.of(model.inputs).scaled(questions)
-    found = member.ensemble.predict(scaled) * member.deviation + member.mean
-    mean, deviation = found.mean(axis=0), found.std(axis=0)
+    predictions = member.ensemble.predict(scaled) * member.deviation + member.mean
+    mean, deviation = predictions.mean(axis=0), predictions.std(axis=0)
     for part in (SPREAD_SHARE, INTERVAL_SHARE):
         width = member.spread.half_width(mean, deviation, part)
-        held = np.mean(np.abs(stacks - mean) <= width)
-        assert part - 0.07 < held < part + 0.09
+        share = np.mean(np.abs(stacks - mean) <= width)
+        assert part - 0.07 < share < part + 0.09
 
 
 def test_spread_grows_where_noise_grows():
@@ -181,14 +181,14 @@ def test_spread_grows_where_noise_grows():
 
 
 def test_rows_of_a_panel_are_left_out_together():
-    """Panels with an offset of their own: the spread knows it, although rows of a panel agree."""
-    rows = made_up_rows(few_inputs(), noise=0.0)
+    """Rows of a panel share its offset, so only leaving out all of them reveals it."""
+    rows = synthetic_rows(few_inputs(), noise=0.0)
     rng = np.random.default_rng(2)
     offset = rng.normal(0, 0.01, rows.panels.max() + 1)[rows.panels]
     length = rows.targets["length"]
     shifted = stack_rows(rows.inputs, (rows.targets["ratio"] + offset) * length, length)
-    found = predict_unseen_panels(kinds()["rbf"], [[PARAMETERS] * 8] * 2, shifted, "ratio")
-    assert np.abs(found - shifted.targets["ratio"]).mean() > 0.006
+    held_out = predict_unseen_panels(kinds()["rbf"], [[PARAMETERS] * 8] * 2, shifted, "ratio")
+    assert np.abs(held_out - shifted.targets["ratio"]).mean() > 0.006
 
 
 @pytest.mark.parametrize(
@@ -199,11 +199,11 @@ def test_rows_of_a_panel_are_left_out_together():
         ({"height": 1.0, "tilt": 65}, "not together"),
     ],
 )
-def test_outside_the_data_nothing_is_answered_unless_forced(file, question, message):
-    asked = {"height": 2.0, "length": 9.0, "tilt": 40, "events": 5, "model": file, **question}
+def test_panels_outside_the_data_are_refused_unless_forced(file, question, message):
+    arguments = {"height": 2.0, "length": 9.0, "tilt": 40, "events": 5, "model": file, **question}
     with pytest.raises(OutsideDataError, match=message):
-        predict(**asked)
-    forced = predict(**asked, extrapolate=True)
+        predict(**arguments)
+    forced = predict(**arguments, extrapolate=True)
     assert forced.extrapolated and message in forced.objections[0]
 
 
@@ -233,17 +233,17 @@ def test_impossible_questions_are_refused(file, values, message):
 PANELS = {"height": [2.0, 3.0, 4.0], "length": [2.0, 4.0, 1.0], "events": [2, 5, 1]}
 
 
-def test_arrays_and_tables_are_answered_as_each_panel_alone(file):
-    """Numbers stand for all panels; columns of a table come in any order."""
+def test_arrays_and_tables_are_predicted_like_single_panels(file):
+    """A number holds for all panels; the columns of a table may be in any order."""
     several = predict(**PANELS, tilt=50, model=file)
     table = pd.DataFrame(PANELS | {"tilt": 50})[["tilt", "events", "length", "height"]]
     labelled = predict(table.set_axis(["a", "b", "c"]), model=file)
     assert list(dict.fromkeys(labelled.table["panel"])) == ["a", "b", "c"]
     for number, label in enumerate("abc"):
-        alone = {name: values[number] for name, values in PANELS.items()}
-        expected = predict(**alone, tilt=50, model=file).table.drop(columns="panel")
-        for found, panel in ((several, number), (labelled, label)):
-            rows = found.table[found.table["panel"] == panel].drop(columns="panel")
+        single = {name: values[number] for name, values in PANELS.items()}
+        expected = predict(**single, tilt=50, model=file).table.drop(columns="panel")
+        for prediction, panel in ((several, number), (labelled, label)):
+            rows = prediction.table[prediction.table["panel"] == panel].drop(columns="panel")
             pd.testing.assert_frame_equal(rows.reset_index(drop=True), expected, rtol=1e-9)
     array = labelled.array("ratio")
     assert array.shape == (3, 5) and np.isfinite(array).sum() == 8
@@ -254,13 +254,13 @@ def test_arrays_and_tables_are_answered_as_each_panel_alone(file):
 
 
 def test_panels_outside_the_data_are_named_and_marked(file):
-    asked = {"height": [2.0, 9.0, 3.0, 2.0], "length": 2.0, "tilt": [40, 40, 50, 89], "events": 1}
+    panels = {"height": [2.0, 9.0, 3.0, 2.0], "length": 2.0, "tilt": [40, 40, 50, 89], "events": 1}
     with pytest.raises(OutsideDataError) as refused:
-        predict(**asked, model=file)
-    said = str(refused.value)
-    assert said.startswith("2 of 4 panels lie outside the data: panel 1: panel height 9 m is")
-    assert "; panel 3: panel tilt 89° is outside the data" in said
-    forced = predict(**asked, model=file, extrapolate=True)
+        predict(**panels, model=file)
+    message = str(refused.value)
+    assert message.startswith("2 of 4 panels lie outside the data: panel 1: panel height 9 m is")
+    assert "; panel 3: panel tilt 89° is outside the data" in message
+    forced = predict(**panels, model=file, extrapolate=True)
     assert forced.table["extrapolated"].tolist() == [False, True, False, True]
     assert [text[:8] for text in forced.objections] == ["panel 1:", "panel 3:"]
     many = predict(height=[9.0] * 8, length=2, tilt=40, events=1, model=file, extrapolate=True)
@@ -278,13 +278,13 @@ def test_panels_outside_the_data_are_named_and_marked(file):
         ),
         (lambda t: t.rename(columns={"tilt": "tlit"}), "column 'tlit' is unknown; allowed: height"),
         (lambda t: t.assign(friction=0.3), "column 'friction' is unknown; allowed: height"),
-        (lambda t: t.set_axis([7, 7]), "index holds 7 twice"),
+        (lambda t: t.set_axis([7, 7]), "index must be unique; it holds 7 twice"),
         (lambda t: t[["tilt", *t]], "column 'tilt' occurs twice"),
         (lambda t: t.assign(height=[2, np.nan]), "panel 1, height: nan is not a positive length"),
         (lambda t: t.to_numpy(), "panels: ndarray is not a DataFrame; give arrays as height"),
     ],
 )
-def test_tables_that_are_no_panels_are_refused(file, change, message):
+def test_tables_without_valid_panels_are_refused(file, change, message):
     table = pd.DataFrame({"height": [2.0, 3.0], "length": 2.0, "tilt": 40.0, "events": 2})
     with pytest.raises(InputError, match=message):
         predict(change(table), model=file)
@@ -343,7 +343,7 @@ def test_bad_models_are_refused_by_key(file, tmp_path, change, message):
         load_model(bad)
 
 
-def test_files_that_are_no_models_are_refused(file, tmp_path):
+def test_files_that_are_not_models_are_refused(file, tmp_path):
     (tmp_path / "cut.npz").write_bytes(file.read_bytes()[:2000])
     (tmp_path / "text.npz").write_text("model")
     (tmp_path / "pickle.npz").write_bytes(pickle.dumps({"coefficients": [1]}))
@@ -374,16 +374,16 @@ def test_a_file_that_unpacks_to_too_much_is_refused(file, monkeypatch):
         load_model(file)
 
 
-def test_damaged_files_are_refused_or_still_a_model(file, tmp_path):
+def test_damaged_files_are_refused_or_read_as_a_model(file, tmp_path):
     """Random bytes anywhere in the archive, or inside one of its arrays, raise no other error."""
-    whole, rng = file.read_bytes(), np.random.default_rng(0)
+    original, rng = file.read_bytes(), np.random.default_rng(0)
     for attempt in range(60):
         with zipfile.ZipFile(file) as archive:
             parts = {name: bytearray(archive.read(name)) for name in archive.namelist()}
-        damaged = bytearray(whole)
+        damaged = bytearray(original)
         part = parts[str(rng.choice(sorted(parts)))] if attempt % 2 else damaged
-        for place in rng.integers(0, min(len(part), 400), 3):
-            part[place] = rng.integers(256)
+        for index in rng.integers(0, min(len(part), 400), 3):
+            part[index] = rng.integers(256)
         if attempt % 2:
             with zipfile.ZipFile(tmp_path / "bad.npz", "w") as archive:
                 for name, content in parts.items():

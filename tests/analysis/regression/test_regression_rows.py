@@ -1,17 +1,17 @@
-"""Reading the table: what is taken, and what is refused where."""
+"""Tables of rows: their contents, and errors with line and column."""
 
 import numpy as np
 import pandas as pd
 import pytest
-from made_up_rows import few_inputs, made_up_rows, thesis_inputs, write_table
+from synthetic_rows import few_inputs, synthetic_rows, thesis_inputs, write_table
 
 from snowshed import InputError
-from snowshed.analysis import read_rows, stack_rows
+from snowshed.analysis.regression import read_rows, stack_rows
 from snowshed.analysis.regression import rows as rows_module
 
 
 def test_a_table_gives_inputs_and_targets(tmp_path):
-    rows = made_up_rows(few_inputs())
+    rows = synthetic_rows(few_inputs())
     write_table(rows, tmp_path / "rows.csv")
     read = read_rows(tmp_path / "rows.csv")
     np.testing.assert_array_equal(read.inputs, rows.inputs)
@@ -20,15 +20,15 @@ def test_a_table_gives_inputs_and_targets(tmp_path):
     assert len(set(read.panels)) == 32 and read.left_out == 0
 
 
-def test_the_body_may_be_measured_instead(tmp_path):
-    rows = made_up_rows(few_inputs())
+def test_the_body_can_be_the_measure(tmp_path):
+    rows = synthetic_rows(few_inputs())
     write_table(rows, tmp_path / "rows.csv")
     body = read_rows(tmp_path / "rows.csv", measure="body")
     np.testing.assert_allclose(body.targets["ratio"], rows.targets["ratio"] * 0.9 / 0.8)
 
 
 def test_parquet_is_read_too(tmp_path):
-    rows = made_up_rows(few_inputs())
+    rows = synthetic_rows(few_inputs())
     table = write_table(rows, tmp_path / "rows.csv")
     table.to_parquet(tmp_path / "rows.parquet")
     read = read_rows(tmp_path / "rows.parquet")
@@ -36,16 +36,16 @@ def test_parquet_is_read_too(tmp_path):
 
 
 def test_failed_runs_are_left_out(tmp_path):
-    table = write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv")
+    table = write_table(synthetic_rows(few_inputs()), tmp_path / "rows.csv")
     table.loc[[3, 7], ["height_m", "length_m"]] = np.nan
     table.to_csv(tmp_path / "rows.csv", index=False)
     read = read_rows(tmp_path / "rows.csv")
     assert (len(read), read.left_out) == (94, 2)
 
 
-def test_stacks_that_differ_in_their_seeds_make_one_row():
-    single = made_up_rows(few_inputs(), noise=0)
-    noisy = made_up_rows(np.tile(few_inputs(), (16, 1)), noise=0.003)
+def test_stacks_that_differ_only_in_their_seeds_make_one_row():
+    single = synthetic_rows(few_inputs(), noise=0)
+    noisy = synthetic_rows(np.tile(few_inputs(), (16, 1)), noise=0.003)
     np.testing.assert_array_equal(noisy.inputs, single.inputs)
     assert noisy.stacks["ratio"].shape == (96, 16)
     error = np.abs(noisy.targets["ratio"] - single.targets["ratio"]).mean()
@@ -65,11 +65,11 @@ def test_rows_may_have_different_numbers_of_stacks():
 def test_the_ratio_of_a_row_is_that_of_its_mean_stack():
     inputs = np.tile([1.0, 2.0, 4.0, 40.0], (2, 1))
     rows = stack_rows(inputs, np.array([1.0, 2.0]), np.array([1.0, 5.0]))
-    assert rows.targets["ratio"].tolist() == [0.5]  # of the mean of the ratios it would be 0.7
+    assert rows.targets["ratio"].tolist() == [0.5]  # the mean of the ratios would be 0.7
 
 
-def test_snow_that_stays_on_the_panel_is_no_stack(tmp_path):
-    table = write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv")
+def test_events_without_a_stack_are_left_out(tmp_path):
+    table = write_table(synthetic_rows(few_inputs()), tmp_path / "rows.csv")
     table.loc[[3, 7, 8], ["height_m", "length_m"]] = 0.0
     table.to_csv(tmp_path / "rows.csv", index=False)
     read = read_rows(tmp_path / "rows.csv")
@@ -77,7 +77,7 @@ def test_snow_that_stays_on_the_panel_is_no_stack(tmp_path):
 
 
 def test_stacks_that_still_move_are_counted(tmp_path):
-    table = write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv")
+    table = write_table(synthetic_rows(few_inputs()), tmp_path / "rows.csv")
     ended = ["time_limit" if row in (3, 7) else "rest" for row in range(len(table))]
     table.assign(ended=ended).to_csv(tmp_path / "rows.csv", index=False)
     read = read_rows(tmp_path / "rows.csv")
@@ -85,22 +85,22 @@ def test_stacks_that_still_move_are_counted(tmp_path):
 
 
 def test_too_many_rows_are_refused(tmp_path, monkeypatch):
-    write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv")
+    write_table(synthetic_rows(few_inputs()), tmp_path / "rows.csv")
     monkeypatch.setattr(rows_module, "MAX_ROWS", 95)
     with pytest.raises(InputError, match="96 rows; at most 95 are allowed"):
         read_rows(tmp_path / "rows.csv")
 
 
-def test_what_all_rows_have_in_common(tmp_path):
-    table = write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv")
+def test_settings_shared_by_all_rows_are_read(tmp_path):
+    table = write_table(synthetic_rows(few_inputs()), tmp_path / "rows.csv")
     table.assign(**{"panel.friction": 0.8, "seeding.seed": 3}).to_csv(tmp_path / "rows.csv")
     settings = read_rows(tmp_path / "rows.csv").settings
     assert settings["panel.friction"] == "0.8"
     assert not {"panel.height", "seeding.seed", "height_m"} & set(settings)
 
 
-def test_a_stack_counts_once(tmp_path):
-    table = write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv")
+def test_a_repeated_stack_is_refused(tmp_path):
+    table = write_table(synthetic_rows(few_inputs()), tmp_path / "rows.csv")
     pd.concat([table, table]).to_csv(tmp_path / "twice.csv", index=False)
     with pytest.raises(InputError, match="lines 2 and 98: the same panel, event and seed twice"):
         read_rows(tmp_path / "twice.csv")
@@ -109,8 +109,8 @@ def test_a_stack_counts_once(tmp_path):
 
 
 def test_conditions_choose_rows(tmp_path):
-    ways = ["carry", "reseed"] * 48
-    write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv", **{"events.between": ways})
+    modes = ["carry", "reseed"] * 48
+    write_table(synthetic_rows(few_inputs()), tmp_path / "rows.csv", **{"events.between": modes})
     assert len(read_rows(tmp_path / "rows.csv", where={"events.between": "carry"})) == 48
     with pytest.raises(InputError, match=r"events.between: the rows have different values"):
         read_rows(tmp_path / "rows.csv")
@@ -131,7 +131,7 @@ def test_conditions_choose_rows(tmp_path):
     ],
 )
 def test_wrong_cells_are_named(tmp_path, column, cell, message):
-    table = write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv").astype(str)
+    table = write_table(synthetic_rows(few_inputs()), tmp_path / "rows.csv").astype(str)
     table.loc[5, column] = cell
     table.to_csv(tmp_path / "rows.csv", index=False)
     with pytest.raises(InputError, match=r"rows.csv: .*" + message):
@@ -139,7 +139,7 @@ def test_wrong_cells_are_named(tmp_path, column, cell, message):
 
 
 def test_missing_columns_and_few_rows_are_refused(tmp_path):
-    table = write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv")
+    table = write_table(synthetic_rows(few_inputs()), tmp_path / "rows.csv")
     table.drop(columns="panel.tilt").to_csv(tmp_path / "no-tilt.csv", index=False)
     with pytest.raises(InputError, match=r"no column panel.tilt.*axes.panel.tilt = 40"):
         read_rows(tmp_path / "no-tilt.csv")
@@ -157,26 +157,26 @@ def test_missing_columns_and_few_rows_are_refused(tmp_path):
         read_rows(tmp_path / "cut.csv")
 
 
-def test_the_made_up_rows_look_like_the_thesis_data():
-    rows = made_up_rows()
+def test_synthetic_rows_resemble_the_thesis_data():
+    rows = synthetic_rows()
     quartiles = np.quantile(rows.targets["ratio"], (0.25, 0.5, 0.75, 1))
     np.testing.assert_allclose(quartiles, (0.057, 0.092, 0.142, 0.240), rtol=0.35)
     assert len(thesis_inputs()) == 610
 
 
-def test_columns_of_the_last_version_are_read_by_the_names_of_today(tmp_path):
-    table = write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv")
+def test_former_column_names_are_read(tmp_path):
+    table = write_table(synthetic_rows(few_inputs()), tmp_path / "rows.csv")
     table.assign(step_factor=0.5).to_csv(tmp_path / "rows.csv", index=False)
     for name in ("step_factor", "courant_factor"):
         read = read_rows(tmp_path / "rows.csv", where={name: "0.5"})
         assert read.settings["courant_factor"] == "0.5"
 
 
-def test_stacks_by_two_readings_are_not_mixed_unless_one_is_asked_for(tmp_path):
-    table = write_table(made_up_rows(few_inputs()), tmp_path / "rows.csv")
+def test_stacks_by_two_trimming_rules_are_not_mixed(tmp_path):
+    table = write_table(synthetic_rows(few_inputs()), tmp_path / "rows.csv")
     trimming = ["outermost_first" if row % 2 else "equal_pace" for row in range(len(table))]
-    both = {f"equal_pace_{name}": 2 * table[name] for name in ("height_m", "length_m")}
-    table.assign(trimming=trimming, **both).to_csv(tmp_path / "rows.csv", index=False)
+    columns = {f"equal_pace_{name}": 2 * table[name] for name in ("height_m", "length_m")}
+    table.assign(trimming=trimming, **columns).to_csv(tmp_path / "rows.csv", index=False)
     with pytest.raises(InputError, match="trimming: the rows have different values"):
         read_rows(tmp_path / "rows.csv")
     chosen = read_rows(tmp_path / "rows.csv", measure="equal_pace")

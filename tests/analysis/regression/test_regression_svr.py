@@ -2,16 +2,15 @@
 
 import numpy as np
 import pytest
-from made_up_rows import few_inputs, made_up_rows
 from sklearn.model_selection import GridSearchCV, GroupKFold
 from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import StandardScaler
 from sklearn.svm import SVR
 from sklearn.utils.estimator_checks import parametrize_with_checks
+from synthetic_rows import few_inputs, synthetic_rows
 
 from snowshed import InputError
-from snowshed.analysis import EpsilonSVR
-from snowshed.analysis.regression import support_vectors
+from snowshed.analysis.regression import EpsilonSVR, support_vectors
 from snowshed.analysis.regression.folds import CrossValidation, ShuffledGroupKFold
 from snowshed.analysis.regression.gradient_boosting import StagedGradientBoosting
 from snowshed.analysis.regression.grid_kinds import EPSILON, GAMMA, rbf_svr
@@ -23,7 +22,7 @@ from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.support_vectors import fit_along_c
 from snowshed.analysis.regression.task import FoldTask, compute
 
-ROWS = made_up_rows(few_inputs())
+ROWS = synthetic_rows(few_inputs())
 X = Scaling.of(ROWS.inputs).scaled(ROWS.inputs)
 Y = ROWS.targets["ratio"]
 Y = (Y - Y.mean()) / Y.std()
@@ -36,12 +35,12 @@ def kernel(gamma):
 @pytest.mark.parametrize("gamma", [0, 1e-3, 0.1, 10])
 @pytest.mark.parametrize("epsilon", [1e-3, 0.1, 1])
 @pytest.mark.parametrize("c", [1e-3, 1, 100])
-def test_interior_point_fits_are_those_of_scikit_learn(gamma, epsilon, c):
+def test_interior_point_fits_agree_with_scikit_learn(gamma, epsilon, c):
     fit = solve(kernel(gamma), Y, c, epsilon, tolerance=1e-8)
     reference = SVR(kernel="precomputed", C=c, epsilon=epsilon, tol=1e-6).fit(kernel(gamma), Y)
     ours = kernel(gamma) @ fit.coefficients + fit.intercept
     theirs = reference.predict(kernel(gamma))
-    # Where no multiplier is between its bounds the intercept may lie anywhere in an interval.
+    # If no multiplier is between its bounds, any intercept in an interval is optimal.
     free = np.abs(reference.dual_coef_[0])
     shift = 0.0 if ((free > 1e-6 * c) & (free < 0.999 * c)).any() else np.mean(ours - theirs)
     np.testing.assert_allclose(ours - shift, theirs, atol=2e-4)
@@ -50,7 +49,7 @@ def test_interior_point_fits_are_those_of_scikit_learn(gamma, epsilon, c):
 @pytest.mark.parametrize("c", [1e-3, 1, 1e4])
 @pytest.mark.parametrize("gamma", [1e-4, 0.1, 100])
 def test_interior_point_fits_are_optimal(gamma, c):
-    """Multipliers within bounds and balanced; no other function has a smaller objective."""
+    """Multipliers are within bounds and balanced, and the duality gap is zero."""
     epsilon = 0.05
     fit = solve(kernel(gamma), Y, c, epsilon, tolerance=1e-9)
     beta = fit.coefficients
@@ -65,25 +64,25 @@ def test_interior_point_fits_are_optimal(gamma, c):
 
 @pytest.mark.parametrize("gamma", [0, 1e-2, 1, 100])
 @pytest.mark.parametrize("epsilon", [1e-4, 0.1, 100])
-def test_a_path_gives_each_fit(gamma, epsilon):
+def test_a_path_agrees_with_single_fits(gamma, epsilon):
     """Reused, quick and exact fits all equal the fit for their C."""
     for c, fit in zip(BOUNDS, fit_along_c(kernel(gamma), Y, epsilon, BOUNDS)):
         if epsilon == 100:
             middle = (Y.min() + Y.max()) / 2
             assert not fit.coefficients.any() and fit.intercept == pytest.approx(middle)
             continue
-        alone = solve(kernel(gamma), Y, c, epsilon, tolerance=1e-8)
-        ours, theirs = (kernel(gamma) @ f.coefficients for f in (fit, alone))
+        single = solve(kernel(gamma), Y, c, epsilon, tolerance=1e-8)
+        ours, theirs = (kernel(gamma) @ f.coefficients for f in (fit, single))
         assert np.abs(ours - theirs - np.mean(ours - theirs)).max() < 5e-3
 
 
-def test_a_kernel_that_is_none_is_refused():
+def test_a_kernel_that_is_not_positive_is_refused():
     with pytest.raises(FloatingPointError, match="positive"):
         solve(-1e6 * np.eye(len(Y)), Y, 1e6, 0.1)
 
 
-def test_points_that_do_not_converge_are_not_elected(monkeypatch):
-    """Only points that libsvm solves quickly are elected."""
+def test_points_that_do_not_converge_are_not_selected(monkeypatch):
+    """Only points that libsvm solves quickly can be selected."""
 
     def diverge(*arguments):
         raise FloatingPointError("the fit did not converge")
@@ -101,7 +100,7 @@ def test_points_that_do_not_converge_are_not_elected(monkeypatch):
 
 
 @parametrize_with_checks([EpsilonSVR("rbf"), EpsilonSVR("linear")])
-def test_it_is_an_estimator_of_scikit_learn(estimator, check):
+def test_it_passes_the_checks_of_scikit_learn(estimator, check):
     check(estimator)
 
 
@@ -119,7 +118,7 @@ def test_impossible_parameters_are_refused(parameters, message):
         EpsilonSVR(**parameters).fit(X, Y)
 
 
-def test_it_goes_into_a_pipeline_and_a_grid_search_of_scikit_learn():
+def test_it_works_in_a_pipeline_and_a_grid_search_of_scikit_learn():
     grid = {"epsilonsvr__C": [0.1, 10.0], "epsilonsvr__epsilon": [0.01, 0.1]}
     pipeline = make_pipeline(StandardScaler(), EpsilonSVR(gamma=0.1))
     search = GridSearchCV(pipeline, grid, cv=GroupKFold(4), scoring="neg_median_absolute_error")
@@ -144,7 +143,7 @@ GRIDS = {
 
 
 @pytest.mark.parametrize("name", GRIDS)
-def test_the_path_search_scores_as_a_grid_search_of_scikit_learn(name):
+def test_path_search_and_grid_search_of_scikit_learn_agree(name):
     """Every point of the grid, on the same folds; fits may stop at different tolerances."""
     model, grid = GRIDS[name]
     folds = ShuffledGroupKFold(3, (1, 0, 0))
@@ -165,11 +164,11 @@ def test_the_path_search_scores_as_a_grid_search_of_scikit_learn(name):
     assert ours.n_fits_ == 3 * (2 if name == "trees" else len(expected))
 
 
-def test_the_grid_of_the_rbf_kernel_is_counted():
+def test_the_grid_of_the_rbf_kernel_needs_196_000_fits():
     assert np.prod([len(values) for values in rbf_svr().grid.values()]) * 5 * 100 == 196_000
 
 
-def test_the_expansion_of_a_model_is_the_support_vector_machine():
+def test_the_expansion_predicts_like_the_support_vector_machine():
     model = EpsilonSVR(epsilon=0.01, C=10.0, gamma=0.1).fit(X, Y)
     reference = SVR(C=10.0, epsilon=0.01, gamma=0.1, tol=1e-6).fit(X, Y)
     question = np.array([[0.1, -0.3, 0.7, 0.2]])
@@ -178,9 +177,9 @@ def test_the_expansion_of_a_model_is_the_support_vector_machine():
 
 
 @pytest.mark.slow
-def test_the_thesis_comparison_of_kernels_on_rows_like_its_own():
+def test_the_thesis_comparison_of_kernels_holds_for_synthetic_rows():
     """One outer fold of the full search on 610 rows: Table 5.3.2's errors and their ratio."""
-    rows = made_up_rows()
+    rows = synthetic_rows()
     values = rows.targets["ratio"]
     errors = {
         name: np.abs(

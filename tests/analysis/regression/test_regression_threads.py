@@ -4,7 +4,7 @@ import subprocess
 import sys
 
 LATE = """
-from snowshed.base.pool.threads import one_thread
+from snowshed.analysis.regression.threads import one_thread
 
 with one_thread():
     import scipy.linalg, sklearn.svm

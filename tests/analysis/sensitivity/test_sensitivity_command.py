@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 from snowshed import Scene
-from snowshed.analysis import read_study_runs
+from snowshed.analysis.sensitivity import read_study_runs
 from snowshed.cli.main import main
 from snowshed.results.folder import WORDS
 from snowshed.study import Study
@@ -26,20 +26,20 @@ def height(scene_snow, event):
 
 
 def fill(folder, study, compute=lambda run: True):
-    """Store heights by a formula, in place of simulations."""
+    """Store heights from a formula in place of simulations."""
     import json
 
     with Store.create(folder) as store:
         store.register(study.name, study.axes, study.runs())
-        for one in filter(compute, study.runs()):
-            snow = json.loads(one.scene)["snow"]
+        for planned in filter(compute, study.runs()):
+            snow = json.loads(planned.scene)["snow"]
             rows = []
             for event in (1, 2):
                 row = {name: "rest" if name in WORDS else 1.0 for name in MEASURED_TYPES}
                 row.update(event=event, wall_s=0.1, steps=10, height_m=height(snow, event))
                 row.update(body_height_m=2 * height(snow, event), length_m=0.3)
                 rows.append(row)
-            store.record(RunOutcome(one.hash, "done", rows, {}))
+            store.record(RunOutcome(planned.hash, "done", rows, {}))
 
 
 def grid(name="grid", seeds=None):
@@ -53,9 +53,9 @@ def test_without_salib_the_error_says_what_to_install(tmp_path, capsys, hide, me
     hide("SALib")
     out = tmp_path / "out"
     assert run("sensitivity", "--method", method, "--quick", "--dry-run", "-o", out) == 2
-    said = capsys.readouterr().err
-    assert "needs SALib" in said and 'pip install "snowshed[sensitivity]"' in said
-    assert said.count("\n") == 1 and not out.exists()
+    message = capsys.readouterr().err
+    assert "needs SALib" in message and 'pip install "snowshed[sensitivity]"' in message
+    assert message.count("\n") == 1 and not out.exists()
     assert run("sensitivity", "--method", "s", "--quick", "--dry-run", "-o", out) == 0
 
 
@@ -77,13 +77,13 @@ def test_any_stored_study_is_evaluated_without_running(tmp_path, capsys, method)
     assert set(pd.read_csv(out / "noise.csv")["freedom"]) == {4}
 
 
-def test_what_is_missing_is_said(tmp_path, capsys):
+def test_missing_runs_are_noted_unless_quiet(tmp_path, capsys):
     """A value that is the same in all runs need not be a number."""
     study = grid(seeds=[1, 2])
     axes = {"events.between": ["carry"], SLOPE: [0.3, 0.6], COHESION: [0.15, 0.3]}
     study = Study.product(study.scene, axes, name="grid", seeds=[1, 2])
     last = study.runs()[-1].hash
-    fill(tmp_path / "store", study, lambda one: one.hash != last)
+    fill(tmp_path / "store", study, lambda planned: planned.hash != last)
     arguments = ("sensitivity", "--stored", tmp_path / "store", "-o", tmp_path / "out")
     assert run(*arguments) == 0
     assert "note: 1 of 8 runs are not computed" in capsys.readouterr().err
@@ -91,14 +91,14 @@ def test_what_is_missing_is_said(tmp_path, capsys):
     assert capsys.readouterr().err == ""
 
 
-def test_designs_are_read_off_the_store(tmp_path, capsys):
-    """Written as a study file, stored, and evaluated; one run is missing."""
-    from snowshed.analysis import sensitivity_study
+def test_designs_are_recognised_in_the_store(tmp_path, capsys):
+    """A study file is computed and evaluated; one run is missing."""
+    from snowshed.analysis.sensitivity import sensitivity_study
 
     sensitivity_study("morris", quick=True, samples=3).save(tmp_path / "morris.toml")
     study = Study.load(tmp_path / "morris.toml")
     last = study.runs()[-1].hash
-    fill(tmp_path / "store", study, lambda one: one.hash != last)
+    fill(tmp_path / "store", study, lambda planned: planned.hash != last)
     options = ("--method", "morris", "--stored", tmp_path / "store", "-o", tmp_path / "out")
     assert run("sensitivity", *options, "-q") == 0
     assert capsys.readouterr().out == ""
@@ -108,8 +108,8 @@ def test_designs_are_read_off_the_store(tmp_path, capsys):
 
 
 def test_a_second_design_in_the_same_folder_is_evaluated_too(tmp_path):
-    """All runs are done; the command must know which of the two studies it has just finished."""
-    from snowshed.analysis import sensitivity_study
+    """All runs are finished; the command must evaluate the study that it was given."""
+    from snowshed.analysis.sensitivity import sensitivity_study
 
     out = tmp_path / "out"
     fill(out / "runs", grid("earlier"))
@@ -120,18 +120,18 @@ def test_a_second_design_in_the_same_folder_is_evaluated_too(tmp_path):
     assert (out / "morris.csv").is_file()
 
 
-def test_bodies_instead_of_stacks_and_one_of_several_studies(tmp_path):
-    for name in ("one", "other"):
+def test_bodies_and_stacks_of_several_studies_are_read(tmp_path):
+    for name in ("first", "second"):
         fill(tmp_path / "store", grid(name))
-    stack = read_study_runs(tmp_path / "store", "one")
-    body = read_study_runs(tmp_path / "store", "other", "body")
+    stack = read_study_runs(tmp_path / "store", "first")
+    body = read_study_runs(tmp_path / "store", "second", "body")
     assert (body.rows["height"] == 2 * stack.rows["height"]).all()
     assert stack.parameters == [SLOPE, COHESION] and stack.events == [1, 2]
 
 
-def test_what_is_wrong_is_said(tmp_path, capsys):
+def test_bad_arguments_and_studies_are_named(tmp_path, capsys):
     fill(tmp_path / "store", grid())
-    fill(tmp_path / "empty", grid(), lambda one: False)
+    fill(tmp_path / "empty", grid(), lambda planned: False)
     words = Study.product(grid().scene, {"numerics.transfer": ["flip", "apic"]}, name="words")
     fill(tmp_path / "words", words)
     bad = tmp_path / "bad.toml"
@@ -165,14 +165,14 @@ def test_a_damaged_store_is_named(tmp_path, capsys):
     assert error.count("\n") == 1
 
 
-def test_plan_says_how_many_runs(tmp_path, capsys):
+def test_the_dry_run_counts_the_runs(tmp_path, capsys):
     options = ("--quick", "--dry-run", "-o", tmp_path)
     assert run("sensitivity", "--method", "fixation", *options) == 0
     assert "sensitivity-fixation-quick: 70 runs" in capsys.readouterr().out
 
 
 def test_a_study_of_real_snow_is_computed_and_resumed(tmp_path, capsys):
-    """Two tiny runs, stopped in the air; the second call has nothing left to compute."""
+    """Two tiny runs end in mid-air; the second call has nothing to compute."""
     file = tmp_path / "tiny.toml"
     file.write_text(
         'name = "tiny"\ndimension = 2\nevents = 1\n'

@@ -1,16 +1,16 @@
-"""The studies of chapter 3: how many runs, at which values."""
+"""The studies of chapter 3: numbers of runs, and their values."""
 
 import json
 
 import numpy as np
 import pytest
-from made_up_studies import BETA, P0, REFERENCE, SEED, XI, E, M
+from synthetic_studies import BETA, P0, REFERENCE, SEED, XI, E, M
 
 from snowshed import InputError
-from snowshed.analysis import sensitivity_study
+from snowshed.analysis.sensitivity import sensitivity_study
 
 
-def runs_of(method, **options):
+def design_scenes(method, **options):
     return [json.loads(run.scene) for run in sensitivity_study(method, **options).runs()]
 
 
@@ -20,7 +20,7 @@ def value(scene, path):
 
 
 def changed(scenes):
-    """The values that differ from the reference snow, scene by scene."""
+    """Return, scene by scene, the values that differ from the reference snow."""
     return [
         {path: value(scene, path) for path in REFERENCE if value(scene, path) != REFERENCE[path]}
         for scene in scenes
@@ -28,22 +28,22 @@ def changed(scenes):
 
 
 def test_single_parameter_variation_is_table_3_3_1():
-    scenes = runs_of("s", seeds=1)
+    scenes = design_scenes("s", seeds=1)
     pairs = {M: (0.3, 0.6), P0: (3e3, 6e3), BETA: (0.15, 0.3), XI: (0.1, 0.2), E: (1e6, 2e6)}
-    expected = {(path, number) for path, both in pairs.items() for number in both} - set(
+    expected = {(path, number) for path, values in pairs.items() for number in values} - set(
         REFERENCE.items()
     )
-    found = changed(scenes)
-    assert {item for one in found for item in one.items()} == expected
-    assert found.count({}) == 1 and all(len(one) <= 1 for one in found)
+    changes = changed(scenes)
+    assert {item for change in changes for item in change.items()} == expected
+    assert changes.count({}) == 1 and all(len(change) <= 1 for change in changes)
     assert len(scenes) == 9
 
 
 def test_fixation_is_table_3_2_1():
-    scenes = runs_of("fixation", seeds=1)
-    found = changed(scenes)
-    yielding = [one for one in found if not one.keys() & {XI, E}]
-    hardening = [one for one in found if not one.keys() & {M, P0, BETA}]
+    scenes = design_scenes("fixation", seeds=1)
+    changes = changed(scenes)
+    yielding = [change for change in changes if not change.keys() & {XI, E}]
+    hardening = [change for change in changes if not change.keys() & {M, P0, BETA}]
     assert (len(yielding), len(hardening), len(scenes)) == (27, 9, 35)
     assert {value(scene, P0) for scene in scenes} == {2e3, 5e3, 8e3}
     for scene in scenes:
@@ -53,8 +53,8 @@ def test_fixation_is_table_3_2_1():
 
 
 @pytest.mark.parametrize(("method", "size"), [("sobol", 8), ("morris", 7)])
-def test_samples_stay_in_the_ranges_and_have_seeds_of_their_own(method, size):
-    scenes = runs_of(method, quick=True, samples=4)
+def test_samples_stay_in_the_ranges_and_blocks_have_two_seeds(method, size):
+    scenes = design_scenes(method, quick=True, samples=4)
     assert len(scenes) == 4 * size
     for path, (low, high) in {
         M: (0.3, 0.7), P0: (2e3, 8e3), BETA: (0.1, 0.3), XI: (0.1, 1.0), E: (1e6, 3e6)
@@ -65,7 +65,7 @@ def test_samples_stay_in_the_ranges_and_have_seeds_of_their_own(method, size):
     assert [set(block) for block in seeds] == [{1, 2}, {3, 4}, {5, 6}, {7, 8}]
 
 
-def test_what_does_not_fit_the_method_is_refused():
+def test_arguments_of_other_methods_are_refused():
     for arguments, message in (
         ({"method": "guess"}, "method: 'guess' is unknown; allowed: s, fixation, sobol, morris"),
         ({"method": "s", "seeds": 0}, "seeds: 0 is not positive"),

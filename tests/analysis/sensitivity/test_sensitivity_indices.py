@@ -3,12 +3,12 @@
 import numpy as np
 import pandas as pd
 import pytest
-from made_up_studies import BETA, P0, REFERENCE, SEED, XI, E, M, designed, noisy, stored
+from synthetic_studies import BETA, P0, REFERENCE, SEED, XI, E, M, designed_runs, noisy, study_runs
 
 from snowshed import InputError
-from snowshed.analysis import (
+from snowshed.analysis.sensitivity import (
     StudyRuns,
-    fixation,
+    fixation_table,
     local_index,
     morris_effects,
     seeding_noise,
@@ -37,8 +37,8 @@ def pick(table, parameter, target="height", event=1, column=None):
     return row if column is None else row[column]
 
 
-def test_s_is_that_of_a_power_law():
-    table = local_index(designed("s", power_law, seeds=1))
+def test_s_of_a_power_law():
+    table = local_index(designed_runs("s", power_law, seeds=1))
     for event in (1, 2, 3):
         assert pick(table, M, event=event, column="s") == pytest.approx(2**0.5 - 1)
         assert pick(table, BETA, event=event, column="s") == pytest.approx(1)
@@ -49,38 +49,38 @@ def test_s_is_that_of_a_power_law():
     assert table["standard_error"].isna().all() and table["distinct"].isna().all()
 
 
-def test_s_beside_its_noise():
+def test_the_standard_error_of_s():
     """Over many repetitions the standard error is the deviation of S, and noise is not distinct."""
-    found = [
+    tables = [
         local_index(
-            designed("s", noisy(power_law, 0.05, random), seeds=4)
+            designed_runs("s", noisy(power_law, 0.05, random), seeds=4)
         ).assign(random=random)
         for random in range(25)
     ]  # fmt: skip
-    table = pd.concat(found)
+    table = pd.concat(tables)
     table = table[table["target"] == "height"]
     for parameter in (M, P0, BETA):
-        of_one = table[table["parameter"] == parameter]
-        ratio = of_one["standard_error"].mean() / of_one.groupby("event")["s"].std().mean()
+        rows = table[table["parameter"] == parameter]
+        ratio = rows["standard_error"].mean() / rows.groupby("event")["s"].std().mean()
         assert 0.7 < ratio < 1.4
     assert table.loc[table["parameter"] == BETA, "distinct"].all()
     assert 0.01 < table.loc[table["parameter"] == P0, "distinct"].mean() < 0.12  # 5 % by chance
 
 
-def test_s_of_any_study_takes_lowest_and_highest():
+def test_s_compares_the_lowest_and_the_highest_value():
     points = [{BETA: beta, M: slope} for beta in (0.1, 0.2, 0.4) for slope in (0.4, 0.5)]
-    table = local_index(stored(points, power_law))
+    table = local_index(study_runs(points, power_law))
     assert pick(table, BETA, column="pairs") == 2 and pick(table, BETA)["altered"] == 0.4
     assert pick(table, BETA, column="s") == pytest.approx(1)
     with pytest.raises(InputError, match="no two of its runs differ in one parameter alone"):
-        local_index(stored([{BETA: 0.1, M: 0.4}, {BETA: 0.2, M: 0.5}], power_law))
+        local_index(study_runs([{BETA: 0.1, M: 0.4}, {BETA: 0.2, M: 0.5}], power_law))
     with pytest.raises(InputError, match=r"cohesion: S is not defined at the nominal value 0"):
-        local_index(stored([{BETA: 0.0}, {BETA: 0.2}], lambda snow, event: 1.0))
+        local_index(study_runs([{BETA: 0.0}, {BETA: 0.2}], lambda snow, event: 1.0))
 
 
 def test_noise_is_pooled_over_points():
     points = [{BETA: beta, SEED: seed} for beta in (0.1, 0.2, 0.3) for seed in range(1, 101)]
-    noise = seeding_noise(stored(points, noisy(power_law_of_beta, 0.05)))
+    noise = seeding_noise(study_runs(points, noisy(power_law_of_beta, 0.05)))
     assert noise.loc[(1, "height"), "noise"] == pytest.approx(0.05, rel=0.1)
     assert noise.loc[(1, "height"), "freedom"] == 297
     assert noise.loc[(1, "length"), "noise_m"] == pytest.approx(0, abs=1e-12)
@@ -91,8 +91,8 @@ def power_law_of_beta(snow, event):
 
 
 def test_fixation_averages_over_the_rest_of_the_group():
-    study = designed("fixation", lambda snow, event: event * snow[BETA] + snow[M], seeds=1)
-    table = fixation(study)
+    study = designed_runs("fixation", lambda snow, event: event * snow[BETA] + snow[M], seeds=1)
+    table = fixation_table(study)
     held = table[(table["group"] == "yield") & (table["target"] == "height")]
     assert (held["points"] == 9).all() and set(held["parameter"]) == {M, P0, BETA}
     assert set(table.loc[table["group"] == "hardening", "points"]) == {3}
@@ -105,12 +105,12 @@ def test_fixation_averages_over_the_rest_of_the_group():
     assert np.allclose(flat.std(), 0)
 
 
-def test_fixation_of_a_full_product_takes_all_its_points():
+def test_fixation_of_a_full_product_uses_all_its_points():
     points = [{BETA: b, XI: x} for b in (0.1, 0.2) for x in (0.1, 0.2, 0.4)]
-    table = fixation(stored(points, lambda snow, event: snow[BETA] + snow[XI]))
+    table = fixation_table(study_runs(points, lambda snow, event: snow[BETA] + snow[XI]))
     assert (table.loc[table["parameter"] == BETA, "points"] == 3).all()
     with pytest.raises(InputError, match="no parameter varies"):
-        fixation(stored([{BETA: 0.1}], power_law_of_beta))
+        fixation_table(study_runs([{BETA: 0.1}], power_law_of_beta))
 
 
 def test_sobol_indices_of_a_function_with_an_interaction():
@@ -121,7 +121,7 @@ def test_sobol_indices_of_a_function_with_an_interaction():
         x = unit(snow)
         return 5 + a * x[M] + b * x[XI] + c * (x[P0] - 0.5) * (x[E] - 0.5)
 
-    table = sobol_indices(designed("sobol", height, events=(1,), samples=256))
+    table = sobol_indices(designed_runs("sobol", height, events=(1,), samples=256))
     shares = np.array([a**2 / 12, b**2 / 12, c**2 / 144])
     shares /= shares.sum()
     for path, first, total in (
@@ -142,13 +142,13 @@ def test_noise_leaves_out_points_without_a_stack():
     """At one of two points all snow stays on the panel."""
     points = [{BETA: beta, SEED: seed} for beta in (0.1, 0.2) for seed in range(1, 301)]
     sloping = noisy(power_law_of_beta, 0.05)
-    study = stored(points, lambda snow, event: sloping(snow, event) * (snow[BETA] > 0.15))
+    study = study_runs(points, lambda snow, event: sloping(snow, event) * (snow[BETA] > 0.15))
     assert seeding_noise(study).loc[(1, "height"), "noise"] == pytest.approx(0.05, rel=0.1)
 
 
 def test_noise_shows_in_the_total_index_of_the_seed():
     """With noise of the same variance as the effect, each explains a half."""
-    base = designed("sobol", lambda snow, event: 5 + unit(snow)[M], events=(1,), samples=256)
+    base = designed_runs("sobol", lambda snow, event: 5 + unit(snow)[M], events=(1,), samples=256)
     generator = np.random.default_rng(1)
     rows = base.rows.assign(
         height=base.rows["height"] + generator.normal(0, 12**-0.5, len(base.rows))
@@ -165,7 +165,7 @@ def test_elementary_effects_of_a_linear_function():
     def height(snow, event):
         return 10 + sum(slope * unit(snow)[path] for path, slope in slopes.items())
 
-    study = designed("morris", height, samples=10)
+    study = designed_runs("morris", height, samples=10)
     table = morris_effects(study)
     mean = study.rows.loc[study.rows["event"] == 1, "height"].mean()
     for path in [*REFERENCE, SEED]:
@@ -177,19 +177,19 @@ def test_elementary_effects_of_a_linear_function():
 
 def test_noise_shows_in_the_strength_of_the_seed():
     """A parameter without effect is as strong as the seed, on average over repetitions."""
-    base = designed("morris", lambda snow, event: 5 + unit(snow)[M], events=(1,), samples=20)
+    base = designed_runs("morris", lambda snow, event: 5 + unit(snow)[M], events=(1,), samples=20)
     generator = np.random.default_rng(1)
-    found = []
+    strengths = []
     for _ in range(8):
         noise = generator.normal(0, 0.05, len(base.rows))
         rows = base.rows.assign(height=base.rows["height"] + noise)
         table = morris_effects(StudyRuns("noisy", base.axes, base.points, rows))
-        found.append({path: pick(table, path, column="strength") for path in (M, BETA, SEED)})
-    mean = pd.DataFrame(found).mean()
+        strengths.append({path: pick(table, path, column="strength") for path in (M, BETA, SEED)})
+    mean = pd.DataFrame(strengths).mean()
     assert mean[BETA] == pytest.approx(mean[SEED], rel=0.15)
-    # The mean absolute difference of two stacks, of deviation sqrt(2) sigma, per two thirds.
-    of_noise = np.sqrt(2) * np.sqrt(2 / np.pi) * 0.05 / (2 / 3) / 5.5
-    assert mean[SEED] == pytest.approx(of_noise, rel=0.15)
+    # Mean absolute difference of two stacks (deviation sqrt(2) sigma), divided by steps of 2/3.
+    expected = np.sqrt(2) * np.sqrt(2 / np.pi) * 0.05 / (2 / 3) / 5.5
+    assert mean[SEED] == pytest.approx(expected, rel=0.15)
     assert mean[M] == pytest.approx(1 / 5.5, rel=0.1)
 
 
@@ -200,25 +200,25 @@ def test_effects_of_trajectories_with_any_step(step):
         [(x, y), (x + (step if x == 0 else -step), y), (x + (step if x == 0 else -step), y + dy)]
         for x, y, dy in ((0, 0, step), (1, 1, -step), (0, 1, -step), (1, 0, step))
     ]
-    points = [{M: x, BETA: y} for one in trajectories for x, y in one]
-    study = stored(points, lambda snow, event: 2 + snow[M] + 2 * snow[BETA])
+    points = [{M: x, BETA: y} for trajectory in trajectories for x, y in trajectory]
+    study = study_runs(points, lambda snow, event: 2 + snow[M] + 2 * snow[BETA])
     table, mean = morris_effects(study), study.rows["height"].mean()
     assert pick(table, M)["effect"] * mean == pytest.approx(1)
     assert pick(table, BETA)["strength"] * mean == pytest.approx(2)
 
 
-def test_steps_that_differ_are_no_design_after_morris():
+def test_unequal_steps_are_not_a_morris_design():
     points = [{M: 0.3, BETA: 0.1}, {M: 0.5, BETA: 0.1}, {M: 0.5, BETA: 0.3}]
     points += [{M: 0.3, BETA: 0.1}, {M: 0.35, BETA: 0.1}, {M: 0.35, BETA: 0.3}]
     with pytest.raises(InputError, match=f"{M}: its steps differ"):
-        morris_effects(stored(points, power_law))
+        morris_effects(study_runs(points, power_law))
 
 
 @pytest.mark.parametrize(
     ("method", "indices"), [("sobol", sobol_indices), ("morris", morris_effects)]
 )
-def test_blocks_with_failed_runs_are_left_out_whole(method, indices):
-    study = designed(method, lambda snow, event: 5 + unit(snow)[M], samples=8)
+def test_blocks_with_failed_runs_are_left_out(method, indices):
+    study = designed_runs(method, lambda snow, event: 5 + unit(snow)[M], samples=8)
     rows = study.rows[study.rows["hash"] != "run3"]
     table = indices(StudyRuns("holes", study.axes, study.points, rows))
     assert (table["blocks"] == 7).all()
@@ -227,10 +227,10 @@ def test_blocks_with_failed_runs_are_left_out_whole(method, indices):
         indices(StudyRuns("few", study.axes, study.points, few))
 
 
-def test_other_studies_are_no_designs():
+def test_studies_without_a_design_are_refused():
     grid = [{BETA: b, M: m} for b in (0.1, 0.2) for m in (0.3, 0.5)]
-    for indices, words in ((sobol_indices, "Saltelli"), (morris_effects, "Morris")):
-        with pytest.raises(InputError, match=f"are not .*{words}"):
-            indices(stored(grid, power_law_of_beta))
-    with pytest.raises(InputError, match="points 1 to 3 are not trajectories"):
-        morris_effects(stored([*grid[:3], *grid[1:]], power_law_of_beta))
+    for indices, name in ((sobol_indices, "Saltelli"), (morris_effects, "Morris")):
+        with pytest.raises(InputError, match=f"are not .*{name}"):
+            indices(study_runs(grid, power_law_of_beta))
+    with pytest.raises(InputError, match="points 1 to 3 are not Morris trajectories"):
+        morris_effects(study_runs([*grid[:3], *grid[1:]], power_law_of_beta))

@@ -1,4 +1,4 @@
-"""``snowshed grains synthetic|segment``: folders that loading tests take, and bad input."""
+"""``snowshed grains synthetic|segment``: folders for loading tests, and bad input."""
 
 import json
 
@@ -45,14 +45,14 @@ def test_from_synthetic_snow_to_a_loading_test(tmp_path):
     assert json.loads((tmp_path / "out/grains.json").read_text())["final_particles"] == labels.max()
 
 
-def test_a_pack_knows_its_grains(tmp_path):
+def test_a_sphere_pack_has_labels(tmp_path):
     make(tmp_path / "snow", "--spheres", 5e-4)
     assert np.load(tmp_path / "snow/labels.npy").max() > 5
     assert grains("segment", tmp_path / "snow", "--method", "curvature", "-o", tmp_path / "s") == 0
 
 
-def test_the_surface_is_that_of_the_ice(tmp_path):
-    """Triangles that are read back belong to grains, and lie near the ice's voxels."""
+def test_the_surface_belongs_to_the_grains(tmp_path):
+    """The file's vertices lie inside the image, and its triangles belong to grains."""
     make(tmp_path / "snow", "--spheres", 5e-4)
     assert grains("segment", tmp_path / "snow", "--surface", "-o", tmp_path / "s") == 0
     content = (tmp_path / "s/surface.vtp").read_bytes()
@@ -60,9 +60,9 @@ def test_the_surface_is_that_of_the_ice(tmp_path):
     points = int(head.split(b'NumberOfPoints="')[1].split(b'"')[0])
     size = int.from_bytes(data[:8], "little")
     assert size == 12 * points
-    places = np.frombuffer(data, "<f4", 3 * points, 8).reshape(-1, 3)
-    assert places.min() > 0
-    assert places.max() < 32 * 5e-5
+    vertices = np.frombuffer(data, "<f4", 3 * points, 8).reshape(-1, 3)
+    assert vertices.min() > 0
+    assert vertices.max() < 32 * 5e-5
     count = int(head.split(b'NumberOfPolys="')[1].split(b'"')[0])
     owners = np.frombuffer(data, "<i4", count, size + 16)
     assert set(owners) <= set(range(1, int(np.load(tmp_path / "s/labels.npy").max()) + 1))
@@ -84,7 +84,7 @@ BALL = sum((axis - 14.5) ** 2 for axis in np.indices((30, 30, 30))) < 100
         (BALL[0], [], "2 dimensions"),
     ],
 )
-def test_bad_images_are_named_and_leave_nothing(tmp_path, capsys, voxels, options, message):
+def test_bad_images_are_named_and_leave_no_files(tmp_path, capsys, voxels, options, message):
     np.save(tmp_path / "a.npy", voxels)
     words = ["segment", tmp_path / "a.npy", "--voxel", 5e-5, "-o", tmp_path / "out", *options]
     assert grains(*words) == 2
@@ -92,7 +92,7 @@ def test_bad_images_are_named_and_leave_nothing(tmp_path, capsys, voxels, option
     assert [file.name for file in tmp_path.iterdir()] == ["a.npy"]
 
 
-def test_a_folder_that_is_not_empty_is_kept(tmp_path, capsys):
+def test_a_folder_that_is_not_empty_is_refused(tmp_path, capsys):
     np.save(tmp_path / "a.npy", BALL)
     assert grains("segment", tmp_path / "a.npy", "--voxel", 5e-5, "-o", tmp_path) == 2
     assert "not empty" in capsys.readouterr().err

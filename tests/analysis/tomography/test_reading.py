@@ -1,4 +1,4 @@
-"""From an image to ice: thresholds, crops, coarser voxels; and the numbers of the ice."""
+"""From an image to ice: thresholds, crops, coarser voxels; and measures of the ice."""
 
 from dataclasses import replace
 
@@ -7,7 +7,7 @@ import pytest
 
 from snowshed import InputError
 from snowshed.analysis.tomography.downscaling import downscaled
-from snowshed.analysis.tomography.gaussian_snow import gaussian_snow
+from snowshed.analysis.tomography.gaussian_field import gaussian_snow
 from snowshed.analysis.tomography.ice_image import IceImage
 from snowshed.analysis.tomography.microstructure import mean_chords, measure_microstructure
 from snowshed.analysis.tomography.parts import largest_part
@@ -41,7 +41,7 @@ def grey(kind="uint16", ice=40_000, air=20_000, noise=2_000):
      grey("int32", 4_000_000, 10_000, 90_000)],
     ids=["uint16", "float32", "int16", "uint8", "int32"],
 )  # fmt: skip
-def test_otsu_tells_ice_from_air(tmp_path, voxels):
+def test_otsu_separates_ice_from_air(tmp_path, voxels):
     pytest.importorskip("skimage")
     read = read_ice(opened(tmp_path, voxels), settings())
     assert read.chosen == "Otsu"
@@ -49,7 +49,7 @@ def test_otsu_tells_ice_from_air(tmp_path, voxels):
 
 
 @pytest.mark.parametrize("voxels", [SNOW.ice, SNOW.ice * np.uint8(255), SNOW.ice * 1.0 - 5])
-def test_of_two_values_the_larger_is_ice(tmp_path, voxels):
+def test_the_larger_of_two_values_is_ice(tmp_path, voxels):
     read = read_ice(opened(tmp_path, voxels), settings())
     assert read.chosen == "two values"
     assert (read.image.ice == SNOW.ice).all()
@@ -63,7 +63,7 @@ def test_a_given_threshold_and_dark_ice(tmp_path):
     assert (read.image.ice == SNOW.ice).all()
 
 
-def test_crops_are_voxels_from_and_to(tmp_path):
+def test_crops_are_ranges_of_voxels(tmp_path):
     file = opened(tmp_path, SNOW.ice)
     crop = ((3, 30), (5, 25), (0, 33))
     read = read_ice(file, settings(crop=crop, connected=False))
@@ -73,22 +73,22 @@ def test_crops_are_voxels_from_and_to(tmp_path):
             read_ice(file, settings(crop=wrong))
 
 
-def test_ice_that_hangs_in_the_air_is_left_out(tmp_path):
+def test_unconnected_ice_is_left_out(tmp_path):
     ice = np.zeros((12, 12, 12), dtype=bool)
     ice[:6, :6, :6], ice[9:11, 9:11, 9:11] = True, True
     read = read_ice(opened(tmp_path, ice), settings())
     assert np.count_nonzero(read.image.ice) == 216
     assert read.lost == pytest.approx(8 / 224)
-    both = read_ice(opened(tmp_path, ice), settings(connected=False))
-    assert np.count_nonzero(both.image.ice) == 224
+    unfiltered = read_ice(opened(tmp_path, ice), settings(connected=False))
+    assert np.count_nonzero(unfiltered.image.ice) == 224
 
 
 @pytest.mark.parametrize("factor", [2, 3, 4])
 def test_coarser_voxels_keep_the_ice_fraction(factor):
     coarse = downscaled(SNOW, factor)
-    kept = SNOW.ice[tuple(slice(0, n // factor * factor) for n in SNOW.ice.shape)]
+    covered = SNOW.ice[tuple(slice(0, n // factor * factor) for n in SNOW.ice.shape)]
     assert coarse.voxel_size == pytest.approx(factor * VOXEL)
-    assert abs(coarse.ice.sum() - kept.sum() / factor**3) <= 0.5
+    assert abs(coarse.ice.sum() - covered.sum() / factor**3) <= 0.5
     assert coarse.ice.shape == tuple(n // factor for n in SNOW.ice.shape)
 
 
@@ -105,14 +105,14 @@ def test_other_factors_are_refused(factor):
 
 
 def labels_of_blocks(kind):
-    """Return blocks of 5 voxels a voxel apart, each with a number of its own."""
+    """Return blocks of 5 voxels a voxel apart, numbered up to 200."""
     at = np.indices((36, 36, 36))
     z, y, x = at // 6
     return np.where((at % 6 < 5).all(axis=0), (36 * z + 6 * y + x) % 200 + 1, 0).astype(kind)
 
 
 @pytest.mark.parametrize("kind", ["uint8", "int32", "int64"])
-def test_labels_are_no_grey_values(tmp_path, kind):
+def test_labels_are_not_accepted_as_grey_values(tmp_path, kind):
     labels = labels_of_blocks(kind)
     with pytest.raises(InputError, match="labels of grains, not grey values"):
         read_ice(opened(tmp_path, labels), settings())
@@ -124,7 +124,7 @@ def test_labels_are_no_grey_values(tmp_path, kind):
 
 
 @pytest.mark.parametrize("stated", [5e-5, 1e-4])
-def test_another_voxel_size_than_the_file_says_is_told(tmp_path, stated):
+def test_a_voxel_size_that_contradicts_the_file_is_noted(tmp_path, stated):
     file = replace(opened(tmp_path, SNOW.ice), voxel_size=stated)
     with record_notes() as notes:
         read = read_ice(file, settings())
@@ -141,7 +141,7 @@ def test_another_voxel_size_than_the_file_says_is_told(tmp_path, stated):
 
 
 @pytest.mark.parametrize("kind", ["uint32", "uint64", "int64", "int8"])
-def test_the_whole_range_of_a_type(tmp_path, kind):
+def test_the_full_range_of_a_type(tmp_path, kind):
     low, high = np.iinfo(kind).min, np.iinfo(kind).max
     voxels = np.where(SNOW.ice, high - 9, high - 99 if kind == "int8" else low + 9).astype(kind)
     voxels[0, 0, 0] += 3  # not two values
@@ -156,7 +156,7 @@ def test_otsu_does_not_depend_on_the_size_of_the_values(tmp_path, factor):
     assert (read.image.ice == SNOW.ice).all()
 
 
-def test_single_values_next_to_each_other_have_a_threshold(tmp_path):
+def test_adjacent_single_precision_values_have_a_threshold(tmp_path):
     voxels = np.where(SNOW.ice, np.float32(1), np.nextafter(np.float32(1), np.float32(0)))
     voxels[0, 0, 0] = np.nextafter(np.float32(1), np.float32(2))
     read = read_ice(opened(tmp_path, voxels.astype(np.float32)), settings())
@@ -182,7 +182,7 @@ def test_single_values_next_to_each_other_have_a_threshold(tmp_path):
         (SNOW.ice, {"threshold": float("nan")}, "finite"),
     ],
 )
-def test_images_without_snow_are_named_as_such(tmp_path, voxels, options, message):
+def test_images_without_snow_are_refused(tmp_path, voxels, options, message):
     with pytest.raises(InputError, match=message):
         read_ice(opened(tmp_path, voxels), settings(**options))
 
@@ -191,13 +191,13 @@ def test_images_without_snow_are_named_as_such(tmp_path, voxels, options, messag
     ("size", "message"),
     [(0.05, "is it in mm"), (50.0, "is it in um"), (5e-8, "wrongly scaled"), (1e-2, "wrongly")],
 )
-def test_voxels_in_another_unit_are_named_as_such(size, message):
+def test_voxel_sizes_in_another_unit_are_refused(size, message):
     with pytest.raises(InputError, match=message):
         measure_microstructure(IceImage(SNOW.ice, size, "an image"))
 
 
-def test_numbers_of_layers():
-    """Layers 4 voxels thick, 12 apart: chords, fraction; their surface with its known bias."""
+def test_measures_of_layers():
+    """Layers 4 voxels thick, with a period of 12; their surface has a known bias of -7 %."""
     ice = np.zeros((48, 20, 20), dtype=bool)
     ice[np.arange(48) % 12 // 4 == 1] = True
     numbers = measure_microstructure(IceImage(ice, VOXEL, "layers"))
@@ -210,7 +210,7 @@ def test_numbers_of_layers():
 
 
 def test_chords_of_balls():
-    """The mean chord of a ball is 4/3 of its radius, that of all chords 4 V / S."""
+    """The mean chord of a ball, 4 V / S, is 4/3 of its radius."""
     at = np.indices((60, 60, 60)) - 29.4
     ball = (at**2).sum(axis=0) < 20**2
     assert mean_chords(ball, 1)[0] == pytest.approx(4 / 3 * 20, rel=0.03)

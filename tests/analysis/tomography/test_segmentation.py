@@ -7,8 +7,8 @@ from snowshed import InputError
 from snowshed.analysis.tomography.adjacency import Adjacency, find_adjacency
 from snowshed.analysis.tomography.crofton import DIRECTIONS, surface_area, weight
 from snowshed.analysis.tomography.curvature import principal_curvatures, surface_voxels
-from snowshed.analysis.tomography.gaussian_snow import gaussian_snow
-from snowshed.analysis.tomography.grain_table import contact_table, grain_table
+from snowshed.analysis.tomography.gaussian_field import gaussian_snow
+from snowshed.analysis.tomography.grain_tables import contact_table, grain_table
 from snowshed.analysis.tomography.ice_image import IceImage
 from snowshed.analysis.tomography.region_merging import merge_contiguous, merge_shallow
 from snowshed.analysis.tomography.segmentation import (
@@ -16,7 +16,7 @@ from snowshed.analysis.tomography.segmentation import (
     known_grains,
     segment,
 )
-from snowshed.analysis.tomography.sphere_snow import sphere_snow
+from snowshed.analysis.tomography.sphere_packing import sphere_snow
 
 for library in ("skimage", "edt"):
     pytest.importorskip(library)
@@ -30,34 +30,34 @@ def balls(*centres, radius=RADIUS, shape=(52, 52, 76)):
     """Return ice of balls about centres (z, y, x) in voxels."""
     at = np.indices(shape) + 0.5
     inside = [
-        sum((axis - place) ** 2 for axis, place in zip(at, centre)) < radius**2
+        sum((axis - coordinate) ** 2 for axis, coordinate in zip(at, centre)) < radius**2
         for centre in centres
     ]
     return IceImage(np.any(inside, axis=0), VOXEL, "balls")
 
 
 def dumbbell(direction=(0.2, 0.3, 1.0)):
-    """Return two balls that meet in a disc of radius NECK, in some direction."""
-    way = np.array(direction) / np.linalg.norm(direction)
+    """Return two balls along a direction; they meet in a disc of radius NECK."""
+    axis = np.array(direction) / np.linalg.norm(direction)
     half = np.sqrt(RADIUS**2 - NECK**2)
     middle = np.array([26.1, 25.8, 38.2])
-    return balls(middle - half * way, middle + half * way)
+    return balls(middle - half * axis, middle + half * axis)
 
 
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("direction", [(0.2, 0.3, 1.0), (0.5, -0.4, 0.9)])
 def test_a_dumbbell_is_two_grains(method, direction):
     image = dumbbell(direction)
-    found = segment(image, SegmentationSettings(method=method))
-    grains, contacts = grain_table(found), contact_table(found)
-    assert found.count == 2
+    segmented = segment(image, SegmentationSettings(method=method))
+    grains, contacts = grain_table(segmented), contact_table(segmented)
+    assert segmented.count == 2
     half = np.sqrt(RADIUS**2 - NECK**2)
     cap = np.pi * (RADIUS - half) ** 2 * (3 * RADIUS - (RADIUS - half)) / 3
     volume = (4 / 3 * np.pi * RADIUS**3 - cap) * VOXEL**3
     surface = (4 * np.pi * RADIUS**2 - 2 * np.pi * RADIUS * (RADIUS - half)) * VOXEL**2
     assert grains.volume_m3.to_numpy() == pytest.approx(volume, rel=0.01)
     assert grains.surface_m2.to_numpy() == pytest.approx(surface, rel=0.02)
-    # Within a voxel of the sharp crease there is more ice than at its bottom.
+    # A voxel away from the bottom of the sharp crease, the cross-section is larger.
     assert np.sqrt(contacts.area_m2[0] / np.pi) / VOXEL == pytest.approx(NECK + 0.4, abs=0.4)
     assert grains.coordination.tolist() == [1, 1]
     assert not grains.at_side.any()
@@ -66,7 +66,7 @@ def test_a_dumbbell_is_two_grains(method, direction):
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_a_ball_and_a_thick_rod_are_one_grain_and_named_as_such(method):
+def test_a_single_grain_is_refused(method):
     rod = np.zeros((30, 30, 50), dtype=bool)
     z, y = np.indices((30, 30)) - 14.5
     rod[z**2 + y**2 < 100] = True
@@ -75,20 +75,20 @@ def test_a_ball_and_a_thick_rod_are_one_grain_and_named_as_such(method):
             segment(image, SegmentationSettings(method=method))
 
 
-def test_grains_of_a_pack_are_found_again():
+def test_grains_of_a_sphere_pack_are_recovered():
     snow = sphere_snow((64, 64, 64), VOXEL, diameter=6e-4, ice_fraction=0.25, seed=1)
-    found, known = segment(snow), known_grains(snow)
-    assert found.count == pytest.approx(known.count, rel=0.05)
-    assert found.touching.coordination[1:].mean() == pytest.approx(
-        known.touching.coordination[1:].mean(), rel=0.05
+    segmented, expected = segment(snow), known_grains(snow)
+    assert segmented.count == pytest.approx(expected.count, rel=0.05)
+    assert segmented.touching.coordination[1:].mean() == pytest.approx(
+        expected.touching.coordination[1:].mean(), rel=0.05
     )
-    overlap = np.zeros((found.count + 1, known.count + 1), dtype=int)
-    np.add.at(overlap, (found.labels[snow.ice], snow.labels[snow.ice]), 1)
+    overlap = np.zeros((segmented.count + 1, expected.count + 1), dtype=int)
+    np.add.at(overlap, (segmented.labels[snow.ice], snow.labels[snow.ice]), 1)
     assert overlap.max(axis=0)[1:].sum() > 0.97 * snow.ice.sum()
 
 
-def test_a_field_has_as_many_grains_as_were_found_before():
-    """87 grains and coordination 3.8 in 2.4 mm, measured by others; both methods agree."""
+def test_grains_of_a_gaussian_field_agree_with_measurements_of_others():
+    """Others measured 87 grains of coordination 3.8 in a cube of 2.4 mm; both methods agree."""
     counts = {method: [] for method in METHODS}
     coordination = []
     for seed in range(4):
@@ -96,9 +96,9 @@ def test_a_field_has_as_many_grains_as_were_found_before():
             (48, 48, 48), VOXEL, ice_fraction=0.327, correlation_length=5e-4, seed=seed
         )
         for method in METHODS:
-            found = segment(snow, SegmentationSettings(method=method))
-            counts[method].append(found.count)
-            coordination.append(found.touching.coordination[1:].mean())
+            segmented = segment(snow, SegmentationSettings(method=method))
+            counts[method].append(segmented.count)
+            coordination.append(segmented.touching.coordination[1:].mean())
     assert np.mean(counts["watershed"]) == pytest.approx(87, rel=0.15)
     assert np.mean(counts["curvature"]) == pytest.approx(np.mean(counts["watershed"]), rel=0.15)
     assert np.mean(coordination) == pytest.approx(3.8, abs=0.2)
@@ -106,14 +106,14 @@ def test_a_field_has_as_many_grains_as_were_found_before():
 
 def test_labels_fill_the_ice_and_do_not_depend_on_threads():
     snow = gaussian_snow((48, 48, 48), VOXEL, density=300, specific_surface=15, seed=3)
-    one = segment(snow, SegmentationSettings(threads=1))
-    two = segment(snow, SegmentationSettings(threads=2))
-    assert ((one.labels > 0) == snow.ice).all()
-    assert (one.labels == two.labels).all()
-    assert grain_table(one).volume_m3.min() >= 27 * VOXEL**3
+    serial = segment(snow, SegmentationSettings(threads=1))
+    parallel = segment(snow, SegmentationSettings(threads=2))
+    assert ((serial.labels > 0) == snow.ice).all()
+    assert (serial.labels == parallel.labels).all()
+    assert grain_table(serial).volume_m3.min() >= 27 * VOXEL**3
 
 
-def test_curvatures_are_those_of_a_ball_a_rod_and_a_torus():
+def test_curvatures_of_a_ball_a_rod_and_a_torus():
     z, y, x = np.indices((56, 56, 56)).astype(np.float32) - 27.5
     ball = 12 - np.sqrt(z**2 + y**2 + x**2)
     rod = 9 - np.sqrt(y**2 + x**2)
@@ -126,12 +126,12 @@ def test_curvatures_are_those_of_a_ball_a_rod_and_a_torus():
         at = surface_voxels(field > 0)
         inside = np.all([(axis > 2) & (axis < 53) for axis in at], axis=0)
         at = tuple(axis[inside] for axis in at)
-        found = principal_curvatures(field, at)
-        assert np.median(found[1]) == pytest.approx(larger, rel=0.1)
+        curvatures = principal_curvatures(field, at)
+        assert np.median(curvatures[1]) == pytest.approx(larger, rel=0.1)
         if smaller is not None:
-            assert np.median(found[0]) == pytest.approx(smaller, rel=0.1, abs=0.005)
+            assert np.median(curvatures[0]) == pytest.approx(smaller, rel=0.1, abs=0.005)
     hole = np.hypot(y[at], x[at]) < 11.5  # the inner side of the torus is a saddle
-    assert np.median(found[0][hole]) == pytest.approx(-1 / 10, rel=0.15)
+    assert np.median(curvatures[0][hole]) == pytest.approx(-1 / 10, rel=0.15)
 
 
 @pytest.mark.parametrize("radius", [5, 9, 15])
@@ -142,54 +142,54 @@ def test_the_surface_of_balls(radius):
     )
 
 
-def test_a_step_weighs_the_directions_that_are_nearest_to_it():
+def test_a_step_is_weighted_by_its_share_of_directions():
     random = np.random.default_rng(5).normal(size=(200_000, 3))
     random /= np.linalg.norm(random, axis=1)[:, None]
     steps = np.array(DIRECTIONS, dtype=float)
     lengths = np.linalg.norm(steps, axis=1)
     nearest = np.abs(random @ (steps / lengths[:, None]).T).argmax(axis=1)
     share = np.bincount(nearest, minlength=13) / len(random)
-    weights = np.array([weight(one) for one in DIRECTIONS])
+    weights = np.array([weight(step) for step in DIRECTIONS])
     assert weights * lengths / 2 == pytest.approx(share, abs=0.002)
 
 
-def test_contacts_are_counted_by_hand():
+def test_contacts_match_a_count_by_hand():
     labels = np.zeros((6, 4, 4), dtype=np.int32)
     labels[:2], labels[2:4], labels[4:, :2] = 1, 2, 3
     distance = np.arange(6, dtype=np.float32)[:, None, None] * np.ones((1, 4, 4), dtype=np.float32)
-    found = find_adjacency(labels, distance)
-    assert found.pairs.tolist() == [[1, 2], [2, 3]]
-    assert found.faces.tolist() == [16, 8]
-    assert found.saddles.tolist() == [1.0, 3.0]
-    assert found.coordination.tolist() == [0, 1, 2, 1]
-    joined = found.merged(np.array([0, 1, 1, 2]))
+    adjacency = find_adjacency(labels, distance)
+    assert adjacency.pairs.tolist() == [[1, 2], [2, 3]]
+    assert adjacency.faces.tolist() == [16, 8]
+    assert adjacency.saddles.tolist() == [1.0, 3.0]
+    assert adjacency.coordination.tolist() == [0, 1, 2, 1]
+    joined = adjacency.merged(np.array([0, 1, 1, 2]))
     assert joined.pairs.tolist() == [[1, 2]]
-    assert found.areas.tolist() == [16.0, 8.0]
+    assert adjacency.areas.tolist() == [16.0, 8.0]
     assert joined.areas.tolist() == [8.0]
-    assert joined.air == pytest.approx([0, found.air[1] + found.air[2], found.air[3]])
+    assert joined.air == pytest.approx([0, adjacency.air[1] + adjacency.air[2], adjacency.air[3]])
 
 
 def test_the_area_of_a_slanted_contact_is_exact():
     z, y, x = np.indices((30, 30, 30)) + 0.5
     inside = (z > 3) & (z < 27) & (y > 3) & (y < 27)
     labels = np.where(inside, np.where(x > 15 + 0.4 * (y - 15) + 0.2 * (z - 15), 2, 1), 0)
-    found = find_adjacency(labels.astype(np.int32))
-    assert found.areas == pytest.approx([24**2 * np.sqrt(1 + 0.4**2 + 0.2**2)], rel=0.01)
-    relabelled = found.merged(np.array([0, 2, 1]))
-    assert relabelled.areas == pytest.approx(found.areas)
+    adjacency = find_adjacency(labels.astype(np.int32))
+    assert adjacency.areas == pytest.approx([24**2 * np.sqrt(1 + 0.4**2 + 0.2**2)], rel=0.01)
+    relabelled = adjacency.merged(np.array([0, 2, 1]))
+    assert relabelled.areas == pytest.approx(adjacency.areas)
 
 
 def test_the_sides_of_a_peg_add_nothing_to_the_area_of_its_contact():
     labels = np.ones((10, 8, 8), dtype=np.int32)
     labels[5:] = 2
     labels[5:8, 3:5, 3:5] = 1
-    found = find_adjacency(labels)
-    assert found.areas.tolist() == [64.0]
-    assert found.faces.tolist() == [64 + 4 * 2 * 3]
+    adjacency = find_adjacency(labels)
+    assert adjacency.areas.tolist() == [64.0]
+    assert adjacency.faces.tolist() == [64 + 4 * 2 * 3]
 
 
 def chain(areas, air, saddles=None):
-    """Return labels in a row, each of which touches the next."""
+    """Return the adjacency of a row of labels, each of which touches the next."""
     count = len(areas)
     pairs = np.array([[n, n + 1] for n in range(1, count + 1)])
     normals = np.outer(areas, [0.6, 0.0, 0.8])
@@ -197,8 +197,8 @@ def chain(areas, air, saddles=None):
     return Adjacency(np.array([0.0, *air]), pairs, normals, np.ones(count, dtype=int), saddles)
 
 
-def test_what_is_contiguous_is_merged_the_most_contiguous_first():
-    # Contiguities 0.5 and 1/6; together 1 and 2 have a surface of 12, of which 2 is 1/6 = 3's.
+def test_the_most_contiguous_labels_are_merged_first():
+    # Contiguities are 0.5 and 1/6. Merged, labels 1 and 2 share 2 of their surface of 12 with 3.
     touching = chain([5.0, 2.0], [5.0, 5.0, 10.0])
     voxels = np.array([0, 50, 50, 50])
     assert merge_contiguous(touching, voxels, 0.2).tolist() == [0, 1, 1, 2]
@@ -209,11 +209,11 @@ def test_what_is_contiguous_is_merged_the_most_contiguous_first():
 def test_small_labels_join_their_largest_contact():
     touching = chain([1.0, 2.0], [50.0, 50.0, 50.0])
     assert merge_contiguous(touching, np.array([0, 50, 5, 50]), 0.9, 27).tolist() == [0, 1, 2, 2]
-    alone = merge_contiguous(chain([1.0], [9.0, 9.0]), np.array([0, 5, 5]), 0.9, 27)
-    assert alone.tolist() == [0, 1, 1]
+    pair = merge_contiguous(chain([1.0], [9.0, 9.0]), np.array([0, 5, 5]), 0.9, 27)
+    assert pair.tolist() == [0, 1, 1]
 
 
-def test_shallow_maxima_are_no_grains():
+def test_shallow_maxima_are_merged():
     touching = chain([1.0, 1.0], [9.0, 9.0, 9.0], saddles=[4.5, 2.0])
     peaks = np.array([0.0, 5.0, 6.0, 5.0])
     assert merge_shallow(touching, peaks, 0.4).tolist() == [0, 1, 2, 3]
@@ -222,7 +222,7 @@ def test_shallow_maxima_are_no_grains():
 
 
 @pytest.mark.parametrize("value", [True, False])
-def test_an_image_of_one_phase_is_named_as_such(value):
+def test_an_image_of_a_single_phase_is_refused(value):
     image = IceImage(np.full((10, 10, 10), value), VOXEL, "an image")
     with pytest.raises(InputError, match="all is ice" if value else "no ice"):
         segment(image)

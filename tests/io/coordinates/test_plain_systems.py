@@ -1,4 +1,4 @@
-"""Coordinate systems: only descriptions are accepted, never fetched; comparisons on the map."""
+"""Coordinate systems: descriptions are read, never fetched; comparisons are on the map."""
 
 import numpy as np
 import pytest
@@ -36,7 +36,7 @@ def test_descriptions_are_read(words):
      "ESRI::ADDRESS", "IGNF:LAMB93", "EPSG:" + "9" * 70000, 'PROJCS["' + "a" * 70000 + '"]',
      WKT[:-1] + ',EXTENSION["PROJ4","+proj=utm +zone=33 +init=/etc/passwd:1"]]'],
 )  # fmt: skip
-def test_what_is_fetched_or_opened_is_no_description(tmp_path, words):
+def test_systems_that_must_be_fetched_or_opened_are_ignored(tmp_path, words):
     with silence() as listener:
         words = words.replace("ADDRESS", listener.address)
         assert plain_system(words) == "" and system_of(words) is None
@@ -50,7 +50,7 @@ def test_what_is_fetched_or_opened_is_no_description(tmp_path, words):
 
 
 @pytest.mark.parametrize("text", ["ADDRESS/prj", "/etc/passwd", "+init=/etc/passwd:1", "[" * 999])
-def test_a_prj_beside_a_grid_is_a_description(tmp_path, text):
+def test_the_prj_file_of_a_grid_must_be_a_description(tmp_path, text):
     write_ascii_grid(tmp_path / "a.asc", Raster(np.zeros((3, 3)), 0.0, 0.0, 5.0))
     with silence() as listener:
         (tmp_path / "a.prj").write_text(text.replace("ADDRESS", listener.address))
@@ -60,7 +60,7 @@ def test_a_prj_beside_a_grid_is_a_description(tmp_path, text):
     assert read_prj(tmp_path / "a.asc") == "EPSG:25833"
 
 
-def test_a_raster_that_is_another_format_by_content_makes_no_request(tmp_path):
+def test_a_raster_with_the_content_of_another_format_makes_no_request(tmp_path):
     with silence() as listener:
         source = f"<SourceFilename>/vsicurl/{listener.address}/a.tif</SourceFilename>"
         band = f'<VRTRasterBand dataType="Byte" band="1"><SimpleSource>{source}</SimpleSource>'
@@ -73,7 +73,7 @@ def test_a_raster_that_is_another_format_by_content_makes_no_request(tmp_path):
                     read_raster(tmp_path / f"a{ending}")
 
 
-def test_a_mask_or_overview_beside_a_geotiff_makes_no_request(tmp_path):
+def test_masks_and_overviews_of_a_geotiff_make_no_request(tmp_path):
     flat = Raster(np.zeros((9, 9)), 500000.0, 6700000.0, 5.0, crs="EPSG:25833")
     write_raster(tmp_path / "a.tif", flat)
     with silence() as listener:
@@ -98,7 +98,7 @@ def test_compound_systems_are_compared_without_their_heights():
     assert first_part(compound).startswith("PROJCS[")
 
 
-def test_the_prj_of_results_has_the_map_of_a_compound_system(tmp_path):
+def test_the_prj_file_of_results_has_the_horizontal_part_of_a_compound_system(tmp_path):
     flat = Raster(np.zeros((3, 3)), 0.0, 0.0, 5.0, crs="EPSG:25833+5941")
     write_raster(tmp_path / "a.asc", flat)
     assert read_prj(tmp_path / "a.asc") == "EPSG:25833"

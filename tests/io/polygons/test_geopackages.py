@@ -53,7 +53,7 @@ def test_views_are_not_evaluated(package, statements):
         read_areas(package)
 
 
-def test_generated_columns_and_those_of_no_use_are_not_read(package):
+def test_generated_and_unused_columns_are_not_read(package):
     change(
         package,
         'ALTER TABLE "a" ADD COLUMN thickness_cm AS (length(hex(zeroblob(400000000))))',
@@ -64,9 +64,9 @@ def test_generated_columns_and_those_of_no_use_are_not_read(package):
     assert (area.name, area.thickness) == ("A", 0.5)
 
 
-def test_a_package_with_several_layers_asks_which(tmp_path, package):
-    other = polygon((0, 0), (5, 0), (5, 5))
-    geometries = np.array([shapely.to_wkb(other)], dtype=object)
+def test_a_package_with_several_layers_needs_a_choice(tmp_path, package):
+    triangle = polygon((0, 0), (5, 0), (5, 5))
+    geometries = np.array([shapely.to_wkb(triangle)], dtype=object)
     pyogrio.raw.write(
         *(package, geometries, [], np.array([])), crs="EPSG:25833", geometry_type="Polygon",
         layer="b", append=True,
@@ -81,7 +81,7 @@ def test_a_package_with_several_layers_asks_which(tmp_path, package):
         read_areas(write_polygons(tmp_path / "a.geojson"), "b")
 
 
-def test_a_layer_of_points_beside_is_told(package):
+def test_an_additional_layer_of_points_is_noted(package):
     point = np.array([shapely.to_wkb(shapely.Point(1, 2))], dtype=object)
     pyogrio.raw.write(
         *(package, point, [], np.array([])), crs="EPSG:25833", geometry_type="Point",
@@ -89,10 +89,10 @@ def test_a_layer_of_points_beside_is_told(package):
     )  # fmt: skip
     with record_notes() as notes:
         assert len(read_areas(package)) == 1
-    assert "the only one that may hold polygons is read, 'a'" in notes[0]
+    assert "layer 'a' is read, the only one that may hold polygons" in notes[0]
 
 
-def test_changes_that_wait_in_the_log_of_another_program_count(package):
+def test_changes_in_the_log_of_another_program_are_read(package):
     writer = sqlite3.connect(package)
     writer.execute("PRAGMA journal_mode = WAL")
     writer.execute("UPDATE gpkg_contents SET identifier = 'b'")
@@ -100,14 +100,14 @@ def test_changes_that_wait_in_the_log_of_another_program_count(package):
         writer.execute(f'DROP TRIGGER "{name[0]}"')
     writer.execute('UPDATE "a" SET thickness = 0.75')
     writer.commit()
-    before = {file.name: file.read_bytes() for file in package.parent.iterdir()}
+    content_before = {file.name: file.read_bytes() for file in package.parent.iterdir()}
     assert read_areas(package)[0].thickness == 0.75
-    assert {file.name: file.read_bytes() for file in package.parent.iterdir()} == before
+    assert {file.name: file.read_bytes() for file in package.parent.iterdir()} == content_before
     writer.close()
 
 
-def test_a_name_that_is_no_text_is_refused(package):
-    """SQLite's message contains the name, which Python cannot decode."""
+def test_a_name_that_is_not_text_is_refused(package):
+    """SQLite's message contains the name, which is not UTF-8."""
     content = package.read_bytes()
     assert content.count(b"trigger_insert_feature")
     package.write_bytes(content.replace(b"trigger_insert_f", b"trigger_insert_\xe6", 1))
@@ -123,7 +123,7 @@ def test_a_hot_journal_is_not_played_back(package):
     assert journal.exists()
 
 
-def test_a_geometry_within_geometries_without_end_is_refused(package):
+def test_deeply_nested_geometries_are_refused(package):
     nested = struct.pack("<BII", 1, 7, 1) * 1_000_000 + struct.pack("<BII", 1, 3, 0)
     for wkb in (nested, struct.pack("<BII", 1, 6, 1) + nested):
         change(package)
@@ -133,6 +133,3 @@ def test_a_geometry_within_geometries_without_end_is_refused(package):
         connection.close()
         with pytest.raises(InputError, match="feature 1: not a polygon"):
             read_areas(package)
-
-
-# --- limits -------------------------------------------------------------------------------------

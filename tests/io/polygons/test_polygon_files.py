@@ -1,4 +1,4 @@
-"""Files of polygons: accepted formats are read as by other readers, and others are refused."""
+"""Files of polygons: accepted formats are read, and others are refused without being opened."""
 
 import json
 import os
@@ -20,7 +20,7 @@ from snowshed.io.raster.areas import read_areas
 pytestmark = pytest.mark.filterwarnings("ignore::UserWarning", "ignore::RuntimeWarning")
 
 ENDINGS = (".gpkg", ".shp", ".geojson")
-READ = {"GPKG", "ESRI Shapefile", "GeoJSON"}
+READ_DRIVERS = {"GPKG", "ESRI Shapefile", "GeoJSON"}
 
 
 @pytest.mark.parametrize("ending", ENDINGS)
@@ -29,17 +29,17 @@ def test_parts_holes_and_heights_are_read(tmp_path, ending):
     two = shapely.MultiPolygon([shapely.force_3d(polygon((50, 0), (60, 0), (60, 9)), 1.0), high])
     kind = "MultiPolygon" if ending == ".shp" else "Unknown"
     file = write(tmp_path / f"a{ending}", [two, high], kind=kind, name=["A", ""], d0=[0.5, 0.25])
-    found = read_areas(file)
-    assert [area.name for area in found] == ["A", "A", "area 2"]
-    assert [area.thickness for area in found] == [0.5, 0.5, 0.25]
-    assert {area.crs for area in found} == {"EPSG:25833"}
-    sizes = sorted(shapely.Polygon(area.outline, area.holes).area for area in found)
+    areas = read_areas(file)
+    assert [area.name for area in areas] == ["A", "A", "area 2"]
+    assert [area.thickness for area in areas] == [0.5, 0.5, 0.25]
+    assert {area.crs for area in areas} == {"EPSG:25833"}
+    sizes = sorted(shapely.Polygon(area.outline, area.holes).area for area in areas)
     assert sizes == [45.0, 375.0, 375.0]
-    assert all(len(corner) == 2 for area in found for corner in area.outline)
+    assert all(len(corner) == 2 for area in areas for corner in area.outline)
 
 
 @pytest.mark.parametrize("ending", ENDINGS)
-def test_repeated_corners_are_passed_over(tmp_path, ending):
+def test_repeated_corners_are_dropped(tmp_path, ending):
     twice = polygon((10, 10), (10, 10), (30, 10), (30, 30), (30, 30), (30, 30), (10, 30))
     (area,) = read_areas(write(tmp_path / f"a{ending}", [twice], d0=[0.5]))
     assert sorted(area.outline) == [(10, 10), (10, 30), (30, 10), (30, 30)]
@@ -48,7 +48,7 @@ def test_repeated_corners_are_passed_over(tmp_path, ending):
 # --- formats ------------------------------------------------------------------------------------
 
 
-def described(address):
+def referring_files(address):
     """Return files that name other files or addresses, which GDAL recognises by their content."""
     source = f"/vsicurl/{address}/a.gpkg"
     layer = f'<OGRVRTLayer name="a"><SrcDataSource>{source}</SrcDataSource></OGRVRTLayer>'
@@ -74,7 +74,7 @@ def described(address):
 
 def written_by_gdal(folder):
     """Return a file of every driver that writes polygons, by the driver's name."""
-    found = {}
+    files_by_driver = {}
     for driver, mode in pyogrio.list_drivers().items():
         file = folder / driver.replace(" ", "_")
         try:
@@ -90,54 +90,54 @@ def written_by_gdal(folder):
                     driver=driver,
                 )
         except Exception:
-            assert "w" not in mode or driver not in READ
+            assert "w" not in mode or driver not in READ_DRIVERS
             continue
         files = [file] if file.is_file() else sorted(folder.glob(f"{file.name}*"))
-        files = [one for one in files if one.is_file()] or sorted(file.glob("*"))
+        files = [path for path in files if path.is_file()] or sorted(file.glob("*"))
         if files:
-            found[driver] = files
-    return found
+            files_by_driver[driver] = files
+    return files_by_driver
 
 
-def test_no_format_is_read_but_the_named_ones(tmp_path):
-    """Every format of this GDAL is tried under every accepted ending."""
-    (tmp_path / "made").mkdir()
+def test_only_the_named_formats_are_read(tmp_path):
+    """Every format that this GDAL writes is tried with every accepted ending."""
+    (tmp_path / "written").mkdir()
     with silence() as listener:
         contents = {
             driver: [file.read_bytes() for file in files]
-            for driver, files in written_by_gdal(tmp_path / "made").items()
+            for driver, files in written_by_gdal(tmp_path / "written").items()
         }
-        assert len(contents) > 15 and READ & contents.keys()
+        assert len(contents) > 15 and READ_DRIVERS & contents.keys()
         contents.update(
-            {name: [text.encode()] for name, text in described(listener.address).items()}
+            {name: [text.encode()] for name, text in referring_files(listener.address).items()}
         )
         for driver, files in contents.items():
             for content in files:
                 for ending in ENDINGS:
                     (tmp_path / f"a{ending}").write_bytes(content)
-                    if driver not in READ:
+                    if driver not in READ_DRIVERS:
                         with pytest.raises(InputError):
                             read_areas(tmp_path / f"a{ending}")
         for ending in ENDINGS:
-            made = write(tmp_path / f"good{ending}", [SQUARE], thickness=[0.5])
-            assert len(read_areas(made)) == 1
+            good_file = write(tmp_path / f"good{ending}", [SQUARE], thickness=[0.5])
+            assert len(read_areas(good_file)) == 1
 
 
-def test_without_the_fence_gdal_would_have_asked(tmp_path):
-    """The listener notices connections, so the test above can fail."""
+def test_gdal_alone_would_make_a_request(tmp_path):
+    """The listener notices connections, so the previous test can fail."""
     with pytest.raises(AssertionError), silence() as listener:
-        (tmp_path / "a.gpkg").write_text(described(listener.address)["OGR_VRT"])
+        (tmp_path / "a.gpkg").write_text(referring_files(listener.address)["OGR_VRT"])
         with pytest.raises(Exception, match=r"a\.gpkg"):
             pyogrio.raw.read(tmp_path / "a.gpkg")
 
 
-def test_an_esri_json_is_told_as_such(tmp_path):
-    (tmp_path / "a.geojson").write_text(described("")["ESRIJSON"])
+def test_an_esri_json_is_refused_by_name(tmp_path):
+    (tmp_path / "a.geojson").write_text(referring_files("")["ESRIJSON"])
     with pytest.raises(InputError, match="it is Esri JSON; export it as GeoJSON"):
         read_areas(tmp_path / "a.geojson")
 
 
-def test_what_is_no_regular_file_is_refused_at_once(tmp_path):
+def test_pipes_are_refused_at_once(tmp_path):
     os.mkfifo(tmp_path / "a.gpkg")
     with pytest.raises(InputError, match="not a regular file"):
         read_areas(tmp_path / "a.gpkg")
@@ -161,7 +161,7 @@ def test_what_is_no_regular_file_is_refused_at_once(tmp_path):
         ("EPSG:25833", "not as GeoJSON has it"),
     ],
 )
-def test_a_geojsons_coordinate_system_is_a_name(tmp_path, crs, message):
+def test_the_coordinate_system_of_a_geojson_must_be_a_name(tmp_path, crs, message):
     file = write_polygons(tmp_path / "a.geojson")
     with silence() as listener:
         text = json.dumps({**json.loads(file.read_text()), "crs": crs})
@@ -198,7 +198,7 @@ def test_a_geojson_in_metres_needs_a_coordinate_system(tmp_path):
 
 
 @pytest.mark.parametrize("text", ["ADDRESS/prj", "/etc/passwd", "+init=/etc/passwd:1", "{}"])
-def test_a_shapefiles_prj_is_a_description(tmp_path, text):
+def test_the_prj_file_of_a_shapefile_must_be_a_description(tmp_path, text):
     file = write(tmp_path / "a.shp", [SQUARE], thickness=[0.5])
     with silence() as listener:
         (tmp_path / "a.prj").write_text(text.replace("ADDRESS", listener.address))
@@ -207,7 +207,7 @@ def test_a_shapefiles_prj_is_a_description(tmp_path, text):
 
 
 @pytest.mark.parametrize("ending", [".gpkg", ".shp"])
-def test_a_file_without_a_coordinate_system_is_told(tmp_path, ending):
+def test_a_missing_coordinate_system_is_noted(tmp_path, ending):
     file = write(tmp_path / f"a{ending}", [SQUARE], crs=None, thickness=[0.5])
     with record_notes() as notes:
         assert read_areas(file)[0].crs == ""
@@ -229,12 +229,12 @@ def test_a_file_without_a_coordinate_system_is_told(tmp_path, ending):
         ("depth", 0.5, None, "ignored as a thickness: 'depth'"),
     ],
 )
-def test_the_field_of_the_thickness_is_told(tmp_path, ending, field, value, metres, note):
+def test_the_field_of_the_thickness_is_noted(tmp_path, ending, field, value, metres, note):
     file = write(tmp_path / f"a{ending}", [SQUARE], **{field: [float(value)]})
     with record_notes() as notes:
         (area,) = read_areas(file)
     assert area.thickness == pytest.approx(metres)
-    assert [note in one for one in notes] == [True] if note else not notes
+    assert [note in text for text in notes] == [True] if note else not notes
 
 
 def test_fields_that_contradict_each_other_are_refused(tmp_path):
@@ -272,7 +272,7 @@ def test_a_feature_of_many_properties_is_read(tmp_path):
 
 
 def test_an_index_that_repeats_a_record_is_counted(tmp_path):
-    """A short file whose index names one large polygon again and again."""
+    """The index of a short file names a large polygon many times."""
     turn = np.linspace(0, 2 * np.pi, 40_000, endpoint=False)
     file = write(tmp_path / "a.shp", [polygon(*np.c_[np.cos(turn), np.sin(turn)])], d0=[0.5])
     index = file.with_suffix(".shx")
@@ -293,13 +293,13 @@ def test_an_index_that_repeats_a_record_is_counted(tmp_path):
      '{"type": "GeometryCollection", "geometries": []}', '{"type": {}}', "{}",
      '{"type": "Feature"}'],
 )  # fmt: skip
-def test_what_is_no_geojson_is_refused(tmp_path, text):
+def test_invalid_geojson_is_refused(tmp_path, text):
     (tmp_path / "a.geojson").write_text(text)
     with pytest.raises(InputError):
         read_areas(tmp_path / "a.geojson")
 
 
-def test_a_shapefile_keeps_its_name(tmp_path):
+def test_a_shapefile_needs_its_ending_and_its_index(tmp_path):
     file = write(tmp_path / "a.shp", [SQUARE], d0=[0.5])
     shutil.copy(file, tmp_path / "b.gpkg")
     with pytest.raises(InputError, match=r"its name does not end in .shp"):

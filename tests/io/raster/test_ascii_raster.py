@@ -11,14 +11,14 @@ from snowshed.io.raster.raster import Raster, read_raster, write_ascii_grid
 
 rasterio = pytest.importorskip("rasterio")
 
-AT = "884.960"  # m, of the cell in row 2 and column 10, counted from the north-west
-PLACE = [[SIDE - 3, 10]]
+CELL_TEXT = "884.960"  # m, in row 2 and column 10, counted from the north-west
+CELL_INDEX = [[SIDE - 3, 10]]
 
 
 def with_word(word, **header):
     text = grid_text(**header)
-    assert text.count(AT) == 1
-    return text.replace(AT, word)
+    assert text.count(CELL_TEXT) == 1
+    return text.replace(CELL_TEXT, word)
 
 
 def gdal_reads(path):
@@ -33,13 +33,13 @@ def gdal_reads(path):
     [
         (grid_text(), []),
         (grid_text(cellsize=None, dx=5.0, dy="5.000"), []),
-        (with_word("-3.40282346638529e+38", NODATA_value="-3.4028234663852886e+38"), PLACE),
-        (with_word("-3.4028234663852886e+38", NODATA_value="-3.402823e+38"), PLACE),
-        (with_word("-9999.0", NODATA_value="-9999"), PLACE),
-        (with_word("nan", NODATA_value="-9999"), PLACE),
-        (with_word("NaN"), PLACE),
-        (with_word("1.#QNAN"), PLACE),
-        (with_word("-1.#IND"), PLACE),
+        (with_word("-3.40282346638529e+38", NODATA_value="-3.4028234663852886e+38"), CELL_INDEX),
+        (with_word("-3.4028234663852886e+38", NODATA_value="-3.402823e+38"), CELL_INDEX),
+        (with_word("-9999.0", NODATA_value="-9999"), CELL_INDEX),
+        (with_word("nan", NODATA_value="-9999"), CELL_INDEX),
+        (with_word("NaN"), CELL_INDEX),
+        (with_word("1.#QNAN"), CELL_INDEX),
+        (with_word("-1.#IND"), CELL_INDEX),
         (grid_text().replace(".", ",").replace("5,0", "5"), []),
         (grid_text().replace("\n", "\r\n").replace(" ", "\t"), []),
         (grid_text().upper(), []),
@@ -69,7 +69,7 @@ def test_a_grid_is_read_as_gdal_reads_it(tmp_path, text, missing):
     ],
     ids=["undeclared", "comma", "plain", "declared"],
 )
-def test_what_was_assumed_is_told(tmp_path, text, note):
+def test_assumptions_are_noted(tmp_path, text, note):
     (tmp_path / "a.asc").write_text(text)
     with record_notes() as notes:
         read_raster(tmp_path / "a.asc")
@@ -91,13 +91,13 @@ def test_what_was_assumed_is_told(tmp_path, text, note):
         (grid_text(cellsize="nan"), "'nan' is not a valid number"),
     ],
 )
-def test_what_is_no_grid_is_named(tmp_path, text, message):
+def test_invalid_grids_are_refused(tmp_path, text, message):
     (tmp_path / "a.asc").write_text(text)
     with pytest.raises(InputError, match=rf"a\.asc.*{message}"):
         read_raster(tmp_path / "a.asc")
 
 
-def test_a_byte_order_mark_is_no_word(tmp_path):
+def test_a_byte_order_mark_is_ignored(tmp_path):
     (tmp_path / "a.asc").write_text(grid_text(), encoding="utf-8-sig")
     assert read_raster(tmp_path / "a.asc").heights.shape == SLOPE.shape
 
@@ -117,12 +117,12 @@ def test_feet_in_the_prj_become_metres(tmp_path):
     np.testing.assert_allclose(raster.heights, SLOPE[::-1], atol=1e-3)
     assert raster.crs == "EPSG:26913"
     assert not raster.plain
-    assert notes == ["a.asc: its values were turned into metres; one unit is 0.3048006096 m"]
+    assert notes == ["a.asc: its values were converted to metres; one unit is 0.3048006096 m"]
 
 
 @pytest.mark.parametrize("values", [SLOPE.astype("float32").astype("float64"), SLOPE * np.pi])
 def test_an_exact_copy_holds_every_bit(tmp_path, values):
-    """Single values, too, need more than nine digits, because the core has double precision."""
+    """Single-precision values, too, need over nine digits, because the core has doubles."""
     write_ascii_grid(tmp_path / "a.asc", Raster(values, WEST, 0.0, CELL), exact=True)
     np.testing.assert_array_equal(read_raster(tmp_path / "a.asc").heights, values)
 
@@ -133,12 +133,12 @@ def test_an_exact_copy_holds_every_bit(tmp_path, values):
         ("<Scale>0.1</Scale>", "gives Scale '0.1', which an ASCII grid cannot have"),
         ("<Offset>5</Offset>", "gives Offset '5'"),
         ("<UnitType>ft</UnitType>", "gives UnitType 'ft'"),
-        (f"<NoDataValue le_hex_endian='x'>{AT}</NoDataValue>", "gives NoDataValue"),
+        (f"<NoDataValue le_hex_endian='x'>{CELL_TEXT}</NoDataValue>", "gives NoDataValue"),
         ("<Scale>1</Scale><Offset>0</Offset><UnitType>m</UnitType>", None),
         ("<NoDataValue>-9999</NoDataValue><Statistics><STDEV>3</STDEV></Statistics>", None),
     ],
 )
-def test_facts_beside_a_grid_are_refused_where_they_change_it(tmp_path, fact, message):
+def test_sidecar_files_that_change_a_grid_are_refused(tmp_path, fact, message):
     (tmp_path / "a.asc").write_text(grid_text())
     (tmp_path / "a.asc.aux.xml").write_text(f"<PAMDataset>{fact}</PAMDataset>")
     if message is None:

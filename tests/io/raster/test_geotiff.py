@@ -19,9 +19,9 @@ FOOT, SURVEY_FOOT = 0.3048, 1200 / 3937
 PAM = '<PAMDataset><PAMRasterBand band="1">{}</PAMRasterBand></PAMDataset>'
 
 
-def read_with_notes(path, **how):
+def read_with_notes(path, **options):
     with record_notes() as notes, warnings.catch_warnings():
-        raster = read_raster(path, **how)
+        raster = read_raster(path, **options)
     return raster, notes
 
 
@@ -44,7 +44,9 @@ def assert_slope(raster, tolerance=1e-9):
     ],
     ids=["scale", "offset", "only offset", "feet", "survey feet", "decimetres"],
 )
-def test_numbers_become_metres_and_a_note_says_so(tmp_path, bands, dtype, change, tolerance, note):
+def test_numbers_are_converted_to_metres_with_a_note(
+    tmp_path, bands, dtype, change, tolerance, note
+):
     raster, notes = read_with_notes(write_geotiff(tmp_path / "a.tif", bands, dtype, change))
     assert_slope(raster, tolerance)
     assert len(notes) == 1
@@ -58,9 +60,9 @@ def test_metres_need_no_note(tmp_path, change):
     assert notes == []
 
 
-def test_a_note_is_a_warning_of_its_own_class(tmp_path):
+def test_a_note_is_a_snowshed_note(tmp_path):
     write_geotiff(tmp_path / "a.tif", SLOPE / FOOT, change=in_unit("ft"))
-    with pytest.warns(SnowshedNote, match=r"a\.tif: its values were turned into metres"):
+    with pytest.warns(SnowshedNote, match=r"a\.tif: its values were converted to metres"):
         read_raster(tmp_path / "a.tif")
 
 
@@ -69,7 +71,7 @@ def test_a_note_is_a_warning_of_its_own_class(tmp_path):
     ("system", "metres", "horizontal"),
     [("26913+8228", FOOT, 26913), ("26913+6360", SURVEY_FOOT, 26913), ("25833+5941", 1, 25833)],
 )
-def test_heights_of_a_compound_system_become_metres(tmp_path, system, metres, horizontal):
+def test_heights_of_a_compound_system_are_converted_to_metres(tmp_path, system, metres, horizontal):
     write_geotiff(tmp_path / "a.tif", SLOPE / metres, crs=f"EPSG:{system}")
     raster, notes = read_with_notes(tmp_path / "a.tif")
     assert_slope(raster)
@@ -81,7 +83,7 @@ THREE = np.stack([SLOPE * 0 + 20, SLOPE, SLOPE + 1])
 
 
 @pytest.mark.filterwarnings("ignore::snowshed.SnowshedNote")
-def test_one_of_several_bands_is_read_only_where_it_is_asked_for(tmp_path):
+def test_several_bands_need_a_choice(tmp_path):
     write_geotiff(
         tmp_path / "a.tif", THREE, change=lambda file: file.set_band_description(2, "elevation")
     )
@@ -95,7 +97,7 @@ def test_one_of_several_bands_is_read_only_where_it_is_asked_for(tmp_path):
 
 
 @pytest.mark.parametrize("dtype", ["uint8", "uint16", "float32"])
-def test_an_alpha_band_is_no_second_band_but_hides_cells(tmp_path, dtype):
+def test_an_alpha_band_hides_cells(tmp_path, dtype):
     alpha = np.full(SLOPE.shape, 255.0)
     alpha[2, 3] = 0
     bands = np.stack([np.full(SLOPE.shape, 9.0), alpha])
@@ -110,18 +112,18 @@ def with_hole(value):
     return heights
 
 
-SINGLE = float(np.finfo("float32").min)
+MIN_FLOAT32 = float(np.finfo("float32").min)
 
 
 @pytest.mark.parametrize(
     ("value", "dtype", "nodata"),
     [
         (-9999, "float32", -9999), (np.nan, "float32", None), (np.nan, "float64", -9999),
-        (np.nan, "float32", np.nan), (SINGLE, "float32", -3.4028234663852886e38),
+        (np.nan, "float32", np.nan), (MIN_FLOAT32, "float32", -3.4028234663852886e38),
         (-32768, "int16", -32768), (0, "float32", 0),
     ],
 )  # fmt: skip
-def test_missing_values_are_those_of_gdal(tmp_path, value, dtype, nodata):
+def test_missing_values_agree_with_gdal(tmp_path, value, dtype, nodata):
     write_geotiff(tmp_path / "a.tif", with_hole(value), dtype, nodata=nodata)
     raster = read_raster(tmp_path / "a.tif")
     assert np.argwhere(np.isnan(raster.heights)).tolist() == [[SIDE - 3, 3]]
@@ -134,7 +136,7 @@ def test_a_missing_value_is_compared_before_scaling(tmp_path):
     assert np.isnan(read_raster(tmp_path / "a.tif").heights).sum() == 1
 
 
-def test_an_internal_mask_hides_cells_and_one_beside_is_refused(tmp_path):
+def test_an_internal_mask_hides_cells_and_an_external_mask_is_refused(tmp_path):
     mask = np.full(SLOPE.shape, 255, "uint8")
     mask[2, 3] = 0
     for inside in (True, False):
@@ -155,15 +157,15 @@ def test_an_internal_mask_hides_cells_and_one_beside_is_refused(tmp_path):
     ],
     ids=["scale", "unit", "statistics"],
 )
-def test_facts_of_the_file_aux_xml_count_and_are_told(tmp_path, fact, bands, note):
+def test_entries_of_the_file_aux_xml_are_applied_and_noted(tmp_path, fact, bands, note):
     write_geotiff(tmp_path / "a.tif", bands)
     (tmp_path / "a.tif.aux.xml").write_text(PAM.format(fact))
     raster, notes = read_with_notes(tmp_path / "a.tif")
     assert_slope(raster)
-    assert any(note in told for told in notes) if note else notes == []
+    assert any(note in text for text in notes) if note else notes == []
 
 
-def test_a_sidecar_may_not_be_large_or_a_pipe(tmp_path):
+def test_large_sidecar_files_and_pipes_are_refused(tmp_path):
     write_geotiff(tmp_path / "a.tif")
     (tmp_path / "a.tif.aux.xml").write_bytes(bytes((1 << 20) + 1))
     with pytest.raises(InputError, match=r"aux\.xml: 1048577 bytes; at most"):
@@ -174,14 +176,14 @@ def test_a_sidecar_may_not_be_large_or_a_pipe(tmp_path):
         read_raster(tmp_path / "a.tif")
 
 
-def test_files_beside_a_raster_that_are_not_named_are_not_opened(tmp_path):
-    """A VRT as the overviews of a file would lead GDAL to another file."""
+def test_overviews_of_a_raster_are_not_opened(tmp_path):
+    """A VRT in place of overviews would lead GDAL to another file."""
     write_geotiff(tmp_path / "a.tif")
     (tmp_path / "a.tif.ovr").write_text("<VRTDataset rasterXSize='6' rasterYSize='6'/>")
     assert_slope(read_raster(tmp_path / "a.tif"))
 
 
-def test_the_place_on_the_map_is_that_of_gdal(tmp_path):
+def test_the_position_on_the_map_agrees_with_gdal(tmp_path):
     write_geotiff(tmp_path / "p.tif", change=lambda file: file.update_tags(AREA_OR_POINT="Point"))
     assert_slope(read_raster(tmp_path / "p.tif"))
     up = rasterio.Affine(CELL, 0, WEST, 0, CELL, NORTH - SIDE * CELL)
@@ -197,13 +199,13 @@ def test_the_place_on_the_map_is_that_of_gdal(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["a.asc", "a", "a.TIF", "a.bin"])
-def test_a_geotiff_is_told_by_its_content(tmp_path, name):
+def test_a_geotiff_is_recognised_by_its_content(tmp_path, name):
     write_geotiff(tmp_path / "a.tif")
     (tmp_path / "a.tif").replace(tmp_path / name)
     assert_slope(read_raster(tmp_path / name))
 
 
-TURN = rasterio.Affine(CELL, 0, WEST, 0, -CELL, NORTH)
+GRID = rasterio.Affine(CELL, 0, WEST, 0, -CELL, NORTH)
 
 
 @pytest.mark.filterwarnings("ignore::rasterio.errors.NotGeoreferencedWarning")
@@ -215,15 +217,15 @@ TURN = rasterio.Affine(CELL, 0, WEST, 0, -CELL, NORTH)
         ({"change": in_unit("degrees")}, "its values are in 'degrees', which is not a unit of "
                                          "length"),
         ({"change": in_unit("m"), "crs": "EPSG:26913+8228"}, "correct one of them"),
-        ({"transform": TURN @ rasterio.Affine.rotation(9)}, "not on square cells with north up"),
-        ({"transform": TURN @ rasterio.Affine.scale(-1, 1)}, "not on square cells with north up"),
-        ({"transform": TURN @ rasterio.Affine.scale(1, 2)}, "not on square cells"),
+        ({"transform": GRID @ rasterio.Affine.rotation(9)}, "not on square cells with north up"),
+        ({"transform": GRID @ rasterio.Affine.scale(-1, 1)}, "not on square cells with north up"),
+        ({"transform": GRID @ rasterio.Affine.scale(1, 2)}, "not on square cells"),
         ({"transform": rasterio.Affine.identity(), "crs": None}, "has no position on the map"),
         ({"crs": "EPSG:4979"}, "its map is in degrees"),
     ],
     ids=["zero", "nan", "unit", "contradiction", "turned", "mirrored", "oblong", "lost", "3d"],
 )  # fmt: skip
-def test_what_cannot_be_read_is_named(tmp_path, form, message):
+def test_unreadable_rasters_are_named(tmp_path, form, message):
     write_geotiff(tmp_path / "a.tif", **form)
     with pytest.raises(InputError, match=rf"a\.tif: .*{re.escape(message)}"):
         read_raster(tmp_path / "a.tif")
@@ -235,7 +237,7 @@ def test_a_palette_and_several_images_are_refused(tmp_path):
         tmp_path / "a.tif", SLOPE % 255, "uint8", lambda file: file.write_colormap(1, colours),
         photometric="palette",
     )  # fmt: skip
-    with pytest.raises(InputError, match="its values are numbers of colours"):
+    with pytest.raises(InputError, match="its values are palette colours"):
         read_raster(tmp_path / "a.tif")
     tifffile = pytest.importorskip("tifffile")
     tifffile.imwrite(tmp_path / "b.tif", np.stack([SLOPE, SLOPE]), photometric="minisblack")
@@ -282,14 +284,14 @@ def test_a_pipe_is_refused_and_does_not_hang(tmp_path, name):
 
 
 def test_a_cut_file_is_refused(tmp_path):
-    whole = write_geotiff(tmp_path / "a.tif").read_bytes()
-    (tmp_path / "a.tif").write_bytes(whole[: len(whole) // 2])
+    content = write_geotiff(tmp_path / "a.tif").read_bytes()
+    (tmp_path / "a.tif").write_bytes(content[: len(content) // 2])
     with pytest.raises(InputError, match=r"a\.tif: not a GeoTIFF"):
         read_raster(tmp_path / "a.tif")
 
 
 @pytest.mark.parametrize("system", ["http://127.0.0.1:9/a.wkt", "/etc/hostname"])
-def test_a_coordinate_system_beside_a_raster_leads_nowhere(tmp_path, system):
+def test_a_coordinate_system_in_a_sidecar_file_is_not_fetched(tmp_path, system):
     write_geotiff(tmp_path / "a.tif")
     (tmp_path / "a.tif.aux.xml").write_text(f"<PAMDataset><SRS>{system}</SRS></PAMDataset>")
     with pytest.raises(InputError, match=r"a\.tif: not a GeoTIFF: Cannot import"):

@@ -21,25 +21,25 @@ def shapes(areas):
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_the_areas_are_the_cells_with_snow(seed):
-    """For any pattern, the outlines are those of the union of all cells."""
+def test_the_areas_cover_the_cells_with_snow(seed):
+    """The outlines of any pattern are those of the union of its cells."""
     depth = raster(np.random.default_rng(seed).integers(0, 2, (9, 11)))
     rows, columns = np.nonzero(depth.heights)
     x, y = depth.east + columns * depth.cell, depth.north + rows * depth.cell
     union = shapely.union_all(shapely.box(x - 1, y - 1, x + 1, y + 1))
-    found = shapes(areas_of_depth(depth))
-    assert all(shape.is_valid for shape in found)
-    assert shapely.union_all(found).symmetric_difference(union).area < 1e-4
-    assert sum(shape.area for shape in found) == pytest.approx(4.0 * len(rows), rel=1e-6)
-    distances = [a.distance(b) for a in found for b in found if a is not b]
+    polygons = shapes(areas_of_depth(depth))
+    assert all(shape.is_valid for shape in polygons)
+    assert shapely.union_all(polygons).symmetric_difference(union).area < 1e-4
+    assert sum(shape.area for shape in polygons) == pytest.approx(4.0 * len(rows), rel=1e-6)
+    distances = [a.distance(b) for a in polygons for b in polygons if a is not b]
     assert min(distances, default=1.0) > 0.0
 
 
-def test_areas_that_meet_at_a_corner_are_two():
+def test_areas_that_meet_at_a_corner_are_separate():
     assert len(areas_of_depth(raster([[1, 0], [0, 1]]))) == 2
 
 
-def test_a_missing_value_amid_snow_is_a_gap_and_beside_it_none():
+def test_a_missing_value_amid_snow_is_a_gap_but_not_beside_it():
     values = np.full((5, 5), 0.5)
     values[0, :] = np.nan
     assert len(areas_of_depth(raster(values))) == 1
@@ -56,8 +56,8 @@ def test_a_gap_that_opens_at_a_corner_is_not_amid_snow():
     assert len(areas_of_depth(raster(values))) == 1
 
 
-def test_many_holes_and_gaps_take_no_longer_than_their_cells():
-    """A search for gaps in every hole would take 22500 times 22500 comparisons."""
+def test_many_holes_and_gaps_are_found_quickly():
+    """A search for gaps in every hole would need 22500 x 22500 comparisons."""
     values = np.full((300, 300), 0.5)
     values[1:-1:2, 1:-1:2] = np.nan
     with pytest.raises(InputError, match="no thickness amid snow"):
@@ -69,7 +69,7 @@ def test_many_holes_and_gaps_take_no_longer_than_their_cells():
         areas_of_depth(raster(values))
 
 
-def test_a_large_raster_of_little_snow_is_cut_to_it():
+def test_a_large_raster_is_cropped_to_its_snow():
     values = np.zeros((3000, 3000))
     values[1500, 1000:1003] = 0.4
     part = snow_part(raster(values))
@@ -87,6 +87,6 @@ def test_a_large_raster_of_little_snow_is_cut_to_it():
         (np.full((2001, 2000), 0.5), f"holds snow in 4002000 cells; at most {MAX_SNOW_CELLS}"),
     ],
 )
-def test_what_is_no_thickness_is_refused(values, message):
+def test_invalid_thickness_is_refused(values, message):
     with pytest.raises(InputError, match=rf"depth\.asc: {message}"):
         areas_of_depth(raster(values))

@@ -23,7 +23,7 @@ def exported(finished, tmp_path_factory):
 
 
 def seeded(shape, **values):
-    """The particles that a scene of one body begins with."""
+    """Return the simulation of a scene with a single body, after seeding."""
     scene = Scene.preset("lab-50").update({"dimension": 2, "numerics.dx": DX, **values})
     scene.panel = scene.slab = None
     scene.append("bodies", {"shape": shape})
@@ -37,7 +37,7 @@ def measured(positions, masses):
     return measure_stack(positions, masses, densities, dimension=2, dx=DX)
 
 
-def test_one_file_for_each_event_with_its_mass(finished, exported):
+def test_each_event_has_a_file_with_its_mass(finished, exported):
     assert [e.file.name for e in exported] == ["event_001.vdb", "event_002.vdb"]
     events = read_events(finished)
     for event, written in zip(events.itertuples(), exported):
@@ -47,24 +47,24 @@ def test_one_file_for_each_event_with_its_mass(finished, exported):
         assert 100 < written.content.density < 300
 
 
-def test_the_stack_comes_back_from_its_level_set(finished, exported):
+def test_the_stack_is_recovered_from_its_level_set(finished, exported):
     for event, written in enumerate(exported, start=1):
         particles = read_particles(finished / "particles" / f"event_{event:03d}.vtp")
-        before = measured(particles["position"].astype(float), particles["mass"].astype(float))
-        # Laid as in the guide, with the bulk density of the stack.
+        original = measured(particles["position"].astype(float), particles["mass"].astype(float))
+        # As in the guide, the scene has the bulk density of the stack.
         density = {"snow.density": written.content.density}
         shape = Shape.vdb(str(written.file), grid="surface").to_data()
         simulation = seeded(shape, **density)
-        after = measured(simulation.positions(), simulation.masses())
-        assert after.mass == pytest.approx(before.mass, rel=0.01)
-        assert after.height == pytest.approx(before.height, abs=DX / 2)
+        result = measured(simulation.positions(), simulation.masses())
+        assert result.mass == pytest.approx(original.mass, rel=0.01)
+        assert result.height == pytest.approx(original.height, abs=DX / 2)
         for end in (np.min, np.max):
             ends = [end(x[:, 0]) for x in (particles["position"], simulation.positions())]
             assert ends[1] == pytest.approx(ends[0], abs=DX / 2)
-        assert outline_difference(before.outline, after.outline) < DX / 2
+        assert outline_difference(original.outline, result.outline) < DX / 2
 
 
-def test_a_level_set_is_an_obstacle_as_its_shape_would_be(tmp_path):
+def test_a_level_set_is_an_obstacle_of_its_shape(tmp_path):
     """Distances from a box of particles are exact to a voxel, also beyond the band."""
     size, center = np.array([0.4, 0.2]), np.array([0.3, 0.1])
     rng = np.random.default_rng(1)
@@ -82,7 +82,7 @@ def test_a_level_set_is_an_obstacle_as_its_shape_would_be(tmp_path):
     assert np.allclose(simulation.obstacle_distance(points), expected, atol=DX / 2)
 
 
-def test_the_command_writes_beside_the_results(finished, capsys):
+def test_the_command_writes_into_the_results_folder(finished, capsys):
     assert main(["vdb", str(finished)]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert len(lines) == 2 and lines[0].startswith(str(finished / "vdb" / "event_001.vdb: "))
@@ -97,12 +97,12 @@ def test_the_command_writes_beside_the_results(finished, capsys):
         (["{finished}", "--width", "-1"], "width: -1.0 m; must be positive"),
     ],
 )
-def test_what_cannot_be_exported_is_named(finished, arguments, message, capsys):
+def test_impossible_exports_are_refused(finished, arguments, message, capsys):
     assert main(["vdb", *(a.format(finished=finished) for a in arguments), "-q"]) == 2
     assert message in capsys.readouterr().err
 
 
-def test_arrays_must_fit(tmp_path):
+def test_arrays_must_be_finite_and_of_equal_length(tmp_path):
     with pytest.raises(InputError, match="masses: 2 values for 1 particles"):
         write_vdb(
             tmp_path / "a.vdb", np.zeros((1, 3)), np.ones(2), dimension=2, dx=0.1,
@@ -118,11 +118,11 @@ def test_arrays_must_fit(tmp_path):
 
 @pytest.mark.parametrize("kind", ["empty", "garbage", "truncated"])
 def test_damaged_files_end_a_run_at_once(exported, tmp_path, capsys, kind):
-    whole = exported[0].file.read_bytes()
+    complete = exported[0].file.read_bytes()
     content = {
         "empty": b"",
         "garbage": bytes(range(256)) * 40,
-        "truncated": whole[: len(whole) // 5],
+        "truncated": complete[: len(complete) // 5],
     }
     (tmp_path / "bad.vdb").write_bytes(content[kind])
     bad = str(tmp_path / "bad.vdb")

@@ -41,7 +41,7 @@ def test_the_command_says_what_to_install(no_program, finished, capsys):
 
 
 def test_reading_says_what_to_install(tmp_path):
-    """In a copy of the package that has the core but not the program."""
+    """The copy of the package has the core but not the program."""
     package = tmp_path / "snowshed"
     shutil.copytree(Path(program.__file__).parents[1], package)
     for leftover in package.glob("_core*.so"):
@@ -65,11 +65,11 @@ def test_reading_says_what_to_install(tmp_path):
 
 
 @pytest.mark.parametrize("content", [b"", b"\xff\x00", b"[]", b"{}", b"[" * 100_000])
-def test_a_damaged_scene_of_the_results_is_named(finished, tmp_path, capsys, content):
+def test_a_damaged_scene_in_the_results_is_named(finished, tmp_path, capsys, content):
     (tmp_path / "scene.json").write_bytes(content)
     shutil.copytree(finished / "particles", tmp_path / "particles")
     assert main(["vdb", str(tmp_path)]) == 2
-    said = capsys.readouterr().err
-    assert said.startswith("error: ") and said.count("\n") == 1
-    assert str(tmp_path / "scene.json") in said
+    message = capsys.readouterr().err
+    assert message.startswith("error: ") and message.count("\n") == 1
+    assert str(tmp_path / "scene.json") in message
     assert not (tmp_path / "vdb").exists()

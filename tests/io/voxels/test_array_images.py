@@ -1,4 +1,4 @@
-"""NPY and raw files, and folders of slices: accepted claims, and notes on them."""
+"""NPY and raw files, and folders of slices: accepted properties, and notes on them."""
 
 import os
 import re
@@ -6,7 +6,7 @@ import warnings
 
 import numpy as np
 import pytest
-from helpers.voxel_files import VOXELS, of_type, save_metaimage, save_slices
+from helpers.voxel_files import VOXELS, save_metaimage, save_slices, voxels_of_type
 from PIL import Image
 
 from snowshed import InputError
@@ -17,14 +17,14 @@ from snowshed.io.voxels.open_voxels import open_voxels
 @pytest.mark.parametrize("kind", ["<u8", "<i8", "<f2", ">u4", ">f8", "?"])
 @pytest.mark.parametrize("order", "CF")
 def test_npy_of_any_type_and_order(tmp_path, kind, order):
-    voxels = VOXELS > 100 if kind == "?" else of_type(kind)
+    voxels = VOXELS > 100 if kind == "?" else voxels_of_type(kind)
     np.save(tmp_path / "a.npy", np.asarray(voxels.astype(kind), order=order))
     opened = open_voxels(tmp_path / "a.npy")
     for low, high in ((0, 5), (1, 3), (4, 5)):
         assert (opened.layers(low, high) == voxels[low:high]).all()
 
 
-def test_what_follows_an_image_is_told(tmp_path):
+def test_bytes_after_an_image_are_noted(tmp_path):
     with (tmp_path / "a.npy").open("wb") as file:
         np.save(file, VOXELS)
         np.save(file, VOXELS)
@@ -45,7 +45,7 @@ def test_pipes_do_not_hang(tmp_path, name):
 
 
 @pytest.mark.parametrize("name", ["a.npy", "a.raw", "a.mhd"])
-def test_files_of_holes_are_refused(tmp_path, name):
+def test_sparse_files_are_refused(tmp_path, name):
     shape = (1000, 1000, 1000)
     data = tmp_path / ("a.raw" if name == "a.mhd" else name)
     if name == "a.npy":
@@ -69,12 +69,12 @@ def test_orientation_of_png_is_applied(tmp_path):
         exif[274] = 6
         image.save(path, exif=exif)
     with record_notes() as notes:
-        found = open_voxels(folder).layers(0, 5)
-    assert (found == np.stack([np.rot90(page, -1) for page in VOXELS])).all()
+        voxels = open_voxels(folder).layers(0, 5)
+    assert (voxels == np.stack([np.rot90(page, -1) for page in VOXELS])).all()
     assert "Orientation (6)" in notes[0]
 
 
-def test_inverted_palettes_are_told(tmp_path):
+def test_inverted_palettes_are_noted(tmp_path):
     folder = save_slices(tmp_path / "s", VOXELS, "bmp")
     for path in folder.iterdir():
         page = Image.new("P", (7, 6))
@@ -103,15 +103,15 @@ def test_a_slice_with_several_frames_is_refused(tmp_path):
         open_voxels(folder)
 
 
-def test_slices_of_two_names_are_told(tmp_path):
+def test_slices_of_two_names_are_noted(tmp_path):
     folder = save_slices(tmp_path / "s", VOXELS)
-    (folder / "slice3.png").rename(folder / "other3.png")
+    (folder / "slice3.png").rename(folder / "image3.png")
     with record_notes() as notes:
         open_voxels(folder)
-    assert "several names, other3.png and slice1.png" in notes[0]
+    assert "several names, image3.png and slice1.png" in notes[0]
 
 
-def test_slices_that_unpack_to_too_much_are_refused(tmp_path):
+def test_slices_with_a_huge_unpacked_size_are_refused(tmp_path):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         page = Image.new("L", (13_000, 13_000))

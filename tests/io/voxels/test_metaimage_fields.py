@@ -5,7 +5,7 @@ import itertools
 
 import numpy as np
 import pytest
-from helpers.voxel_files import TYPES, VOXELS, of_type, save_metaimage
+from helpers.voxel_files import TYPES, VOXELS, save_metaimage, voxels_of_type
 
 from snowshed import InputError
 from snowshed.base.notes import record_notes
@@ -16,28 +16,28 @@ def read(file):
     """Return the numbers of an image, and its notes."""
     with record_notes() as notes:
         opened = open_voxels(file)
-    found = opened.layers(0, opened.shape[0])
-    single = [opened.layers(number, number + 1) for number in range(opened.shape[0])]
-    assert (np.concatenate(single) == found).all()
-    return found, notes
+    numbers = opened.layers(0, opened.shape[0])
+    layers = [opened.layers(number, number + 1) for number in range(opened.shape[0])]
+    assert (np.concatenate(layers) == numbers).all()
+    return numbers, notes
 
 
 @pytest.mark.parametrize("kind", TYPES)
 @pytest.mark.parametrize("compress", [False, True])
 @pytest.mark.parametrize("order", "<>")
 def test_every_type(tmp_path, kind, compress, order):
-    voxels = of_type(kind)
-    found, _ = read(save_metaimage(tmp_path / "a.mha", voxels, compress=compress, order=order))
-    assert (found == voxels).all() and found.dtype == voxels.dtype
+    voxels = voxels_of_type(kind)
+    numbers, _ = read(save_metaimage(tmp_path / "a.mha", voxels, compress=compress, order=order))
+    assert (numbers == voxels).all() and numbers.dtype == voxels.dtype
 
 
 @pytest.mark.parametrize("kind", ["uint8", "int16", "float32", "float64"])
 def test_numbers_as_text(tmp_path, kind):
-    voxels = of_type(kind)
+    voxels = voxels_of_type(kind)
     file = save_metaimage(tmp_path / "a.mhd", voxels, "BinaryData = False", data="a.txt")
     (tmp_path / "a.txt").write_text("\n".join(map(repr, voxels.ravel().tolist())))
-    found, _ = read(file)
-    assert (found == voxels).all() and found.dtype == voxels.dtype
+    numbers, _ = read(file)
+    assert (numbers == voxels).all() and numbers.dtype == voxels.dtype
 
 
 @pytest.mark.parametrize(
@@ -52,8 +52,10 @@ def test_numbers_as_text(tmp_path, kind):
         ("int64", "1 " * 210, "whole numbers of 8 bytes as text"),
     ],
 )
-def test_text_that_is_not_the_numbers_is_refused(tmp_path, kind, text, message):
-    file = save_metaimage(tmp_path / "a.mhd", of_type(kind), "BinaryData = False", data="a.txt")
+def test_text_with_other_numbers_is_refused(tmp_path, kind, text, message):
+    file = save_metaimage(
+        tmp_path / "a.mhd", voxels_of_type(kind), "BinaryData = False", data="a.txt"
+    )
     (tmp_path / "a.txt").write_text(text)
     with pytest.raises(InputError, match=message):
         open_voxels(file)
@@ -62,7 +64,7 @@ def test_text_that_is_not_the_numbers_is_refused(tmp_path, kind, text, message):
 @pytest.mark.parametrize("field", ["ElementByteOrderMSB", "BinaryDataByteOrderMSB"])
 @pytest.mark.parametrize("word", ["True", "true", "T", "1"])
 def test_the_byte_order_has_two_names(tmp_path, field, word):
-    voxels = of_type("int16")
+    voxels = voxels_of_type("int16")
     file = save_metaimage(tmp_path / "a.mha", voxels, order=">")
     content = file.read_bytes().replace(b"ElementByteOrderMSB = True", f"{field} = {word}".encode())
     file.write_bytes(content)
@@ -73,16 +75,16 @@ def test_the_byte_order_has_two_names(tmp_path, field, word):
 @pytest.mark.parametrize("signs", [(1, 1, 1), (-1, 1, 1), (1, -1, 1), (1, 1, -1), (-1, -1, -1)])
 @pytest.mark.parametrize("compress", [False, True])
 def test_axes_point_where_the_matrix_says(tmp_path, order, signs, compress):
-    """By definition, a step along axis a of the file is a step along row a of the matrix."""
+    """A step along axis a of the file is, by definition, a step along row a of the matrix."""
     matrix = np.zeros((3, 3), dtype=int)
     for axis in range(3):
         matrix[axis, order[axis]] = signs[axis]
     header = f"TransformMatrix = {' '.join(map(str, matrix.ravel()))}"
-    found, notes = read(save_metaimage(tmp_path / "a.mha", VOXELS, header, compress=compress))
-    places = np.indices(VOXELS.shape).reshape(3, -1)[::-1].T @ matrix  # x, y, z of each voxel
-    x, y, z = (places - places.min(axis=0)).T
-    assert found.shape == (z.max() + 1, y.max() + 1, x.max() + 1)
-    assert (found[z, y, x] == VOXELS.ravel()).all()
+    numbers, notes = read(save_metaimage(tmp_path / "a.mha", VOXELS, header, compress=compress))
+    positions = np.indices(VOXELS.shape).reshape(3, -1)[::-1].T @ matrix  # x, y, z of each voxel
+    x, y, z = (positions - positions.min(axis=0)).T
+    assert numbers.shape == (z.max() + 1, y.max() + 1, x.max() + 1)
+    assert (numbers[z, y, x] == VOXELS.ravel()).all()
     turned = not (matrix == np.eye(3)).all()
     assert [note.endswith("rotated according to its TransformMatrix") for note in notes] == [
         True
@@ -102,8 +104,8 @@ def test_axes_that_are_not_along_x_y_and_z_are_refused(tmp_path, name, matrix):
 @pytest.mark.parametrize(("size", "start"), [("36", 36), ("-1", None), ("0", 0)])
 def test_a_header_size_is_skipped(tmp_path, size, start):
     file = save_metaimage(tmp_path / "a.mhd", VOXELS, f"HeaderSize = {size}", data="a.raw")
-    before = b"junk" * 9 if start != 0 else b""
-    (tmp_path / "a.raw").write_bytes(before + VOXELS.tobytes())
+    head = b"junk" * 9 if start != 0 else b""
+    (tmp_path / "a.raw").write_bytes(head + VOXELS.tobytes())
     assert (read(file)[0] == VOXELS).all()
 
 
@@ -135,10 +137,10 @@ def test_the_edge_of_a_voxel(tmp_path, header, size):
     assert opened.voxel_size == size
 
 
-def test_another_scale_of_the_numbers_is_told(tmp_path):
+def test_another_scale_of_the_numbers_is_noted(tmp_path):
     slope = "ElementToIntensityFunctionSlope = 2"
-    found, notes = read(save_metaimage(tmp_path / "a.mha", VOXELS, slope))
-    assert (found == VOXELS).all() and "ElementToIntensityFunctionSlope 2 and Offset" in notes[0]
+    numbers, notes = read(save_metaimage(tmp_path / "a.mha", VOXELS, slope))
+    assert (numbers == VOXELS).all() and "ElementToIntensityFunctionSlope 2 and Offset" in notes[0]
     with pytest.raises(InputError, match="only positive ones"):
         open_voxels(save_metaimage(tmp_path / "a.mha", VOXELS, slope.replace("2", "-2")))
 
@@ -161,15 +163,15 @@ def test_another_scale_of_the_numbers_is_told(tmp_path):
         ("HeaderSize = -2", "a number of bytes is needed"),
     ],
 )
-def test_what_is_not_honoured_is_refused(tmp_path, header, message):
+def test_unsupported_fields_are_refused(tmp_path, header, message):
     with pytest.raises(InputError, match=message):
         open_voxels(save_metaimage(tmp_path / "a.mha", VOXELS, header))
 
 
-def test_a_field_given_twice_is_refused(tmp_path):
+def test_a_repeated_field_is_refused(tmp_path):
     file = save_metaimage(tmp_path / "a.mha", VOXELS)
     file.write_bytes(file.read_bytes().replace(b"NDims = 3\n", b"NDims = 3\nNDims = 3\n"))
-    with pytest.raises(InputError, match="'NDims' stands twice"):
+    with pytest.raises(InputError, match="'NDims' occurs twice"):
         open_voxels(file)
 
 
@@ -184,7 +186,7 @@ def test_a_link_does_not_lead_out_of_the_folder(tmp_path):
         open_voxels(file)
 
 
-def test_packed_numbers_that_claim_too_much_are_refused(tmp_path):
+def test_packed_numbers_with_a_huge_unpacked_size_are_refused(tmp_path):
     """1200 x 1200 x 1200 zeros take 1.7 MB."""
     header = "DimSize = 1200 1200 1200\nElementType = MET_UCHAR"
     file = save_metaimage(tmp_path / "a.mha", np.zeros((9, 9, 9), np.uint8), header, compress=True)

@@ -12,11 +12,11 @@ from snowshed import InputError
 from snowshed.io.voxels.open_voxels import open_voxels
 
 
-def same(opened, voxels):
+def assert_same(opened, voxels):
     assert opened.shape == voxels.shape
-    found = opened.layers(0, len(voxels))
-    assert found.dtype == voxels.dtype.newbyteorder("=")
-    assert (found == voxels).all()
+    numbers = opened.layers(0, len(voxels))
+    assert numbers.dtype == voxels.dtype.newbyteorder("=")
+    assert (numbers == voxels).all()
     assert (opened.layers(2, 4) == voxels[2:4]).all()
 
 
@@ -25,7 +25,7 @@ def same(opened, voxels):
 def test_npy(tmp_path, kind, order):
     voxels = (VOXELS % 2 if kind == "bool" else VOXELS).astype(kind)
     np.save(tmp_path / "a.npy", np.asarray(voxels, order=order))
-    same(open_voxels(tmp_path / "a.npy"), voxels)
+    assert_same(open_voxels(tmp_path / "a.npy"), voxels)
 
 
 @pytest.mark.parametrize("kind", TYPES)
@@ -36,10 +36,12 @@ def test_metaimage(tmp_path, kind, order):
         "a.mha": {}, "b.mhd": {"data": "b.raw"}, "c.mha": {"compress": True},
         "d.mhd": {"data": "d.zraw", "compress": True},
     }.items():  # fmt: skip
-        same(open_voxels(save_metaimage(tmp_path / name, voxels, order=order, **options)), voxels)
+        assert_same(
+            open_voxels(save_metaimage(tmp_path / name, voxels, order=order, **options)), voxels
+        )
 
 
-def test_metaimage_knows_its_voxel_size_in_millimetres(tmp_path):
+def test_the_voxel_size_of_a_metaimage_is_in_millimetres(tmp_path):
     file = save_metaimage(tmp_path / "a.mha", VOXELS, "ElementSpacing = 0.02 0.02 0.02\n")
     assert open_voxels(file).voxel_size == pytest.approx(2e-5)
     file = save_metaimage(tmp_path / "b.mha", VOXELS, "ElementSpacing = 0.02 0.02 0.04\n")
@@ -51,19 +53,21 @@ def test_metaimage_knows_its_voxel_size_in_millimetres(tmp_path):
 def test_raw(tmp_path, kind):
     name, _, big = kind.partition("-")
     VOXELS.astype(np.dtype(name).newbyteorder(">" if big else "<")).tofile(tmp_path / "a.raw")
-    same(open_voxels(tmp_path / "a.raw", VOXELS.shape, kind), VOXELS.astype(name))
+    assert_same(open_voxels(tmp_path / "a.raw", VOXELS.shape, kind), VOXELS.astype(name))
 
 
 @pytest.mark.parametrize("kind", ["uint8", "uint16", "int32", "float32"])
 @pytest.mark.parametrize("compression", [None, "tiff_lzw", "tiff_deflate"])
 def test_tiff_stack(tmp_path, kind, compression):
     voxels = VOXELS.astype(kind)
-    same(open_voxels(save_pages(tmp_path / "a.tif", voxels, compression=compression)), voxels)
+    assert_same(
+        open_voxels(save_pages(tmp_path / "a.tif", voxels, compression=compression)), voxels
+    )
 
 
 def test_tiff_of_one_bit_and_of_the_other_byte_order(tmp_path):
     save_pages(tmp_path / "bits.tif", VOXELS > 100)
-    same(open_voxels(tmp_path / "bits.tif"), (VOXELS > 100).astype(np.uint8))
+    assert_same(open_voxels(tmp_path / "bits.tif"), (VOXELS > 100).astype(np.uint8))
     (tmp_path / "big.tif").write_bytes(
         big_endian_tiff((VOXELS[0].astype(np.uint16) * 200).astype(">u2"))
     )
@@ -96,13 +100,13 @@ def big_endian_tiff(page, sample_format=1):
 def test_slices_are_in_the_order_of_their_numbers(tmp_path, ending):
     voxels = np.concatenate([VOXELS, VOXELS[::-1], VOXELS])  # 15: slice2 comes before slice10
     folder = save_slices(tmp_path / "s", voxels, ending)
-    (folder / "notes.txt").write_text("these are no slice")
-    same(open_voxels(folder), voxels)
+    (folder / "notes.txt").write_text("this is not a slice")
+    assert_same(open_voxels(folder), voxels)
 
 
 def test_sixteen_bit_png(tmp_path):
     voxels = VOXELS.astype(np.uint16) * 200
-    same(open_voxels(save_slices(tmp_path / "s", voxels)), voxels)
+    assert_same(open_voxels(save_slices(tmp_path / "s", voxels)), voxels)
 
 
 def test_slices_in_palettes_of_grey(tmp_path):
@@ -115,28 +119,28 @@ def test_slices_in_palettes_of_grey(tmp_path):
     assert (opened.layers(0, 5) == VOXELS).all()
 
 
-def damage(folder, what):
-    """Spoil a folder of slices in one way."""
-    if what == "missing":
+def damage_slices(folder, damage_kind):
+    """Damage a folder of slices."""
+    if damage_kind == "missing":
         (folder / "slice3.png").unlink()
-    elif what == "twice":
+    elif damage_kind == "twice":
         (folder / "slice03.png").write_bytes((folder / "slice3.png").read_bytes())
-    elif what == "mixed":
+    elif damage_kind == "mixed":
         Image.fromarray(VOXELS[0]).save(folder / "slice6.bmp")
-    elif what == "size":
+    elif damage_kind == "size":
         Image.fromarray(VOXELS[0, 1:]).save(folder / "slice4.png")
-    elif what == "type":
+    elif damage_kind == "type":
         Image.fromarray(VOXELS[0].astype(np.uint16)).save(folder / "slice4.png")
-    elif what == "colour":
+    elif damage_kind == "colour":
         Image.fromarray(np.dstack([VOXELS[0]] * 2 + [VOXELS[1]])).save(folder / "slice1.png")
-    elif what == "name":
+    elif damage_kind == "name":
         (folder / "slice1.png").rename(folder / "first.png")
-    elif what == "other":
+    elif damage_kind == "other":
         (folder / "slice2.png").write_bytes(b"II*\0 is no PNG")
 
 
 @pytest.mark.parametrize(
-    ("what", "message"),
+    ("damage_kind", "message"),
     [
         ("missing", "slice 3 is missing, between slice2.png and slice4.png"),
         ("twice", "has the number of slice03.png, 3"),
@@ -148,9 +152,9 @@ def damage(folder, what):
         ("other", "slice2.png: damaged: not read as PNG"),
     ],
 )
-def test_spoilt_folders_are_refused(tmp_path, what, message):
+def test_damaged_folders_of_slices_are_refused(tmp_path, damage_kind, message):
     folder = save_slices(tmp_path / "s", VOXELS)
-    damage(folder, what)
+    damage_slices(folder, damage_kind)
     with pytest.raises(InputError, match=re.escape(message)):
         open_voxels(folder).layers(0, 5)
 
@@ -195,14 +199,14 @@ def test_files_that_end_early_are_refused(tmp_path, name, keep):
         ("ElementSpacing = 0 0 0\n", "voxels must be cubes"),
     ],
 )
-def test_headers_that_lie_are_refused(tmp_path, header, message):
+def test_false_headers_are_refused(tmp_path, header, message):
     save_metaimage(tmp_path / "a.mha", VOXELS, header)
     with pytest.raises(InputError, match=message):
         open_voxels(tmp_path / "a.mha")
 
 
 @pytest.mark.parametrize("data", ["../b.raw", "/etc/passwd", "LIST", "slice%03d.raw 1 5 1"])
-def test_a_header_cannot_name_files_elsewhere(tmp_path, data):
+def test_a_header_cannot_name_files_in_other_folders(tmp_path, data):
     nz, ny, nx = VOXELS.shape
     (tmp_path / "a.mhd").write_text(
         f"DimSize = {nx} {ny} {nz}\nElementType = MET_UCHAR\nElementDataFile = {data}\n"
@@ -211,14 +215,14 @@ def test_a_header_cannot_name_files_elsewhere(tmp_path, data):
         open_voxels(tmp_path / "a.mhd")
 
 
-def test_packed_data_is_unpacked_no_farther_than_its_size(tmp_path):
+def test_packed_data_is_unpacked_only_to_its_size(tmp_path):
     bomb = np.zeros((300, 300, 300), dtype=np.uint8)
     file = save_metaimage(tmp_path / "a.mha", bomb, compress=True)
     file.write_bytes(file.read_bytes().replace(b"DimSize = 300 300 300", b"DimSize = 4 4 4"))
     assert open_voxels(file).layers(0, 4).size == 64
 
 
-def test_arrays_that_are_no_image_are_refused(tmp_path):
+def test_arrays_that_are_not_images_are_refused(tmp_path):
     for array, message in (
         (VOXELS[0], "2 dimensions"),
         (VOXELS[:0], "1 to 65,536"),

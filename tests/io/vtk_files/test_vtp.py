@@ -20,7 +20,7 @@ def stored(tmp_path):
     return simulation, path
 
 
-def test_particles_come_back_as_they_were(stored):
+def test_stored_particles_are_read_back(stored):
     simulation, path = stored
     particles = read_particles(path)
     assert set(particles) == {
@@ -60,7 +60,7 @@ def test_damaged_files_are_named(stored, part):
         (rb'<\?xml version="1.0"', b'<?xml version="1.0" encoding="snow"'),
     ],
 )
-def test_other_numbers_and_types_are_named(stored, old, new):
+def test_invalid_numbers_and_types_are_refused(stored, old, new):
     _, path = stored
     content = re.sub(old, new, path.read_bytes(), count=1)
     assert content != path.read_bytes()

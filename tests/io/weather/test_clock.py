@@ -3,7 +3,7 @@
 from datetime import datetime, timedelta, timezone
 
 import pytest
-from made import epw, hourly, imis, meteoswiss, smet, tmy3
+from synthetic_weather import epw, hourly, imis, meteoswiss, smet, tmy3
 
 from snowshed import InputError
 
@@ -51,14 +51,14 @@ def test_times_with_offsets_are_unique_at_the_end_of_summer_time(form, writing, 
     assert any("2 UTC offsets; they are converted to UTC+1 h" in note for note in read.notes)
 
 
-def test_one_offset_stays_as_it_is(station):
+def test_a_single_offset_is_kept(station):
     read = station(imis([f"2024-01-01 {hour:02d}:00:00-07:00" for hour in range(24)]))
     assert read.utc_offset == -7.0 and read.rows[0].time == datetime(2024, 1, 1)
     read = station(imis([f"2024-01-01T{hour:02d}:00:00Z" for hour in range(24)]))
     assert read.utc_offset == 0.0
 
 
-def test_offsets_of_some_rows_only_are_refused(station):
+def test_offsets_in_only_some_rows_are_refused(station):
     times = ["2024-01-01 00:00:00+00:00", "2024-01-01 01:00:00"]
     with pytest.raises(InputError, match="01:00:00 has no UTC offset, but line 2 has one"):
         station(imis(times))
@@ -66,7 +66,7 @@ def test_offsets_of_some_rows_only_are_refused(station):
         station(imis(times[::-1]))
 
 
-def twice(form):
+def with_repeated_hour(form):
     """Return a file in local time, where the hour from 2 to 3 occurs twice."""
     begin = datetime(2024, 10, 26)
     times = [begin + timedelta(hours=n) for n in range(27)]
@@ -81,30 +81,30 @@ def twice(form):
 
 
 @pytest.mark.parametrize("form", ["IMIS", "SMET", "MeteoSwiss"])
-def test_an_hour_of_local_time_that_is_there_twice_is_refused_by_name(form, station):
+def test_a_repeated_hour_of_local_time_is_refused(form, station):
     with pytest.raises(InputError, match=r"is not after .*this hour occurs twice"):
-        station(twice(form))
+        station(with_repeated_hour(form))
 
 
-def test_days_in_disorder_are_no_summer_time(station):
+def test_unsorted_days_are_not_taken_for_summer_time(station):
     with pytest.raises(InputError, match="is not after line 2") as error:
         station(imis(["2024-01-05", "2024-01-04", "2024-01-06"]))
     assert "summer" not in str(error.value)
 
 
 @pytest.mark.parametrize("step", [0.5, 1.0])
-def test_an_hour_of_local_time_that_is_missing_is_told(step, station):
+def test_a_missing_hour_of_local_time_is_noted(step, station):
     begin = datetime(2024, 3, 30)
     times = [begin + timedelta(hours=step * n) for n in range(int(48 / step))]
-    kept = [time for time in times if not (time.day == 31 and time.hour == 2)]
-    read = station(imis([f"{time:%Y-%m-%d %H:%M}" for time in kept]))
+    summer_times = [time for time in times if not (time.day == 31 and time.hour == 2)]
+    read = station(imis([f"{time:%Y-%m-%d %H:%M}" for time in summer_times]))
     assert any("is missing, as at the beginning of summer time" in note for note in read.notes)
-    whole = station(imis([f"{time:%Y-%m-%d %H:%M}" for time in times]))
-    assert whole.notes == []
+    complete = station(imis([f"{time:%Y-%m-%d %H:%M}" for time in times]))
+    assert complete.notes == []
 
 
 @pytest.mark.parametrize("year", ["0024", "0202", "2924"])
-def test_a_year_that_cannot_be_is_refused(year, station):
+def test_an_impossible_year_is_refused(year, station):
     with pytest.raises(InputError, match=r"line 2, column date: the year [0-9]+; allowed:"):
         station(imis([f"{year}-01-04", "2984-01-06"]))
 
@@ -130,7 +130,7 @@ DEPTHS = (10, 70, 15, 0, 0, 0, 0, 0, 0, 0, 5, 40)
 
 
 @pytest.mark.parametrize("latitude", [46.5, -45.0])
-def test_joints_of_a_typical_year_are_seams_and_it_begins_in_summer(latitude, station):
+def test_a_typical_year_begins_in_summer_and_has_seams(latitude, station):
     read = station(epw(typical(YEARS, DEPTHS), latitude))
     south = latitude < 0.0
     assert read.typical_year and read.latitude == latitude
@@ -144,7 +144,7 @@ def test_joints_of_a_typical_year_are_seams_and_it_begins_in_summer(latitude, st
     assert any("it is a typical year" in note for note in read.notes)
 
 
-def test_typical_years_of_tmy3_alike(station):
+def test_typical_years_of_tmy3_have_seams_too(station):
     rows = [(time, warm, rain, hours) for time, warm, _, rain, hours in typical(YEARS, DEPTHS)]
     for latitude in (46.5, -45.0):
         read = station(tmy3(rows, latitude))
@@ -152,7 +152,7 @@ def test_typical_years_of_tmy3_alike(station):
         assert sum(row.seam for row in read.rows) == 9
 
 
-def test_a_calendar_year_is_put_together_with_a_seam_at_new_year(station):
+def test_a_calendar_year_gets_a_seam_at_new_year(station):
     read = station(epw(year(2019)))
     assert read.typical_year and [row.time for row in read.rows if row.seam] == [
         datetime(2002, 1, 1, 5, 59)
@@ -172,16 +172,16 @@ def test_a_calendar_year_is_put_together_with_a_seam_at_new_year(station):
     ],
 )
 @pytest.mark.parametrize("form", ["EPW", "TMY3"])
-def test_actual_years_stay_as_they_are(form, rows, station):
-    of_tmy3 = [(time, warm, rain, hours) for time, warm, _, rain, hours in rows]
-    read = station(epw(rows) if form == "EPW" else tmy3(of_tmy3))
+def test_actual_years_are_not_rearranged(form, rows, station):
+    tmy3_rows = [(time, warm, rain, hours) for time, warm, _, rain, hours in rows]
+    read = station(epw(rows) if form == "EPW" else tmy3(tmy3_rows))
     assert not read.typical_year and len(read.rows) == len(rows)
     assert read.rows[0].time == rows[0][0] - timedelta(minutes=1)
     assert not any(row.seam for row in read.rows)
     assert any("are taken as actual ones" in note for note in read.notes)
 
 
-def test_two_typical_years_in_a_file_are_refused_by_the_hour_that_is_there_twice(station):
+def test_two_typical_years_in_a_file_are_refused(station):
     rows = typical(YEARS, DEPTHS)
     with pytest.raises(InputError, match=r"07-01 05:59 occurs twice, also in line [0-9]+"):
         station(epw(rows + rows))

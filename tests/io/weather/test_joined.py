@@ -1,4 +1,4 @@
-"""Several files of one station."""
+"""Several files of the same station."""
 
 import json
 import subprocess
@@ -8,12 +8,12 @@ from datetime import datetime, timedelta
 import pandas as pd
 import pytest
 from helpers.weather_files import EPW
-from made import ghcn, meteoswiss, smet
+from synthetic_weather import ghcn, meteoswiss, smet
 
 from snowshed import InputError
 from snowshed.io import read_stations
 from snowshed.season import read_season
-from snowshed.season.weather import read_weather
+from snowshed.season.weather.reading import read_weather
 
 BEGIN = datetime(2022, 12, 1)
 SNOW = meteoswiss("rre150d0;hns000d0;hto000d0", ["5.0;12;30", "0.0;0;30", "0;0;30"] * 4,
@@ -39,20 +39,20 @@ def test_snow_and_temperature_of_a_station_in_two_files(written):
     assert read_season((str(snow), str(warm))) == rows
 
 
-def test_no_water_counts_twice_where_two_files_have_it(written):
+def test_water_of_two_files_does_not_count_twice(written):
     snow, warm = written(SNOW, "nime.csv"), written(WARM, "smn.csv")
     for files, total in (((snow, warm), 20.0), ((warm, snow), 143.5)):
         rows = read_stations(files).rows
         assert sum(row.precipitation or 0.0 for row in rows) == pytest.approx(total)
 
 
-def test_years_in_files_of_their_own_follow_one_another(written):
+def test_files_of_successive_periods_are_joined(written):
     rows = ["-5.0;5.0;12;30"] * 3
-    one, other, third = (
+    first, second, third = (
         written(meteoswiss("tre200d0;rre150d0;hns000d0;hto000d0", rows, begin, 24.0), f"{n}.csv")
         for n, begin in enumerate((BEGIN, BEGIN + timedelta(3), BEGIN + timedelta(5)))
     )
-    read = read_stations([other, one, third])
+    read = read_stations([second, first, third])
     assert [row.time.day for row in read.rows] == [1, 2, 3, 4, 5, 6, 7, 8]
     assert sum(row.snowfall for row in read.rows) == pytest.approx(8 * 0.12)
     assert not any(row.seam for row in read.rows)  # one series of depths
@@ -70,10 +70,10 @@ def test_the_source_of_the_depth_changes_at_a_seam(written):
     assert read.columns["snow_depth"] == "HS of hand.smet and HS of sensor.smet"
 
 
-def test_another_thermometer_comes_first_if_it_is_asked_for(written):
+def test_a_requested_thermometer_takes_precedence(written):
     first = written(smet("TA HS", ["268.15 0.3"] * 3, step=24.0), "a.smet")
-    other = written(smet("TA HS", ["263.15 0.9"] * 2, step=24.0), "b.smet")
-    read = read_stations([first], temperature=other)
+    second = written(smet("TA HS", ["263.15 0.9"] * 2, step=24.0), "b.smet")
+    read = read_stations([first], temperature=second)
     assert [row.temperature for row in read.rows] == pytest.approx([-10.0, -10.0, -5.0])
     assert {row.snow_depth for row in read.rows} == {0.3}
     with pytest.raises(InputError, match=r"c.smet: no temperature of the air in any row"):
@@ -103,7 +103,7 @@ def test_periods_without_a_common_day_are_refused(written):
         read_stations([written(SNOW, "a.csv"), written(later, "b.csv")])
 
 
-def test_names_and_positions_that_differ_are_told(written):
+def test_differing_names_and_positions_are_noted(written):
     snow = written(smet("HS", ["0.30"] * 3, step=24.0), "a.smet")
     text = smet("TA", ["268.15"] * 3, step=24.0)
     text = text.replace("= made", "= Other").replace("46.5", "46.6").replace("2000", "2300")
@@ -113,17 +113,17 @@ def test_names_and_positions_that_differ_are_told(written):
     assert "the altitudes of a.smet and b.smet differ by 300 m" in notes
 
 
-def test_hours_are_moved_to_the_clock_of_the_first_file(written):
+def test_times_are_converted_to_the_clock_of_the_first_file(written):
     hours = [f"{268.15 + n % 24:.2f}" for n in range(48)]
     snow = written(smet("HS", ["0.3"] * 48), "a.smet")  # UTC+1
     text = smet("TA", hours).replace("tz = 1", "tz = 0")
     read = read_stations([snow, written(text, "b.smet")])
     assert read.rows[0].temperature is None and read.rows[1].temperature == pytest.approx(-5.0)
-    assert any("b.smet is moved from UTC+0 h to the clock of a.smet, UTC+1 h" in n
+    assert any("b.smet is converted from UTC+0 h to the clock of a.smet, UTC+1 h" in n
                for n in read.notes)  # fmt: skip
 
 
-def test_what_goes_with_nothing_else_is_refused(written):
+def test_impossible_combinations_of_files_are_refused(written):
     epw, snow = written(EPW, "a.epw"), written(SNOW, "nime.csv")
     with pytest.raises(InputError, match=r"a.epw: a typical year of the format EPW"):
         read_stations([epw, snow])
@@ -134,9 +134,9 @@ def test_what_goes_with_nothing_else_is_refused(written):
         read_weather(frame, temperature=snow)
 
 
-def test_a_file_that_adds_nothing_is_told(written):
-    both = smet("TA HS", ["268.15 0.3"] * 3, step=24.0)
-    notes = read_stations([written(both, "a.smet"), written(both, "b.smet")]).notes
+def test_a_file_that_adds_nothing_is_noted(written):
+    text = smet("TA HS", ["268.15 0.3"] * 3, step=24.0)
+    notes = read_stations([written(text, "a.smet"), written(text, "b.smet")]).notes
     assert "b.smet adds nothing" in notes
 
 
@@ -154,8 +154,8 @@ def test_commands_take_several_files(files, written, tmp_path):
     panel = ("--dim", "2", "--height", "1", "--length", "1", "--tilt", "10", "--dx", "0.05")
     done = commands(tmp_path, "season", *files, *panel)
     assert done.returncode == 0, done.stderr
-    said = " ".join((done.stdout + done.stderr).split())
-    assert "the temperature is from tre200h0 of smn.csv on 12 days" in said
+    output = " ".join((done.stdout + done.stderr).split())
+    assert "the temperature is from tre200h0 of smn.csv on 12 days" in output
     notes = json.loads((tmp_path / "out" / "season.json").read_text())["notes"]
     assert "new snow is from hns000d0 of nime.csv on 12 days" in notes
 

@@ -4,7 +4,7 @@ from datetime import datetime, timedelta
 
 import numpy as np
 import pytest
-from made import epw, hourly, tmy3
+from synthetic_weather import epw, hourly, tmy3
 
 from snowshed.io import read_station
 
@@ -30,27 +30,27 @@ def columns(station):
 
 def test_epw(written):
     file = written(epw(days(8)), "a.epw")
-    theirs, place = iotools.read_epw(file)
+    expected, site = iotools.read_epw(file)
     station = read_station(file)
     ours = columns(station)
-    np.testing.assert_allclose(ours["temperature"], theirs["temp_air"], atol=1e-9)
-    np.testing.assert_allclose(100.0 * ours["snow_depth"], theirs["snow_depth"], atol=1e-6)
+    np.testing.assert_allclose(ours["temperature"], expected["temp_air"], atol=1e-9)
+    np.testing.assert_allclose(100.0 * ours["snow_depth"], expected["snow_depth"], atol=1e-6)
     np.testing.assert_allclose(
-        ours["precipitation"], theirs["liquid_precipitation_depth"], atol=1e-9
+        ours["precipitation"], expected["liquid_precipitation_depth"], atol=1e-9
     )
-    assert (station.latitude, station.longitude) == (place["latitude"], place["longitude"])
-    assert (station.altitude, station.utc_offset) == (place["altitude"], place["TZ"])
+    assert (station.latitude, station.longitude) == (site["latitude"], site["longitude"])
+    assert (station.altitude, station.utc_offset) == (site["altitude"], site["TZ"])
 
 
 def test_tmy3(written):
     rows = [(end, warm, rain, hours) for end, warm, _, rain, hours in days(8)]
     file = written(tmy3(rows).replace("(hr)", "(hr)"), "a.csv")
-    theirs, place = iotools.read_tmy3(file, map_variables=True, encoding="iso-8859-1")
+    expected, site = iotools.read_tmy3(file, map_variables=True, encoding="iso-8859-1")
     station = read_station(file)
     ours = columns(station)
-    np.testing.assert_allclose(ours["temperature"], theirs["temp_air"], atol=1e-9)
-    np.testing.assert_allclose(ours["precipitation"], theirs["Lprecip depth (mm)"], atol=1e-9)
-    assert (station.latitude, station.longitude) == (place["latitude"], place["longitude"])
-    assert (station.altitude, station.utc_offset) == (place["altitude"], place["TZ"])
+    np.testing.assert_allclose(ours["temperature"], expected["temp_air"], atol=1e-9)
+    np.testing.assert_allclose(ours["precipitation"], expected["Lprecip depth (mm)"], atol=1e-9)
+    assert (station.latitude, station.longitude) == (site["latitude"], site["longitude"])
+    assert (station.altitude, station.utc_offset) == (site["altitude"], site["TZ"])
     ends = [row.end for row in station.rows]
-    assert [time.replace(tzinfo=None) for time in theirs.index.to_pydatetime()] == ends
+    assert [time.replace(tzinfo=None) for time in expected.index.to_pydatetime()] == ends

@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from made import ghcn, imis, meteoswiss, smet
+from synthetic_weather import ghcn, imis, meteoswiss, smet
 
 from snowshed import InputError
 
@@ -11,10 +11,10 @@ DEPTHS = (0.0, 0.10, 0.35, 0.30, 0.55, 0.50, 0.80, 0.78, 0.95, 1.10)  # m, by da
 
 
 def depths_by(factor, step=24.0):
-    return smet("TA HS", [f"268.15 {factor * one:.4f}" for one in DEPTHS], step=step)
+    return smet("TA HS", [f"268.15 {factor * depth:.4f}" for depth in DEPTHS], step=step)
 
 
-def test_a_header_that_says_the_factors_is_followed(station):
+def test_factors_of_a_header_are_applied(station):
     text = smet(
         "TA HS PSUM", ["-5.0 110 0.94"] * 3,
         "units_multiplier = 1 1 0.01 25.4\nunits_offset = 0 273.15 0 0\n",
@@ -34,17 +34,17 @@ def test_a_header_that_says_the_factors_is_followed(station):
         ("kelvin,inches,m", "268.15,43.307,0.024"),
     ],
 )
-def test_an_icsv_may_name_its_units(units, cells, station):
+def test_units_of_an_icsv_are_applied(units, cells, station):
     head = f"# iCSV 1.0 UTF-8\n# fields = timestamp,TA,HS,PSUM\n# units = -,{units}\n# [DATA]\n"
     rows = "".join(f"2024-01-{day:02d}T00:00:00,{cells}\n" for day in range(1, 4))
-    for more in ("", "# units_multipliers = 1,1,1,1\n# units_offsets = 0,0,0,0\n"):
-        row = station(head.replace("# [DATA]", f"{more}# [DATA]") + rows).rows[1]
+    for factors in ("", "# units_multipliers = 1,1,1,1\n# units_offsets = 0,0,0,0\n"):
+        row = station(head.replace("# [DATA]", f"{factors}# [DATA]") + rows).rows[1]
         assert row.temperature == pytest.approx(-5.0, abs=1e-3)
         assert row.snow_depth == pytest.approx(1.1, abs=1e-4)
         assert row.precipitation == pytest.approx(24.0, abs=1e-3)
 
 
-def test_a_factor_that_repeats_the_unit_counts_once_and_one_that_contradicts_it_is_refused(station):
+def test_a_factor_may_repeat_its_unit_but_not_contradict_it(station):
     head = (
         "# iCSV 1.0 UTF-8\n# fields = timestamp,TA,HS\n# units = -,K,cm\n"
         "# units_multipliers = 1,1,{}\n# [DATA]\n2024-01-01T00:00:00,268.15,110\n"
@@ -72,7 +72,7 @@ def test_a_depth_in_another_unit_is_refused_with_the_likely_one(factor, station)
 
 @pytest.mark.parametrize("step", [1.0, 24.0])
 @pytest.mark.parametrize("warm", [268.15, 293.15])
-def test_spikes_of_a_sensor_are_no_other_unit(step, warm, station):
+def test_spikes_of_a_sensor_are_not_taken_for_another_unit(step, warm, station):
     rows = [f"{warm} {3.0 if n % 5 == 2 else 0.3}" for n in range(100)]
     assert len(station(smet("TA HS", rows, step=step)).rows) == 100
 
@@ -103,7 +103,7 @@ def test_spikes_of_a_sensor_are_no_other_unit(step, warm, station):
          "column snow: half of the snowfalls are 0.762 m and more"),
     ],
 )  # fmt: skip
-def test_numbers_that_cannot_be_in_their_unit_are_refused(text, message, written):
+def test_implausible_numbers_are_refused_with_a_likely_unit(text, message, written):
     from snowshed.io import read_station
 
     file = written(text)
@@ -111,33 +111,33 @@ def test_numbers_that_cannot_be_in_their_unit_are_refused(text, message, written
         read_station(file)
 
 
-def test_a_depth_in_metres_for_centimetres_is_told(station):
+def test_depths_that_seem_to_be_in_metres_are_noted(station):
     times = [f"2024-01-{day:02d}" for day in range(1, 11)]
-    read = station(imis(times, depths=[f"{one + 0.003:.3f}" for one in DEPTHS]))
+    read = station(imis(times, depths=[f"{depth + 0.003:.3f}" for depth in DEPTHS]))
     assert any("never exceeds 1.1 cm, with parts of a millimetre" in note for note in read.notes)
-    shallow = station(imis(times, depths=[round(10 * one) for one in DEPTHS]))
+    shallow = station(imis(times, depths=[round(10 * depth) for depth in DEPTHS]))
     assert shallow.notes == []
 
 
 @pytest.mark.parametrize("nodata", ["-999", "-9999", "-99.9", "nan", "NULL"])
-def test_missing_values_are_those_of_the_header(nodata, station):
+def test_missing_values_follow_the_header(nodata, station):
     rows = [f"268.15 {nodata}", f"{nodata} 0.3", "268.15 0.3"]
     read = station(smet("TA HS", rows).replace("nodata = -999", f"nodata = {nodata}"))
     assert [row.snow_depth for row in read.rows] == [None, 0.3, 0.3]
     assert read.rows[1].temperature is None
 
 
-def test_what_is_not_read_is_told(station):
+def test_unread_columns_are_noted(station):
     read = station(meteoswiss("tre200d0;rre150d0;rreetpd0;htonewd9", ["-5;1;2;3"] * 3, step=24.0))
     assert "not read: rreetpd0, htonewd9" in read.notes
 
 
-def test_nothing_but_snow_depth_is_enough_for_a_station(station):
-    read = station(smet("HS RH", [f"{one} 0.5" for one in DEPTHS], step=24.0))
+def test_snow_depth_alone_is_sufficient_for_a_station(station):
+    read = station(smet("HS RH", [f"{depth} 0.5" for depth in DEPTHS], step=24.0))
     assert read.quantities == {"snow_depth"} and dict(read.columns) == {"snow_depth": "HS"}
     assert station(ghcn((1, "SNWD", 300), (2, "SNWD", 310))).quantities == {"snow_depth"}
 
 
-def test_json_is_refused_with_what_to_do(station):
+def test_json_is_refused_with_advice(station):
     with pytest.raises(InputError, match="JSON; the weather of a station is read from tables"):
         station('{"meta": {"name": "A"}, "data": [["2024-01-01", "28", "17", "T", "T", "43"]]}')

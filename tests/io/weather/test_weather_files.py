@@ -1,4 +1,4 @@
-"""Every format: files in the layout of their providers, and five damaged ones."""
+"""Every format: files in the layout of their providers, and five damages to each."""
 
 import gzip
 import re
@@ -12,8 +12,8 @@ from snowshed import InputError
 from snowshed.io import read_station
 from snowshed.io.weather.recognise import FORMATS
 from snowshed.season import read_season
-from snowshed.season.gauge import snow_fraction
-from snowshed.season.weather import read_weather
+from snowshed.season.weather.gauge import snow_fraction
+from snowshed.season.weather.reading import read_weather
 from snowshed.snow.relations.new_snow import hedstrom_pomeroy_1998
 
 BY_RULE = 24.0 / hedstrom_pomeroy_1998(-7.0)  # m
@@ -42,10 +42,10 @@ def test_every_format_has_files():
 
 
 @pytest.mark.parametrize("form", FILES)
-def test_a_file_as_its_provider_writes_it(form, tmp_path):
+def test_files_in_the_layout_of_their_provider_are_read(form, tmp_path):
     text, measured, _ = FILES[form]
     lines = text.splitlines()
-    assert [name for name, one in FORMATS.items() if one.recognises(lines)] == [form]
+    assert [name for name, layout in FORMATS.items() if layout.recognises(lines)] == [form]
     fallen = measured or (BY_DEPTH if form == "IMIS" else BY_RULE)
     rows, notes = check(written(tmp_path, text), fallen)
     if form != "TMY3":
@@ -59,9 +59,9 @@ def test_a_file_as_its_provider_writes_it(form, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("form", "_", "content", "measured"), VARIANTS, ids=lambda one: str(one)[:40]
+    ("form", "_", "content", "measured"), VARIANTS, ids=lambda value: str(value)[:40]
 )
-def test_other_layouts_of_providers(form, _, content, measured, tmp_path):
+def test_other_layouts_of_providers_are_read(form, _, content, measured, tmp_path):
     file = written(tmp_path, content)
     assert read_station(file).format == form.partition(",")[0]
     rounded = form == "GHCN-daily, summaries" and '"18"' in str(content)  # whole degrees F
@@ -116,16 +116,16 @@ def test_a_damaged_frame_is_refused_by_row_and_column(column, value, message):
         ),
         (  # in mm or in inches: either has amounts with one decimal
             weather_files.summaries(
-                lambda one, value: "" if one[0] == "T" else weather_files.metric(one, value),
+                lambda name, value: "" if name[0] == "T" else weather_files.metric(name, value),
                 weather_files.ORDERED,
             ),
             "line 2, column TMAX: with one decimal, as mm and inches have, and no temperature",
         ),
         (  # edited by hand
             weather_files.summaries(
-                lambda one, value: (
-                    weather_files.metric if one[0] == "T" else weather_files.standard
-                )(one, value),
+                lambda name, value: (
+                    weather_files.metric if name[0] == "T" else weather_files.standard
+                )(name, value),
                 weather_files.ORDERED,
             ),
             "line 2, column TMAX: with decimals of temperatures, and those of inches",
@@ -142,13 +142,13 @@ def test_a_damaged_frame_is_refused_by_row_and_column(column, value, message):
         (weather_files.SMET.replace("timestamp", "time"), "line 14, column fields: neither"),
     ],
 )
-def test_what_cannot_be_read_says_why(content, message, tmp_path):
+def test_unreadable_files_are_refused_with_the_reason(content, message, tmp_path):
     file = written(tmp_path, content)
     with pytest.raises(InputError, match=re.escape(f"{file}, {message}" if message else str(file))):
         read_season(file)
 
 
-def test_packed_files(tmp_path):
+def test_damaged_packed_files_are_refused(tmp_path):
     packed = gzip.compress(weather_files.BY_STATION.encode())
     for damaged, message in (
         (packed[:60], "gzip: it ends too early"),
@@ -165,14 +165,14 @@ def test_a_packed_file_does_not_fill_the_memory(tmp_path):
         read_season(file)
 
 
-def test_a_sensor_that_reads_below_the_ground_sees_none(tmp_path):
+def test_slightly_negative_depths_become_zero(tmp_path):
     text = METEOSWISS.replace(";0;110", ";0;-4")
     assert read_season(written(tmp_path, text))[0].snow_depth == 0.0
     with pytest.raises(InputError, match="line 2, column htoautd0: -40 is outside"):
         read_season(written(tmp_path, METEOSWISS.replace(";0;110", ";0;-40")))
 
 
-def test_older_files_of_building_energy_have_depths_only(tmp_path):
+def test_older_epw_files_have_only_depths(tmp_path):
     rows = re.sub("^199[0-9],", "1996,", weather_files.epw_rows(older=True), flags=re.MULTILINE)
     text = weather_files.EPW_HEADER + rows  # days of one year, without a seam between them
     notes = check(written(tmp_path, text), BY_DEPTH)[1]
@@ -188,10 +188,10 @@ def test_daily_files_of_the_slf_have_no_temperature(tmp_path):
         read_season(written(tmp_path, text))
 
 
-def test_gaps_are_told(tmp_path):
+def test_gaps_are_noted(tmp_path):
     later = METEOSWISS.replace("03.01.2024", "09.01.2024")
     _, notes = read_weather(written(tmp_path, later))
-    assert any("6 days are missing in 1 gap, from 2024-01-03" in one for one in notes)
+    assert any("6 days are missing in 1 gap, from 2024-01-03" in note for note in notes)
 
 
 def test_days_out_of_order_are_refused(tmp_path):
@@ -200,12 +200,12 @@ def test_days_out_of_order_are_refused(tmp_path):
         read_season(written(tmp_path, twice))
 
 
-def test_between_all_snow_and_all_rain_the_part_of_snow_falls():
+def test_the_snow_fraction_decreases_between_snow_and_rain():
     assert snow_fraction(-1.1) == 1.0 and snow_fraction(3.3) == 0.0
     assert snow_fraction(0.0) == pytest.approx(0.75)
 
 
-def test_no_station_is_a_plain_table(tmp_path):
+def test_plain_tables_are_not_stations(tmp_path):
     assert (
         read_station(written(tmp_path, "date,snowfall_m,temperature_c\n2024-01-01,0.1,-3\n"))
         is None

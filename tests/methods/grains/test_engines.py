@@ -30,9 +30,9 @@ VOXEL = 5e-5  # m
 #: Ratio of our steps to the root of mass over stiffness, and of theirs to the step of `Press`.
 OUR_STEPS, THEIR_STEPS = (0.3, 0.25, 0.2, 0.15, 0.1), (1.0, 0.9, 0.8)
 PERTURBED = 1e-9  # relative difference of the modulus between successive runs
-PARTS = 10  # number of parts of the test, each recorded at 300 strains
-TENTH = 10  # number of broken bonds up to which the curves must agree
-AGREE = 0.02
+PARTS = 10  # stages of the test, each recorded at 300 strains
+TENTH_BOND = 10  # number of broken bonds up to which the curves must agree
+TOLERANCE = 0.02
 
 needs_yade = pytest.mark.skipif(yade_program() is None, reason="Yade is not installed")
 needs_lammps = pytest.mark.skipif(
@@ -41,8 +41,7 @@ needs_lammps = pytest.mark.skipif(
 
 #: Settings for which the laws are the same. Yade's friction reduces the shear strength of a pulled
 #: bond, and LAMMPS adds the shares of both limits; therefore either friction or the limit in shear
-#: is left out. With steps of 1e-8 s, bonds break in LAMMPS up to 1.5 % earlier than with half
-#: of it.
+#: is left out. With steps of 1e-8 s, bonds break in LAMMPS up to 1.5 % earlier than with 5e-9 s.
 SMOOTH = Press(time_step=5e-9, strain=0.03, friction=0.0, damping=0.2, every=10)
 ROUGH = dataclasses.replace(SMOOTH, friction=0.2, shear_strength=1e12)
 
@@ -53,7 +52,7 @@ def labels():
 
 
 def press_with_ours(labels, press, folder, step, number):
-    """Return the record of a compression, with a step and a number that perturbs it."""
+    """Return the record of a compression; `number` perturbs its modulus."""
     file = folder / "labels.npy"
     np.save(file, labels)
     settings = GrainsSettings(
@@ -76,10 +75,10 @@ def press_with_ours(labels, press, folder, step, number):
 
 
 def check_agreement(labels, press, folder, press_with):
-    """The curve until the tenth bond breaks; the peak, within the scatter of steps.
+    """Compare the curves until the tenth bond breaks, and the peaks within their scatter.
 
     Before the peak of such a sample, a perturbation of 1e-9 grows to at most 1e-5, and a smaller
-    step changes the peak by up to 1 %; therefore runs differ in both.
+    step changes the peak by up to 1 %. To measure the scatter, runs differ in both.
     """
     ours = [press_with_ours(labels, press, folder, *run) for run in zip(OUR_STEPS, range(9))]
     theirs = []
@@ -89,23 +88,23 @@ def check_agreement(labels, press, folder, press_with):
             press, time_step=share * press.time_step, elastic_modulus=modulus
         )
         theirs.append(press_with(VoxelSample.of_labels(labels, VOXEL), changed, folder))
-    one, other = ours[-1], theirs[-1]
-    broken = one.bonds <= one.bonds[0] - TENTH
+    our_run, their_run = ours[-1], theirs[-1]
+    broken = our_run.bonds <= our_run.bonds[0] - TENTH_BOND
     assert broken.any()
     tenth = np.argmax(broken)
-    force = np.interp(one.time, other.time, other.force)  # at the same moments
-    apart = np.abs(force - one.force)[:tenth].max() / one.force[:tenth].max()
+    force = np.interp(our_run.time, their_run.time, their_run.force)  # at the same moments
+    difference = np.abs(force - our_run.force)[:tenth].max() / our_run.force[:tenth].max()
     peaks, their_peaks = (np.array([run.force.max() for run in runs]) for runs in (ours, theirs))
     print(
-        f"to the tenth bond {apart:.2%}; peaks {peaks} and {their_peaks} N; bonds left "
+        f"to the tenth bond {difference:.2%}; peaks {peaks} and {their_peaks} N; bonds left "
         f"{[run.bonds[-1] for run in ours]} and {[run.bonds[-1] for run in theirs]}"
     )
-    assert apart < AGREE
-    theirs_broke = other.time[np.argmax(other.bonds <= other.bonds[0] - TENTH)]
-    assert theirs_broke == pytest.approx(one.time[tenth], rel=0.05)
+    assert difference < TOLERANCE
+    theirs_broke = their_run.time[np.argmax(their_run.bonds <= their_run.bonds[0] - TENTH_BOND)]
+    assert theirs_broke == pytest.approx(our_run.time[tenth], rel=0.05)
     scatter = np.hypot(peaks.std(ddof=1), their_peaks.std(ddof=1))
     assert abs(their_peaks.mean() - peaks.mean()) < 3 * scatter
-    assert other.bonds[-1] == pytest.approx(one.bonds[-1], abs=0.03 * one.bonds[0])
+    assert their_run.bonds[-1] == pytest.approx(our_run.bonds[-1], abs=0.03 * our_run.bonds[0])
 
 
 @pytest.mark.slow

@@ -13,7 +13,7 @@ NUMERICS = {"density": 917.0, "density_scaling": 1.0}
 
 
 def curve_of(strain=STRAIN, **columns):
-    """Return a curve with these columns; both plates feel the same stress if none is given."""
+    """Return a curve with these columns; without `bottom_stress_pa`, both plates bear the same."""
     blank = {name: np.zeros_like(strain) for name in COLUMNS}
     if "top_stress_pa" in columns:
         blank["bottom_stress_pa"] = columns["top_stress_pa"]
@@ -32,7 +32,7 @@ def brittle(noise=0.0):
 
 
 @pytest.mark.parametrize("noise", [0.0, 0.5])
-def test_the_phases_of_a_known_curve_are_found(noise):
+def test_phases_of_an_analytic_curve_are_recovered(noise):
     phases = find_phases(brittle(noise))
     assert phases.elastic_limit == pytest.approx(0.001, rel=0.15)
     assert phases.tangent_modulus == pytest.approx(2e7, rel=1e-6)
@@ -41,39 +41,39 @@ def test_the_phases_of_a_known_curve_are_found(noise):
     assert phases.hardening_rate == pytest.approx(30, rel=0.3)
 
 
-def test_strength_in_compression_is_that_below_five_percent():
+def test_strength_in_compression_is_the_peak_below_five_percent_strain():
     assert find_phases(brittle()).strength == pytest.approx(2e7 * 0.001, rel=0.05)
 
 
-def test_a_knock_of_the_plate_is_no_strength():
+def test_the_impact_of_the_plate_does_not_count_as_strength():
     curve = brittle()
     knocked = curve["top_stress_pa"] + np.where(STRAIN < 5e-4, 1e6, 0.0)
     columns = {name: curve[name] for name in ("bottom_stress_pa", "broken_in_shear")}
-    found = find_phases(curve_of(top_stress_pa=knocked, **columns))
-    assert found.strength == find_phases(curve).strength
+    phases = find_phases(curve_of(top_stress_pa=knocked, **columns))
+    assert phases.strength == find_phases(curve).strength
 
 
-def test_strength_is_the_peak_of_all_steps_not_of_the_rows():
+def test_strength_is_the_peak_of_all_steps_not_only_of_rows():
     curve = brittle()
     names = ("axial_strain", "top_stress_pa", "bottom_stress_pa")
     peaks = {f"peak_{name}": curve[name].copy() for name in names}
     row = int(np.argmax(curve["top_stress_pa"][STRAIN < 0.05]))
     peaks["peak_top_stress_pa"][row + 1] = peaks["peak_bottom_stress_pa"][row + 1] = 2.5e4
-    found = find_phases(LoadingCurve({**curve.columns, **peaks}))
-    assert found.strength == 2.5e4
-    assert found.tangent_modulus == find_phases(curve).tangent_modulus
+    phases = find_phases(LoadingCurve({**curve.columns, **peaks}))
+    assert phases.strength == 2.5e4
+    assert phases.tangent_modulus == find_phases(curve).tangent_modulus
     peaks["peak_axial_strain"][row + 1] = 0.06  # beyond the brittle phase
     assert find_phases(LoadingCurve({**curve.columns, **peaks})).strength < 2.5e4
 
 
-def test_a_peak_in_the_stage_before_is_none_of_the_next():
+def test_a_stage_does_not_include_the_peak_of_the_previous_stage():
     columns = {name: np.zeros(4) for name in COLUMNS}
     columns["stage"] = np.array([1.0, 1.0, 2.0, 2.0])
     columns["peak_top_stress_pa"] = np.array([0.0, 9.0, 1.0, 2.0])
     curve = LoadingCurve(columns)
     assert curve.of_stage(1).peaks["top_stress_pa"].tolist() == [0.0, 9.0]
     assert curve.of_stage(2).peaks["top_stress_pa"].tolist() == [0.0, 1.0, 2.0]
-    assert curve["peak_top_stress_pa"][1] == 9.0  # the whole curve is unchanged
+    assert curve["peak_top_stress_pa"][1] == 9.0  # the curve itself is unchanged
 
 
 IDLE = np.zeros_like(STRAIN)
@@ -92,7 +92,7 @@ IDLE = np.zeros_like(STRAIN)
         ("penetrate", {}, "the cone never touched the snow"),
     ],
 )  # fmt: skip
-def test_what_never_touched_the_snow_tells_nothing_of_it(kind, columns, reason):
+def test_without_contact_figures_are_missing_with_a_note(kind, columns, reason):
     curve = curve_of(**columns)
     summary = summarise(curve, scene_of(kind), ended="rest", grains=2000, spheres=9)
     figures = ("strength_pa", "tangent_modulus_pa", "linearity", "elastic_limit_strain",
@@ -104,7 +104,7 @@ def test_what_never_touched_the_snow_tells_nothing_of_it(kind, columns, reason):
     assert any(note.startswith(reason) for note in summary.notes)
 
 
-def test_snow_that_is_touched_late_has_the_modulus_of_what_follows():
+def test_a_late_contact_does_not_change_the_modulus():
     stress = np.where(STRAIN > 0.02, 2e7 * (STRAIN - 0.02), 0.0)
     broken = np.where(STRAIN > 0.03, 5.0, 0.0)
     curve = curve_of(top_stress_pa=stress, broken_in_shear=broken)
@@ -118,7 +118,7 @@ def test_a_plateau_does_not_harden():
     assert phases.hardening_onset is None and phases.hardening_rate is None
 
 
-def test_a_stress_that_goes_up_and_down_does_not_harden():
+def test_an_oscillating_stress_does_not_harden():
     wobble = np.exp(1.5 * np.sin(2 * np.pi * STRAIN / 0.11) + 3.0 * STRAIN)
     phases = find_phases(curve_of(top_stress_pa=1e4 * wobble))
     assert phases.hardening_onset is None and phases.hardening_rate is None
@@ -144,8 +144,8 @@ def test_means_are_over_strain_not_over_rows():
 
 def test_a_short_curve_has_no_phases():
     assert find_phases(curve_of(STRAIN[:1])).tangent_modulus is None
-    two = find_phases(curve_of(STRAIN[:2]))
-    assert two.tangent_modulus is None and two.hardening_onset is None
+    two_rows = find_phases(curve_of(STRAIN[:2]))
+    assert two_rows.tangent_modulus is None and two_rows.hardening_onset is None
 
 
 def scene_of(kind="compress", speed=0.02, **numerics):
@@ -155,19 +155,21 @@ def scene_of(kind="compress", speed=0.02, **numerics):
     }
 
 
-def test_the_summary_says_what_makes_its_figures_doubtful():
+def test_the_summary_notes_why_its_figures_are_doubtful():
     columns = dict(brittle().columns)
     columns["bottom_stress_pa"] = np.zeros_like(STRAIN)  # no stress on this plate
     uneven = LoadingCurve(columns)
-    few = summarise(uneven, scene_of(density_scaling=1000.0), ended="rest", grains=87, spheres=9)
-    said = " ".join(few.notes)
-    assert "87 grains" in said and "density_scaling times speed squared is 0.4" in said
-    assert "differ by 200 %" in said
-    many = summarise(brittle(), scene_of(), ended="rest", grains=1000, spheres=9)
-    assert many.notes == ()
+    few_grains = summarise(
+        uneven, scene_of(density_scaling=1000.0), ended="rest", grains=87, spheres=9
+    )
+    notes = " ".join(few_grains.notes)
+    assert "87 grains" in notes and "density_scaling times speed squared is 0.4" in notes
+    assert "differ by 200 %" in notes
+    many_grains = summarise(brittle(), scene_of(), ended="rest", grains=1000, spheres=9)
+    assert many_grains.notes == ()
 
 
-def test_a_curve_survives_its_file(tmp_path):
+def test_a_curve_is_read_back_as_written(tmp_path):
     curve = brittle(0.3)
     (tmp_path / "curve.csv").write_text(curve.text())
     read = LoadingCurve.read(tmp_path / "curve.csv")

@@ -12,12 +12,12 @@ from snowshed.scene import Scene, example_slide
 from snowshed.scene.terrain_grid import slide_terrain
 
 
-def test_a_frame_gives_back_what_it_saw():
+def test_a_frame_returns_its_values_in_any_window():
     frame = Frame(0.0, np.full((3, 3), 9.0, dtype=np.float32), 5, 2)
-    seen = frame.window(slice(4, 9), slice(0, 6))
+    window = frame.window(slice(4, 9), slice(0, 6))
     expected = np.zeros((5, 6))
     expected[1:4, 2:5] = 9.0
-    assert (seen == expected).all()
+    assert (window == expected).all()
     assert (frame.window(slice(6, 7), slice(3, 4)) == 9.0).all()
     assert not frame.window(slice(10, 15), slice(0, 6)).any()
 
@@ -30,37 +30,38 @@ def slide(tmp_path_factory) -> tuple[Scene, Film]:
     return scene, Film(folder / "out/film.bin")
 
 
-def test_the_last_frame_is_the_snow_at_the_end(slide):
+def test_the_last_frame_shows_the_snow_at_the_end(slide):
     """Nodes have a thickness only near particles, of about the particles' thickness."""
     scene, film = slide
     frames = slide_frames(film, slide_terrain(scene))
     import snowshed._core as core
 
-    ready = scene.resolve()
-    simulation = core.Simulation(ready.json, ready.base_dir)
+    resolved = scene.resolve()
+    simulation = core.Simulation(resolved.json, resolved.base_dir)
     simulation.begin_event()
     while simulation.time_s < frames[-1].time - 1e-9:
         simulation.step(1)
     truth = slide_maps(simulation).thickness
-    seen = frames[-1].window(*(slice(0, size) for size in truth.shape))
+    thickness = frames[-1].window(*(slice(0, size) for size in truth.shape))
     # Positions are rounded, so that a particle at the very border of a cell may change it.
-    assert ((seen > 0) != (truth > 0)).sum() <= 2
+    assert ((thickness > 0) != (truth > 0)).sum() <= 2
     inside = truth > 0.5 * truth.max()
-    assert np.abs(seen - truth)[inside].mean() < 0.1 * truth[inside].mean()
+    assert np.abs(thickness - truth)[inside].mean() < 0.1 * truth[inside].mean()
 
 
-def test_a_film_of_some_particles_has_no_holes(slide):
+def test_a_thinned_film_has_no_holes(slide):
     scene, film = slide
     ground = slide_terrain(scene)
-    whole = slide_frames(film, ground)[0]
+    full = slide_frames(film, ground)[0]
 
     class Thinned(Film):
         def __iter__(self):
-            for one in super().__iter__():
-                kept = one.ids % 9 == 0
-                yield type(one)(
-                    one.time, one.event, one.ids[kept], one.events[kept], one.materials[kept],
-                    one.radii, one.positions[kept], one.codes[kept],
+            for frame in super().__iter__():
+                chosen = frame.ids % 9 == 0
+                yield type(frame)(
+                    frame.time, frame.event, frame.ids[chosen], frame.events[chosen],
+                    frame.materials[chosen], frame.radii, frame.positions[chosen],
+                    frame.codes[chosen],
                 )  # fmt: skip
 
     thinned = Thinned(film.path)
@@ -68,9 +69,9 @@ def test_a_film_of_some_particles_has_no_holes(slide):
     frames = slide_frames(thinned, ground, most=2)
     assert len(frames) == 2
     area = tuple(slice(0, size) for size in ground.heights.shape)
-    snow, seen = (one.window(*area) > 0 for one in (whole, frames[0]))
-    assert (snow & ~seen).sum() < 0.1 * snow.sum()
-    middle = np.argwhere(snow).mean(axis=0) - np.argwhere(seen).mean(axis=0)
+    snow, thinned_snow = (frame.window(*area) > 0 for frame in (full, frames[0]))
+    assert (snow & ~thinned_snow).sum() < 0.1 * snow.sum()
+    middle = np.argwhere(snow).mean(axis=0) - np.argwhere(thinned_snow).mean(axis=0)
     assert np.abs(middle).max() < 1.0  # cell
 
 

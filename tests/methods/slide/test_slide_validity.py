@@ -18,18 +18,19 @@ def plane(angle: float, top: float = 1000.0) -> Raster:
     return Raster(np.tile(top - fall, (40, 1)), 0.0, 0.0, 2.0)
 
 
-def area(angle: float, thickness: float = 0.5, top: float = 1000.0, **more: object):
-    (found,) = release_areas(
-        plane(angle, top), [{"name": "slab", "outline": OUTLINE, "thickness": thickness, **more}]
+def area(angle: float, thickness: float = 0.5, top: float = 1000.0, **settings: object):
+    (release,) = release_areas(
+        plane(angle, top),
+        [{"name": "slab", "outline": OUTLINE, "thickness": thickness, **settings}],
     )
-    return found
+    return release
 
 
 def test_a_release_on_a_plane_is_measured_exactly():
-    found = area(36.0)
-    assert (found.slope, found.flattest, found.steepest) == pytest.approx((36.0,) * 3)
-    assert found.area == pytest.approx(600.0)
-    assert found.volume == pytest.approx(0.5 * 600.0 / math.cos(math.radians(36.0)))
+    release = area(36.0)
+    assert (release.slope, release.flattest, release.steepest) == pytest.approx((36.0,) * 3)
+    assert release.area == pytest.approx(600.0)
+    assert release.volume == pytest.approx(0.5 * 600.0 / math.cos(math.radians(36.0)))
     hole = {"outline": [(25.0, 25.0), (35.0, 25.0), (35.0, 35.0), (25.0, 35.0)]}
     assert area(36.0, holes=[hole]).area == pytest.approx(500.0)
 
@@ -48,7 +49,7 @@ def test_a_slide_within_the_stated_range_has_no_warning():
 
 
 @pytest.mark.parametrize(
-    ("release", "settings", "figures", "said"),
+    ("release", "settings", "figures", "message"),
     [
         (area(24.0), {}, {}, "made for slopes of 28 to 50 degrees"),
         (area(54.0), {}, {}, "made for slopes of 28 to 50 degrees"),
@@ -60,14 +61,14 @@ def test_a_slide_within_the_stated_range_has_no_warning():
         (area(36.0), {}, {"ended": "time_limit"}, "still moving"),
     ],
 )
-def test_every_way_out_of_it_is_said(release, settings, figures, said):
-    (found,) = validity_notes([release], {**SETTINGS, **settings}, {**GOOD, **figures})
-    assert said in found
+def test_every_condition_outside_the_range_has_a_warning(release, settings, figures, message):
+    (note,) = validity_notes([release], {**SETTINGS, **settings}, {**GOOD, **figures})
+    assert message in note
 
 
 def test_a_release_by_a_raster_has_its_mean_thickness():
     depth = Raster(np.tile(np.linspace(0.0, 1.0, 101), (101, 1)), 0.0, 0.0, 1.0)
     release = {"name": "drift", "outline": OUTLINE, "thickness": 9.0}
-    (found,) = release_areas(plane(36.0), [release], depth)
-    assert found.thickness == pytest.approx(0.3, abs=0.006)  # in its middle, 30 m to the east
-    assert found.volume == pytest.approx(0.3 * 600.0 / math.cos(math.radians(36.0)), rel=0.02)
+    (measured,) = release_areas(plane(36.0), [release], depth)
+    assert measured.thickness == pytest.approx(0.3, abs=0.006)  # in its middle, 30 m to the east
+    assert measured.volume == pytest.approx(0.3 * 600.0 / math.cos(math.radians(36.0)), rel=0.02)

@@ -1,4 +1,4 @@
-"""Stacks as closed formulas in place of simulations, in the stores of a reproduction."""
+"""Stacks from closed formulas instead of simulations, in the stores of a reproduction."""
 
 import json
 from contextlib import contextmanager
@@ -18,7 +18,7 @@ from snowshed.study.database import MEASURED_TYPES
 from snowshed.study.outcome import RunOutcome
 from snowshed.study.store import Store
 
-#: Fewer values and folds than in the quick reproduction, and two seedings instead of one.
+#: Fewer values and folds than in the quick reproduction, and two seedings.
 TINY = replace(
     QUICK,
     fixation_seeds=2,
@@ -30,7 +30,7 @@ TINY = replace(
     steps=100,
     folds=CrossValidation(rounds=1, folds=2, inner_folds=2),
 )
-#: The same, with panels to simulate instead of the rows that come with snowshed.
+#: The same, with panels to simulate instead of the rows of the package.
 TINY_WITH_PANELS = replace(TINY, simulates_panels=True)
 
 
@@ -48,9 +48,11 @@ def few_fits(*, figures=False):
         yield
 
 
-def report(found):
+def report(computation):
     """Write the report of a computation of the quick size."""
-    return write_report(REPRODUCTION, REPRODUCTION.size("quick"), found.folder.path, found)
+    return write_report(
+        REPRODUCTION, REPRODUCTION.size("quick"), computation.folder.path, computation
+    )
 
 
 def stack(scene, event):
@@ -68,11 +70,11 @@ def stack(scene, event):
     return height * noise, length * noise, head
 
 
-def fill(found, stages=None, *, fail_one=False):
+def fill(computation, stages=None, *, fail_one=False):
     """Put made-up stacks into the store, for some stages or all; the last run may have failed."""
-    chosen = [found.study_stages[name] for name in stages or found.study_stages]
+    chosen = [computation.study_stages[name] for name in stages or computation.study_stages]
     studies = [study for stage in chosen for study in stage._register_studies()]
-    with Store.open(found.folder.runs) as store:
+    with Store.open(computation.folder.runs) as store:
         runs = {run.hash: run for study in studies for run in store.runs(study)}
         pending = [run for run in runs.values() if run.status == "pending"]
         for run in pending:

@@ -26,14 +26,14 @@ def data(tmp_path):
     return write
 
 
-def test_the_page_is_what_the_results_say():
+def test_the_page_matches_the_results():
     """Made by python -m reproductions.frischholz2023.claims_page."""
     assert claims_page.PAGE.read_text(encoding="utf-8") == claims_page.page()
 
 
-def test_causes_are_of_contradictions():
+def test_exactly_the_contradictions_have_a_cause():
     claims = read_claims(claims_page.DATA / claims_page.CLAIMS_FILE)
-    assert {one.text for one in claims if one.finding.verdict == CONTRADICTED} == set(CAUSES)
+    assert {claim.text for claim in claims if claim.finding.verdict == CONTRADICTED} == set(CAUSES)
 
 
 def test_a_contradiction_without_a_cause_is_refused(data):
@@ -42,7 +42,7 @@ def test_a_contradiction_without_a_cause_is_refused(data):
     assert "| confirmed | 5.1 | It grows. |" in claims_page.page(data(judged_claim(CONFIRMED)))
 
 
-def test_claims_are_read_as_they_were_written(data):
+def test_claims_are_read_back_as_written(data):
     claims = [judged_claim(CONFIRMED), judged_claim(CONTRADICTED, 'It grows, as "they" say; ±')]
     assert read_claims(data(*claims) / "claims.csv") == claims
     with pytest.raises(InputError, match="not a table of claims"):

@@ -15,11 +15,11 @@ from reproductions.common.hypothesis_tests import (
     Finding,
     all_of,
     is_near,
+    is_negative,
+    is_positive,
     is_small,
     judge,
     mean_of,
-    negative,
-    positive,
 )
 from reproductions.frischholz2023.claims import (
     calibration,
@@ -34,30 +34,30 @@ ORDER = (CONFIRMED, CONTRADICTED, UNDECIDED)
 
 
 def verdicts(claim, *data):
-    return tuple(claim(one).verdict for one in data)
+    return tuple(claim(table).verdict for table in data)
 
 
-def test_two_deviations_decide():
+def test_a_claim_is_decided_at_two_standard_deviations():
     values = [Estimate(2.1, 1.0), Estimate(-2.1, 1.0), Estimate(1.9, 1.0)]
-    assert tuple(positive(one, "").verdict for one in values) == ORDER
-    mirrored = [Estimate(-one.value, one.noise) for one in values]
-    assert tuple(negative(one, "").verdict for one in mirrored) == ORDER
-    assert positive(Estimate(1.0, math.nan), "").verdict == UNDECIDED
-    assert positive(Estimate(math.nan, 0.1), "").verdict == UNDECIDED
+    assert tuple(is_positive(value, "").verdict for value in values) == ORDER
+    mirrored = [Estimate(-value.value, value.noise) for value in values]
+    assert tuple(is_negative(value, "").verdict for value in mirrored) == ORDER
+    assert is_positive(Estimate(1.0, math.nan), "").verdict == UNDECIDED
+    assert is_positive(Estimate(math.nan, 0.1), "").verdict == UNDECIDED
 
 
-def test_hardly_and_about_have_bounds():
+def test_claims_of_small_and_near_values_have_bounds():
     values = [Estimate(-0.2, 0.1), Estimate(1.0, 0.1), Estimate(0.6, 0.1)]
-    assert tuple(is_small(one, 0.5, "").verdict for one in values) == ORDER
+    assert tuple(is_small(value, 0.5, "").verdict for value in values) == ORDER
     values = [Estimate(2.1, 0.1), Estimate(3.0, 0.1), Estimate(2.6, 0.1)]
-    assert tuple(is_near(one, 2.0, 0.5, "").verdict for one in values) == ORDER
+    assert tuple(is_near(value, 2.0, 0.5, "").verdict for value in values) == ORDER
 
 
 def test_claims_with_parts_hold_if_all_parts_do():
-    yes, no, open_ = (Finding(verdict, verdict[:2]) for verdict in ORDER)
-    assert all_of([yes, yes]).verdict == CONFIRMED
-    assert all_of([yes, open_]).verdict == UNDECIDED
-    assert all_of([yes, open_, no]) == Finding(CONTRADICTED, "co; un; co")
+    confirmed, contradicted, undecided = (Finding(verdict, verdict[:2]) for verdict in ORDER)
+    assert all_of([confirmed, confirmed]).verdict == CONFIRMED
+    assert all_of([confirmed, undecided]).verdict == UNDECIDED
+    assert all_of([confirmed, undecided, contradicted]) == Finding(CONTRADICTED, "co; un; co")
 
 
 def test_noise_of_a_mean():
@@ -69,8 +69,8 @@ def test_missing_data_leave_a_claim_open():
     def lacking(data):
         raise LookupError("it")
 
-    (found,) = judge([Claim("1", "x", "y", lacking)], None)
-    assert found.finding.verdict == UNDECIDED and "it" in found.finding.sentence
+    (judged,) = judge([Claim("1", "x", "y", lacking)], None)
+    assert judged.finding.verdict == UNDECIDED and "it" in judged.finding.sentence
 
 
 # --- laboratory
@@ -87,7 +87,10 @@ def lab_rows(*, noise=0.0005, tilts=(40, 50), seeds=(1, 2, 3), **changes):
     generator = np.random.default_rng(1)
     rows = []
     for tilt, seed, event in itertools.product(tilts, seeds, range(1, 6)):
-        row = {name: one(event, tilt) + noise * generator.normal() for name, one in shape.items()}
+        row = {
+            name: function(event, tilt) + noise * generator.normal()
+            for name, function in shape.items()
+        }
         rows.append({"tilt": tilt, "seed": seed, "event": event, **row})
     table = pd.DataFrame(rows)
     return table.assign(length=table["tail"] - table["head"])
@@ -109,28 +112,32 @@ LAB = {
 }
 
 
-@pytest.mark.parametrize("claim", LAB, ids=lambda one: one.__name__)
-def test_laboratory(claim):
-    as_told, otherwise, noisy = lab_rows(), lab_rows(**LAB[claim]), lab_rows(noise=0.3)
-    assert verdicts(claim, as_told, otherwise, noisy) == ORDER
-    assert claim(lab_rows(seeds=(1,))).verdict == UNDECIDED  # noise is not known
+@pytest.mark.parametrize("claim", LAB, ids=lambda claim: claim.__name__)
+def test_laboratory_claims(claim):
+    as_described, opposite, noisy = lab_rows(), lab_rows(**LAB[claim]), lab_rows(noise=0.3)
+    assert verdicts(claim, as_described, opposite, noisy) == ORDER
+    assert claim(lab_rows(seeds=(1,))).verdict == UNDECIDED  # one seed gives no noise
 
 
 def test_claims_about_several_tilts_need_them():
-    (found,) = judge([one for one in lab.GROWTH if "Steeper" in one.text], lab_rows(tilts=(40,)))
-    assert found.finding.verdict == UNDECIDED
+    (judged,) = judge(
+        [claim for claim in lab.GROWTH if "Steeper" in claim.text], lab_rows(tilts=(40,))
+    )
+    assert judged.finding.verdict == UNDECIDED
 
 
-def test_ratio_of_dimensions():
-    two = lab_rows()
-    three = [lab_rows(height=lambda event, tilt, f=f: f * 0.05 * event**0.7) for f in (0.66, 0.95)]
+def test_the_ratio_of_dimensions():
+    planar = lab_rows()
+    spatial = [
+        lab_rows(height=lambda event, tilt, f=f: f * 0.05 * event**0.7) for f in (0.66, 0.95)
+    ]
     noisy = lab_rows(noise=0.2)
-    data = [(three[0], two), (three[1], two), (noisy, two)]
+    data = [(spatial[0], planar), (spatial[1], planar), (noisy, planar)]
     assert verdicts(lab.ratio_of_dimensions, *data) == ORDER
 
 
 def test_noise_of_few_seedings_is_widened():
-    """Five in a hundred pairs of means that differ by chance alone are decided."""
+    """Claims on pure chance are decided in five of a hundred cases."""
     generator = np.random.default_rng(3)
     rows = pd.DataFrame(itertools.product((40, 50), (1, 2)), columns=["tilt", "seed"])
     rows = rows.assign(event=1)
@@ -138,8 +145,8 @@ def test_noise_of_few_seedings_is_widened():
     for _ in range(400):
         table = rows.assign(height=generator.normal(size=4))
         mean = lab.mean_over_runs(table, lambda run: float(run["height"].iloc[0]))
-        decided += positive(mean, "").verdict != UNDECIDED
-    assert 8 <= decided <= 32  # of 18 expected; 74 with the plain standard error
+        decided += is_positive(mean, "").verdict != UNDECIDED
+    assert 8 <= decided <= 32  # 18 are expected; 74 with the plain standard error
 
 
 def test_slabs_stop_at_30_degrees():
@@ -182,21 +189,21 @@ def index_table(factor=1.0, error=0.01, **changes):
     return pd.DataFrame(rows)
 
 
-@pytest.mark.parametrize("claim", s_index.S_INDEX, ids=lambda one: one.text)
-def test_index(claim):
+@pytest.mark.parametrize("claim", s_index.S_INDEX, ids=lambda claim: claim.text)
+def test_index_claims(claim):
     swapped = {
         (("length" if target == "height" else "height"), path): s
         for (target, path), s in INDICES.items()
     }
     large = {(target, s_index.MODULUS): 1.0 for target in ("height", "length")}
-    otherwise = [
+    contradicting = [
         index_table(-1.0),
         index_table(s=swapped),
         index_table(s=large),
         index_table(first=2.0),
     ]
     assert claim.judge(index_table()).verdict == CONFIRMED
-    assert CONTRADICTED in verdicts(claim.judge, *otherwise)
+    assert CONTRADICTED in verdicts(claim.judge, *contradicting)
     assert claim.judge(index_table(error=1.0)).verdict == UNDECIDED
     assert judge([claim], index_table().iloc[:0])[0].finding.verdict == UNDECIDED
 
@@ -241,10 +248,10 @@ def fixation_table(
     return pd.DataFrame(rows)
 
 
-@pytest.mark.parametrize("claim", fixation.FIXATION, ids=lambda one: one.text)
-def test_fixation(claim):
+@pytest.mark.parametrize("claim", fixation.FIXATION, ids=lambda claim: claim.text)
+def test_fixation_claims(claim):
     assert claim.judge(fixation_table(growth=0.1)).verdict == CONFIRMED
-    otherwise = [
+    contradicting = [
         fixation_table(-1.0),
         fixation_table(growth=0.001),
         fixation_table(bend=-1.0),
@@ -252,7 +259,7 @@ def test_fixation(claim):
         fixation_table(scatter=0.2),
         fixation_table(hardening=0.2),
     ]
-    assert CONTRADICTED in verdicts(claim.judge, *otherwise)
+    assert CONTRADICTED in verdicts(claim.judge, *contradicting)
     undecided = [fixation_table(noise=1.0), fixation_table(spread=0.0)]
     assert UNDECIDED in verdicts(claim.judge, *undecided)
 
@@ -281,17 +288,17 @@ def panels(of_length=np.log, *, height=-0.1, bend=0.0, tilt=-0.02, noise=0.002, 
     return table
 
 
-@pytest.mark.parametrize("claim", geometry.GEOMETRY, ids=lambda one: one.text)
-def test_geometry(claim):
+@pytest.mark.parametrize("claim", geometry.GEOMETRY, ids=lambda claim: claim.text)
+def test_geometry_claims(claim):
     assert claim.judge(panels()).verdict == CONFIRMED
-    otherwise = [
+    contradicting = [
         panels(sign=-1.0, height=0.1),
         panels(lambda length: 0.3 * length),
         panels(bend=0.1),
         panels(tilt=0.3),
         panels(steeper=2.0),
     ]
-    assert CONTRADICTED in verdicts(claim.judge, *otherwise)
+    assert CONTRADICTED in verdicts(claim.judge, *contradicting)
     assert claim.judge(panels(noise=3.0)).verdict == UNDECIDED
     assert judge([claim], panels().iloc[:1])[0].finding.verdict == UNDECIDED
 
@@ -305,33 +312,35 @@ def test_a_fit_recovers_slope_and_error():
     x = table["panel_height"].to_numpy()
     y = table["ratio"].to_numpy() / table["ratio"].mean()
     slope, offset = np.polyfit(x, y, 1)
-    left = y - slope * x - offset
-    error = math.sqrt((left @ left) / (len(x) - 2) / ((x - x.mean()) ** 2).sum())
-    (found,) = geometry.fit(table, "panel_height", "ratio", geometry.straight).slopes
-    assert (found.value, found.noise) == pytest.approx((slope, error))
+    residual = y - slope * x - offset
+    error = math.sqrt((residual @ residual) / (len(x) - 2) / ((x - x.mean()) ** 2).sum())
+    (estimate,) = geometry.fit(table, "panel_height", "ratio", geometry.straight).slopes
+    assert (estimate.value, estimate.noise) == pytest.approx((slope, error))
 
 
-def test_events_of_one_panel_are_no_independent_witnesses():
+def test_events_of_one_panel_are_not_independent():
     """Events that repeat the scatter of their panels add no information to one event."""
-    once = panels(noise=0.0)
-    once = once[(once["event"] == 1) & (once["panel_length"] == 2) & (once["panel_tilt"] == 40)]
-    once = pd.concat([once.assign(panel_height=height) for height in (1.0, 2.0)] * 3)
-    once["panel_height"] = np.linspace(1, 4, len(once))
-    once["ratio"] = 0.1 + 0.01 * np.random.default_rng(4).normal(size=len(once))
-    many = pd.concat([once.assign(event=event) for event in range(1, 10)])
-    (one,), (nine,) = (
+    single = panels(noise=0.0)
+    single = single[
+        (single["event"] == 1) & (single["panel_length"] == 2) & (single["panel_tilt"] == 40)
+    ]
+    single = pd.concat([single.assign(panel_height=height) for height in (1.0, 2.0)] * 3)
+    single["panel_height"] = np.linspace(1, 4, len(single))
+    single["ratio"] = 0.1 + 0.01 * np.random.default_rng(4).normal(size=len(single))
+    repeated = pd.concat([single.assign(event=event) for event in range(1, 10)])
+    (one_event,), (nine_events,) = (
         geometry.fit(table, "panel_height", "ratio", geometry.straight).slopes
-        for table in (once, many)
+        for table in (single, repeated)
     )
-    assert nine.value == pytest.approx(one.value)
-    assert nine.noise == pytest.approx(one.noise, rel=0.4)  # independent: a third
+    assert nine_events.value == pytest.approx(one_event.value)
+    assert nine_events.noise == pytest.approx(one_event.noise, rel=0.4)  # independent: a third
 
 
-def test_a_dip_between_tilts_is_seen():
+def test_a_dip_between_tilts_contradicts_the_claim():
     table = panels()
     table.loc[table["panel_tilt"] == 55, "ratio"] *= 0.7
-    found = geometry.hardly_depends_on_tilt(table)
-    assert found.verdict == CONTRADICTED and "and 55 degrees" in found.sentence
+    finding = geometry.hardly_depends_on_tilt(table)
+    assert finding.verdict == CONTRADICTED and "and 55 degrees" in finding.sentence
 
 
 # --- regression
@@ -364,16 +373,16 @@ def regression_results(
     return regression.RegressionResults(rows, rows // 5, pd.DataFrame(scores), table, quartiles)
 
 
-@pytest.mark.parametrize("claim", regression.REGRESSION, ids=lambda one: one.text)
-def test_regression(claim):
+@pytest.mark.parametrize("claim", regression.REGRESSION, ids=lambda claim: claim.text)
+def test_regression_claims(claim):
     assert claim.judge(regression_results()).verdict == CONFIRMED
-    otherwise = [
+    contradicting = [
         regression_results(0.02, 0.010),
         regression_results(errors=(0.05, 0.05)),
         regression_results(off=3.0),
         regression_results(overfit=1.1),
     ]
-    assert CONTRADICTED in verdicts(claim.judge, *otherwise)
+    assert CONTRADICTED in verdicts(claim.judge, *contradicting)
     tie = regression_results()
     tie.scores["C"] = 1.0
     undecided = [
@@ -393,7 +402,7 @@ def test_regression(claim):
 
 def recovery(rank, inside=True):
     truth = calibration.CALIBRATED
-    rows = [{"rank": place, **truth} for place in range(1, 13)]
+    rows = [{"rank": position, **truth} for position in range(1, 13)]
     for row in rows:
         if row["rank"] != rank:
             row["snow.cohesion"] = 0.05
@@ -410,15 +419,15 @@ def recovery(rank, inside=True):
     return calibration.Recovery(pd.DataFrame(rows), ranges)
 
 
-def test_calibration():
+def test_calibration_claims():
     ranks = [recovery(1), recovery(12), recovery(3)]
     assert verdicts(calibration.is_ranked_well, *ranks) == ORDER
     both = [recovery(1), recovery(1, inside=False)]
     assert verdicts(calibration.is_in_the_ranges, *both) == (CONFIRMED, CONTRADICTED)
-    ranges = recovery(1, inside=False).ranges.tail(1)  # of one parameter alone
+    ranges = recovery(1, inside=False).ranges.tail(1)  # of one parameter
     for open_, verdict in (("", UNDECIDED), ("above", UNDECIDED), ("below", CONFIRMED)):
-        alone = calibration.Recovery(recovery(1).ranked, ranges.assign(open=open_))
-        assert calibration.is_in_the_ranges(alone).verdict == verdict
+        single = calibration.Recovery(recovery(1).ranked, ranges.assign(open=open_))
+        assert calibration.is_in_the_ranges(single).verdict == verdict
     assert calibration.is_the_laboratory(recovery(1)).verdict == UNDECIDED
-    (found,) = judge(calibration.CALIBRATION[1:2], recovery(99))
-    assert found.finding.verdict == UNDECIDED
+    (judged,) = judge(calibration.CALIBRATION[1:2], recovery(99))
+    assert judged.finding.verdict == UNDECIDED

@@ -34,16 +34,16 @@ def test_every_option_is_in_the_docs():
             assert re.search(rf"`{name}[ `]", text), name
 
 
-def test_the_command_line_starts_without_it():
+def test_the_command_line_does_not_import_reproductions():
     assert "reproductions" not in modules_after("import snowshed.cli.main")
 
 
-def test_without_the_source_it_says_where_it_is(tmp_path, capsys, monkeypatch):
+def test_without_the_source_the_command_says_how_to_get_it(tmp_path, capsys, monkeypatch):
     for name in [name for name in sys.modules if name.partition(".")[0] == "reproductions"]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setattr(source, "SOURCE", tmp_path)
     monkeypatch.setattr(
-        sys, "path", [one for one in sys.path if Path(one or ".").resolve() != ROOT]
+        sys, "path", [folder for folder in sys.path if Path(folder or ".").resolve() != ROOT]
     )
     assert run("-o", tmp_path / "out") == 2
     assert capsys.readouterr().err == (
@@ -62,7 +62,7 @@ def test_a_folder_of_the_same_name_is_not_taken_for_the_source(tmp_path):
     assert done.stdout.startswith("Usage: snowshed reproduce thesis [OPTIONS]")
 
 
-def test_bad_input(tmp_path, capsys):
+def test_bad_input_is_refused(tmp_path, capsys):
     geometry_table(tmp_path / "rows.csv")
     content = (tmp_path / "rows.csv").read_bytes()
     (tmp_path / "half.csv").write_bytes(content[: len(content) // 2])
@@ -93,7 +93,7 @@ def small_studies(size):
 
 
 def test_a_stage_of_real_snow(tmp_path, capsys, monkeypatch):
-    """Tiny runs end while snow is in the air; the second call has nothing left to compute."""
+    """The tiny runs end while snow is in the air; the second call computes nothing."""
     from reproductions.frischholz2023 import stages
 
     monkeypatch.setitem(stages.MAKERS, "s-index", small_studies)
@@ -102,9 +102,9 @@ def test_a_stage_of_real_snow(tmp_path, capsys, monkeypatch):
     options = ("-o", out, "--stage", "s-index", "--jobs", "1", "--table", table)
     for _ in range(2):
         assert run(*options) == 0
-        shown = capsys.readouterr()
-        assert "The effect of β on the height is positive." in shown.out
-    assert "expected time" not in shown.err
+        output = capsys.readouterr()
+        assert "The effect of β on the height is positive." in output.out
+    assert "expected time" not in output.err
     assert (out / "thesis.html").is_file() and (out / "s-index" / "s.csv").is_file()
 
 
@@ -118,7 +118,7 @@ def test_failed_simulations_have_an_exit_code(tmp_path, capsys, monkeypatch):
     assert "simulations failed: 2 of lab" in capsys.readouterr().err
 
 
-def test_an_interrupt_ends_with_130_and_the_same_command_goes_on(tmp_path):
+def test_an_interrupt_exits_with_130_and_says_how_to_resume(tmp_path):
     table = geometry_table(tmp_path / "rows.csv")
     out = tmp_path / "out"
     command = [sys.executable, "-m", "snowshed", "reproduce", "thesis", "-o", str(out)]
@@ -129,6 +129,6 @@ def test_an_interrupt_ends_with_130_and_the_same_command_goes_on(tmp_path):
         assert process.poll() is None
         time.sleep(0.1)
     process.send_signal(signal.SIGINT)
-    _, said = process.communicate(timeout=120)
+    _, message = process.communicate(timeout=120)
     assert process.returncode == 130
-    assert "interrupted; the same command resumes" in said
+    assert "interrupted; the same command resumes" in message

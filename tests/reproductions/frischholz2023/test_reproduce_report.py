@@ -18,28 +18,28 @@ from snowshed.plot.html_page import STATES
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory):
+def finished_report(tmp_path_factory):
     """The folder of a reproduction with made-up stacks in all stages."""
     folder = tmp_path_factory.mktemp("reproduce")
     table = geometry_table(folder / "rows.csv")
-    found = ThesisComputation(folder / "out", TINY, table)
-    fill(found)
+    computation = ThesisComputation(folder / "out", TINY, table)
+    fill(computation)
     with few_fits(figures=True):
-        found.regression.compute(1, lambda fraction, words: None)
-    return found, report(found)
+        computation.regression.compute(1, lambda fraction, words: None)
+    return computation, report(computation)
 
 
-def report_file(found):
-    return found.folder.path / "thesis.html"
+def report_file(computation):
+    return computation.folder.path / "thesis.html"
 
 
-def page_of(found):
-    return Page(report_file(found).read_text(encoding="utf-8"))
+def page_of(computation):
+    return Page(report_file(computation).read_text(encoding="utf-8"))
 
 
-def test_it_needs_no_other_file(whole):
-    found, _ = whole
-    page = page_of(found)
+def test_the_report_needs_no_other_file(finished_report):
+    computation, _ = finished_report
+    page = page_of(computation)
     assert all(link.startswith("#") and link[1:] in page.ids for link in page.links)
     assert len(page.sources) == 1 + 1 + 2 + 4 + 1 + 4
     for source in page.sources:
@@ -48,12 +48,12 @@ def test_it_needs_no_other_file(whole):
         assert base64.b64decode(data).startswith(b"\x89PNG\r\n\x1a\n")
 
 
-def test_it_can_be_read(whole):
-    check_page(report_file(whole[0]))
+def test_the_report_is_accessible(finished_report):
+    check_page(report_file(finished_report[0]))
 
 
-def test_every_table_of_the_thesis_is_there(whole):
-    text = " ".join(page_of(whole[0]).text)
+def test_the_report_contains_every_table_of_the_thesis(finished_report):
+    text = " ".join(page_of(finished_report[0]).text)
     for number in ("2.3.1", "3.2.1", "3.3.1", "4.1.1", "4.2.1", "4.3.1"):
         assert re.search(rf"Tables? [^:]*{re.escape(number)}", text), number
     for number in ("5.1.1", "5.2.1", "5.3.1", "5.3.2"):
@@ -65,65 +65,67 @@ def test_every_table_of_the_thesis_is_there(whole):
     assert shown in " ".join(text.split())
 
 
-def test_every_claim_has_a_verdict_and_a_rule(whole):
-    found, claims = whole
-    table = pd.read_csv(found.folder.claims)
+def test_every_claim_has_a_verdict_and_a_rule(finished_report):
+    computation, claims = finished_report
+    table = pd.read_csv(computation.folder.claims)
     assert len(table) == len(claims) > 40
     assert set(table["verdict"]) <= set(STATES)
     assert table.notna().all().all()
-    text = " ".join(page_of(found).text)
+    text = " ".join(page_of(computation).text)
     assert "exceeds 2 standard deviations" in text
-    for one in claims:
-        assert one.rule in text and one.finding.sentence in text
+    for claim in claims:
+        assert claim.rule in text and claim.finding.sentence in text
 
 
-def test_made_up_stacks_give_the_verdicts_they_must(whole):
-    _, claims = whole
-    found = {one.text: one.finding.verdict for one in claims}
-    assert found["The head walks back toward the panel."] == "confirmed"
-    assert found["The effect of β on the height is positive."] == "confirmed"
-    assert found["M shortens the stack."] == "confirmed"
-    assert found["p₀ lengthens the stack."] == "confirmed"
-    assert found["H/L grows with the panel's length."] == "confirmed"
-    assert found["At 30 degrees slabs sometimes stop on the panel."] == "undecided"
-    two_thirds = "In 3D a stack is about 2/3 as high as in 2D when height and width are comparable."
-    assert found[two_thirds] == "confirmed"
-    lowers = "p₀ lowers the height (the thesis says the opposite in 3.4.1)."
-    assert found[lowers] == "contradicted"
+def test_made_up_stacks_give_the_expected_verdicts(finished_report):
+    _, claims = finished_report
+    verdicts = {claim.text: claim.finding.verdict for claim in claims}
+    assert verdicts["The head walks back toward the panel."] == "confirmed"
+    assert verdicts["The effect of β on the height is positive."] == "confirmed"
+    assert verdicts["M shortens the stack."] == "confirmed"
+    assert verdicts["p₀ lengthens the stack."] == "confirmed"
+    assert verdicts["H/L grows with the panel's length."] == "confirmed"
+    assert verdicts["At 30 degrees slabs sometimes stop on the panel."] == "undecided"
+    ratio_claim = (
+        "In 3D a stack is about 2/3 as high as in 2D when height and width are comparable."
+    )
+    assert verdicts[ratio_claim] == "confirmed"
+    pressure_claim = "p₀ lowers the height (the thesis says the opposite in 3.4.1)."
+    assert verdicts[pressure_claim] == "contradicted"
 
 
-def test_it_says_what_is_missing(tmp_path):
-    found = ThesisComputation(tmp_path / "out", TINY_WITH_PANELS, None)
-    assert report(found) == []
-    assert "Nothing is computed yet" in " ".join(page_of(found).text)
-    fill(found, ["s-index"])
-    claims = report(found)
-    text = " ".join(page_of(found).text)
-    decided = {one.source for one in claims if one.finding.verdict != "undecided"}
+def test_the_report_lists_missing_parts(tmp_path):
+    computation = ThesisComputation(tmp_path / "out", TINY_WITH_PANELS, None)
+    assert report(computation) == []
+    assert "Nothing is computed yet" in " ".join(page_of(computation).text)
+    fill(computation, ["s-index"])
+    claims = report(computation)
+    text = " ".join(page_of(computation).text)
+    decided = {claim.source for claim in claims if claim.finding.verdict != "undecided"}
     assert decided == {"3.3"}
-    unfinished = [one for one in claims if one.source.startswith("3.4")]
-    assert all("the stage is not complete" in one.finding.sentence for one in unfinished)
+    unfinished = [claim for claim in claims if claim.source.startswith("3.4")]
+    assert all("the stage is not complete" in claim.finding.sentence for claim in unfinished)
     assert "stage lab: 0 of 18 simulations done" in text
     assert "stage geometry: 0 of 125 simulations done" in text
     assert "stage s-index" not in text
 
 
 def test_means_over_a_design_need_all_of_its_runs(tmp_path):
-    found = ThesisComputation(tmp_path / "out", TINY_WITH_PANELS, None)
-    fill(found, ["lab", "s-index"], fail_one=True)
+    computation = ThesisComputation(tmp_path / "out", TINY_WITH_PANELS, None)
+    fill(computation, ["lab", "s-index"], fail_one=True)
     verdicts = {"2": set(), "3": set()}
-    for one in report(found):
-        if one.source[0] in verdicts:
-            verdicts[one.source[0]].add(one.finding.verdict)
+    for claim in report(computation):
+        if claim.source[0] in verdicts:
+            verdicts[claim.source[0]].add(claim.finding.verdict)
     assert "confirmed" in verdicts["2"] and verdicts["3"] == {"undecided"}
-    text = " ".join(page_of(found).text)
+    text = " ".join(page_of(computation).text)
     assert "stage s-index: 17 of 18 simulations done, 1 failed" in text
 
 
 def test_without_3d_the_laboratory_is_judged_in_2d(tmp_path):
-    found = ThesisComputation(tmp_path / "out", replace(TINY, lab_dimensions=(2,)), None)
-    fill(found, ["lab"])
-    content = lab.build(found)
+    computation = ThesisComputation(tmp_path / "out", replace(TINY, lab_dimensions=(2,)), None)
+    fill(computation, ["lab"])
+    content = lab.build(computation)
     assert {row[0] for row in content.tables[1][1].rows} == {"2D"}
     verdicts = {claim.text: claim.finding for claim in content.claims}
     assert "the data lack" in verdicts[DIMENSIONS[0].text].sentence

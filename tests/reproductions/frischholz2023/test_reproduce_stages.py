@@ -22,7 +22,7 @@ NAMES = ["lab", "s-index", "fixation", "calibration", "deviations", "variations"
 NAMES += ["geometry", "regression"]
 
 
-def test_full_is_what_the_thesis_computes():
+def test_full_has_the_runs_of_the_thesis():
     """Tables 2.3.1, 3.2.1, 3.3.1, 4.1.1, 5.1.1, 5.2.1, with several seedings."""
     counts = {study.name: len(study.runs()) for study in studies.fixation(FULL)}
     counts.update({study.name: len(study.runs()) for study in studies.index(FULL)})
@@ -37,10 +37,10 @@ def test_full_is_what_the_thesis_computes():
             assert (scene["dimension"], scene["numerics"]["dx"]) == (3, 0.01)
 
 
-def test_middle_is_the_thesis_at_the_frictions_it_measured():
+def test_middle_is_the_thesis_at_the_measured_frictions():
     assert MIDDLE.frictions == (0.6, 0.8) and not MIDDLE.simulates_panels
     for make in (studies.lab, studies.index, studies.fixation, studies.calibration):
-        few, many = (sum(len(one.runs()) for one in make(size)) for size in (MIDDLE, FULL))
+        few, many = (sum(len(study.runs()) for study in make(size)) for size in (MIDDLE, FULL))
         assert few < many
         scene = json.loads(make(MIDDLE)[-1].runs()[0].scene)
         assert (scene["dimension"], scene["numerics"]["dx"]) == (3, 0.01)
@@ -58,7 +58,7 @@ def test_the_laboratory_has_both_dimensions_and_30_degrees():
     assert len(scenes[studies.RELEASE]) == len(FULL.release_frictions) > 1
 
 
-def test_the_panels_of_more_tilts_differ_from_the_data_set_in_nothing_else():
+def test_panels_differ_only_in_height_length_and_tilt():
     scenes = [json.loads(run.scene) for study in studies.geometry(FULL) for run in study.runs()]
     for scene in scenes:
         for name in ("height", "length", "tilt"):
@@ -67,7 +67,7 @@ def test_the_panels_of_more_tilts_differ_from_the_data_set_in_nothing_else():
     assert all(scene == scenes[0] for scene in scenes)
 
 
-def test_the_synthetic_truth_is_no_run_of_the_grid():
+def test_the_synthetic_truth_is_not_on_the_grid():
     grid, truth = studies.calibration(QUICK)
     assert not {run.hash for run in grid.runs()} & {run.hash for run in truth.runs()}
     snow = json.loads(truth.runs()[0].scene)["snow"]
@@ -76,21 +76,23 @@ def test_the_synthetic_truth_is_no_run_of_the_grid():
 
 
 def test_stages_are_chosen_by_name(tmp_path):
-    found = ThesisComputation(tmp_path / "out", TINY_WITH_PANELS, None)
-    assert [stage.name for stage in choose(found.stages, [])] == NAMES
-    assert [stage.name for stage in choose(found.stages, ["regression", "lab"])] == [
+    computation = ThesisComputation(tmp_path / "out", TINY_WITH_PANELS, None)
+    assert [stage.name for stage in choose(computation.stages, [])] == NAMES
+    assert [stage.name for stage in choose(computation.stages, ["regression", "lab"])] == [
         "lab",
         "regression",
     ]
     with pytest.raises(InputError, match="stage: 'x' is unknown; allowed: lab, s-index"):
-        choose(found.stages, ["x"])
+        choose(computation.stages, ["x"])
 
 
-def test_a_table_takes_the_place_of_the_panels(tmp_path):
+def test_a_table_replaces_the_stage_of_panels(tmp_path):
     table = geometry_table(tmp_path / "rows.csv")
-    found = ThesisComputation(tmp_path / "out", FULL, table)
-    assert [stage.name for stage in found.stages] == [one for one in NAMES if one != "geometry"]
-    assert len(found.rows.read()) == found.rows.count() == 72
+    computation = ThesisComputation(tmp_path / "out", FULL, table)
+    assert [stage.name for stage in computation.stages] == [
+        name for name in NAMES if name != "geometry"
+    ]
+    assert len(computation.rows.read()) == computation.rows.count() == 72
 
 
 def prepare(folder, size="quick", **options):
@@ -117,7 +119,7 @@ def test_a_folder_is_for_one_size_one_condition_and_one_scheme(tmp_path):
             prepare(tmp_path / "out")
 
 
-def test_a_folder_of_former_days_is_gone_on_with(tmp_path):
+def test_a_folder_of_an_early_version_is_resumed(tmp_path):
     """Folders of early versions name neither the publication, nor the condition, nor the scheme."""
     (tmp_path / "reproduction.json").write_text('{"size": "quick"}')
     prepare(tmp_path)
@@ -149,8 +151,8 @@ def test_damaged_tables_of_the_regression_are_named(tmp_path, name, content, mes
     numbers.update({"held_out_error": 1.0, "Q1": 1.0, "Q2": 2.0, "Q3": 3.0, "Q4": 4.0})
     table = pd.DataFrame([{"model": model, **numbers} for model in ("data", "rbf", "linear")])
     (tmp_path / "ratio").mkdir()
-    for whole in ("scores.csv", "ratio/errors.csv", "ratio/quartiles.csv"):
-        table.to_csv(tmp_path / whole, index=False)
+    for file in ("scores.csv", "ratio/errors.csv", "ratio/quartiles.csv"):
+        table.to_csv(tmp_path / file, index=False)
     assert read_results(tmp_path, 96, 32).errors.loc["rbf", "held_out_error"] == 1.0
     (tmp_path / name).write_bytes(content)
     with pytest.raises(InputError, match=rf"{re.escape(name)}(, line 1)?: {message}"):
@@ -163,24 +165,28 @@ def tiny_studies():
     return [Study.product(scene, {"snow.cohesion": [0.1, 0.2]}, name="tiny")]
 
 
-def test_a_stage_that_is_done_is_not_repeated(tmp_path):
+def test_a_finished_stage_is_not_repeated(tmp_path):
     stage = StudyStage("tiny", tmp_path / "runs", tiny_studies)
     assert stage.state() == State(0, 0, 2) and stage.expected_s(1) > 0
-    told = []
-    compute([stage], jobs=1, progress=told.append)
+    reports = []
+    compute([stage], jobs=1, progress=reports.append)
     assert stage.state().finished and stage.expected_s(1) == 0
-    fractions = [one.fraction for one in told]
+    fractions = [report.fraction for report in reports]
     assert fractions == sorted(fractions) and fractions[-1] == 1
-    assert told[-1].doing == "tiny: 2/2 simulations"
-    again = []
-    compute([StudyStage("tiny", tmp_path / "runs", tiny_studies)], jobs=1, progress=again.append)
-    assert again == []
+    assert reports[-1].doing == "tiny: 2/2 simulations"
+    repeated_reports = []
+    compute(
+        [StudyStage("tiny", tmp_path / "runs", tiny_studies)],
+        jobs=1,
+        progress=repeated_reports.append,
+    )
+    assert repeated_reports == []
 
 
 def test_regression_is_resumed_and_not_repeated(tmp_path):
     table = geometry_table(tmp_path / "rows.csv")
-    found = ThesisComputation(tmp_path / "out", TINY, table)
-    stage = found.regression
+    computation = ThesisComputation(tmp_path / "out", TINY, table)
+    stage = computation.regression
     assert stage.state() == State(0, 0, 4, "folds") and stage.expected_s(1) > 0
     with few_fits():
         compute([stage], jobs=1)
@@ -192,19 +198,19 @@ def test_regression_is_resumed_and_not_repeated(tmp_path):
 
 
 def test_regression_waits_for_the_panels(tmp_path):
-    found = ThesisComputation(tmp_path / "out", TINY_WITH_PANELS, None)
+    computation = ThesisComputation(tmp_path / "out", TINY_WITH_PANELS, None)
     with pytest.raises(InputError, match="stage geometry: 0 of 125 simulations done"):
-        found.regression.compute(1, lambda fraction, words: None)
-    fill(found, ["geometry"])
-    assert len(found.rows.read()) == 610
+        computation.regression.compute(1, lambda fraction, words: None)
+    fill(computation, ["geometry"])
+    assert len(computation.rows.read()) == 610
 
 
-def test_a_quick_reproduction_takes_the_rows_that_come_with_snowshed(tmp_path):
-    found = ThesisComputation(tmp_path / "out", TINY, None)
-    assert "geometry" not in found.study_stages and len(found.rows.read()) == 610
+def test_a_quick_reproduction_uses_the_rows_of_the_package(tmp_path):
+    computation = ThesisComputation(tmp_path / "out", TINY, None)
+    assert "geometry" not in computation.study_stages and len(computation.rows.read()) == 610
 
 
-def test_a_scheme_is_that_of_all_simulations_and_has_its_own_damping():
+def test_a_scheme_applies_to_all_simulations_with_its_damping():
     makers = (studies.lab, studies.index, studies.fixation, studies.calibration, studies.geometry)
     for make in makers:
         for study in make(replace(QUICK, scheme="objective")):
@@ -212,10 +218,16 @@ def test_a_scheme_is_that_of_all_simulations_and_has_its_own_damping():
             assert (numerics["scheme"], numerics["damping_rate"]) == ("objective", 380)
 
 
-def test_another_scheme_has_neither_the_deviations_nor_the_rows_of_the_thesis(tmp_path):
-    found = ThesisComputation(tmp_path / "out", replace(TINY, scheme="objective"), None)
-    assert list(found.study_stages) == ["lab", "s-index", "fixation", "calibration", "geometry"]
-    assert found.table is None
+def test_another_scheme_uses_neither_deviations_nor_rows_of_the_thesis(tmp_path):
+    computation = ThesisComputation(tmp_path / "out", replace(TINY, scheme="objective"), None)
+    assert list(computation.study_stages) == [
+        "lab",
+        "s-index",
+        "fixation",
+        "calibration",
+        "geometry",
+    ]
+    assert computation.table is None
 
 
 def test_planar_is_middle_in_two_dimensions():

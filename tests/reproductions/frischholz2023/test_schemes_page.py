@@ -31,47 +31,47 @@ def folders(tmp_path):
     return write
 
 
-def test_the_page_is_what_the_results_say():
+def test_the_page_matches_the_results():
     """Made by python -m reproductions.frischholz2023.schemes_page."""
     assert schemes_page.PAGE.read_text(encoding="utf-8") == schemes_page.page()
 
 
-def test_reasons_are_of_changed_verdicts():
+def test_exactly_the_changed_verdicts_have_a_reason():
     pairs = schemes_page._pairs(schemes_page.DATA)
     changed = {a.text for a, b in pairs if a.finding.verdict != b.finding.verdict}
     assert changed == set(REASONS)
 
 
-def test_claims_that_change_are_apart_from_those_that_stay(folders, tmp_path):
+def test_changed_and_unchanged_claims_are_listed_separately(folders, tmp_path):
     thesis = [judged_claim(CONFIRMED, GROWS), judged_claim(CONFIRMED, "It falls.")]
     objective = [judged_claim(CONTRADICTED, GROWS), judged_claim(CONFIRMED, "It falls.")]
-    of_panels = judged_claim(CONFIRMED, "It is long.", "5.1.2")
-    schemes_page.keep(folders([*thesis, of_panels], [*objective, of_panels]), tmp_path)
-    before, changed, same = schemes_page.page(tmp_path).split("\n## ")
-    assert "Of 2 claims, 1 have another verdict" in before
-    assert "| `objective` | 1 | 1 | 0 |" in before
+    panel_claim = judged_claim(CONFIRMED, "It is long.", "5.1.2")
+    schemes_page.keep(folders([*thesis, panel_claim], [*objective, panel_claim]), tmp_path)
+    introduction, changed, unchanged = schemes_page.page(tmp_path).split("\n## ")
+    assert "Of 2 claims, 1 have another verdict" in introduction
+    assert "| `objective` | 1 | 1 | 0 |" in introduction
     row = f"| 3.3 | {GROWS} | confirmed: slope, m: confirmed | contradicted: slope, m: contradicted"
     assert row in changed and "It falls." not in changed
-    assert "It falls." in same and "It is long." not in same
+    assert "It falls." in unchanged and "It is long." not in unchanged
 
 
 def test_a_changed_verdict_without_a_reason_is_refused(folders, tmp_path):
-    made = folders(
+    results = folders(
         [judged_claim(CONFIRMED, "It falls.")], [judged_claim(CONTRADICTED, "It falls.")]
     )
-    schemes_page.keep(made, tmp_path)
+    schemes_page.keep(results, tmp_path)
     with pytest.raises(InputError, match=r"no reason for 'It falls\.'"):
         schemes_page.page(tmp_path)
 
 
 def test_tables_of_other_claims_are_refused(folders, tmp_path):
-    made = folders([judged_claim(CONFIRMED, GROWS)], [judged_claim(CONFIRMED, "It falls.")])
-    schemes_page.keep(made, tmp_path)
+    results = folders([judged_claim(CONFIRMED, GROWS)], [judged_claim(CONFIRMED, "It falls.")])
+    schemes_page.keep(results, tmp_path)
     with pytest.raises(InputError, match="list different claims"):
         schemes_page.page(tmp_path)
 
 
-def test_one_folder_is_refused(tmp_path, capsys):
+def test_a_single_folder_is_refused(tmp_path, capsys):
     before = schemes_page.PAGE.read_bytes()
     assert main([str(tmp_path)], command=schemes_page.main, name="schemes_page") == 2
     assert "'folders' takes 2 values" in capsys.readouterr().err

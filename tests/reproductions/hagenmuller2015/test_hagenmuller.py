@@ -1,4 +1,4 @@
-"""The reproduction of the paper on grains: its rules on made-up tests, and its command."""
+"""The reproduction of the paper on grains: rules on made-up tests, and the command."""
 
 import math
 
@@ -18,7 +18,7 @@ from snowshed.analysis.grains.ratios import STRESSES, compare_variants
 from snowshed.analysis.grains.variants import BASE
 from snowshed.cli.main import main
 
-#: Stresses in kPa of the base and of each variant, as the paper and Yade say.
+#: Stresses of the base and of the variants in kPa, from the paper and from Yade.
 AS_PRINTED = {BASE: (69.0, 26.0, 47.0, 2516.0)}
 AS_PRINTED.update({name: line for name, line in printed.YADE.items() if name != BASE})
 AS_CLAIMED = {
@@ -54,23 +54,23 @@ def made_up(noise=0.02, **changed):
 
 
 def verdicts(tests):
-    return [one.finding.verdict for one in judge([*PAPER, *ENGINE], tests)]
+    return [claim.finding.verdict for claim in judge([*PAPER, *ENGINE], tests)]
 
 
-def test_what_is_as_claimed_is_confirmed():
-    for one in judge([*PAPER, *ENGINE], made_up()):
-        assert one.finding.verdict == CONFIRMED, (one.text, one.finding.sentence)
+def test_stresses_as_claimed_confirm_all_claims():
+    for claim in judge([*PAPER, *ENGINE], made_up()):
+        assert claim.finding.verdict == CONFIRMED, (claim.text, claim.finding.sentence)
 
 
 def test_noise_leaves_claims_open():
-    found = verdicts(made_up(noise=3.0))
-    assert found.count(UNDECIDED) > len(found) / 2
+    results = verdicts(made_up(noise=3.0))
+    assert results.count(UNDECIDED) > len(results) / 2
     assert set(verdicts(LoadingTests([made_up().tables[0].query("sample == 0")]))[1:]) == {
         UNDECIDED
     }
 
 
-def test_the_opposite_contradicts():
+def test_opposite_stresses_contradict_the_claims():
     """Each of these stresses contradicts a claim of the paper."""
     for changed, text in (
         ({studies.SOFT_ICE: (20.0, 54.0, 57.0, 439.0)}, "insensitive to Young"),
@@ -83,8 +83,8 @@ def test_the_opposite_contradicts():
         ({studies.HIGH_FRICTION: (60.0, 46.0, 38.0, 2000.0)}, "Friction"),
         ({BASE: (30.0, 60.0, 70.0, 80.0)}, "At last the stress"),
     ):
-        judged = {one.text: one.finding.verdict for one in judge(PAPER, made_up(**changed))}
-        (verdict,) = [found for claim, found in judged.items() if text in claim]
+        results = {claim.text: claim.finding.verdict for claim in judge(PAPER, made_up(**changed))}
+        (verdict,) = [result for claim, result in results.items() if text in claim]
         assert verdict == CONTRADICTED, text
 
 
@@ -95,40 +95,40 @@ def test_broken_bonds_are_not_elastic():
         3,
         2,
     ]
-    (found,) = [one for one in judge(PAPER, tests) if one.source == "elastic phase"]
-    assert found.finding.verdict == UNDECIDED
+    (judged,) = [claim for claim in judge(PAPER, tests) if claim.source == "elastic phase"]
+    assert judged.finding.verdict == UNDECIDED
     tests.tables[0].loc[tests.tables[0]["variant"] == studies.ELASTIC, "broken_in_shear"] = [
         1,
         3,
         2,
     ]
-    (found,) = [one for one in judge(PAPER, tests) if one.source == "elastic phase"]
-    assert found.finding.verdict == CONTRADICTED
+    (judged,) = [claim for claim in judge(PAPER, tests) if claim.source == "elastic phase"]
+    assert judged.finding.verdict == CONTRADICTED
 
 
-def test_the_table_has_yade_beside_us():
+def test_the_table_shows_yades_stress_beside_ours():
     grid = stress_grid(compare_variants(made_up().tables[0].query("variant != 'elastic'")))
     (row,) = [row for row in grid.rows if row[0] == studies.HIGH_FRICTION]
     assert row[1].endswith("[106]")
 
 
-def test_the_variants_have_the_names_that_claims_use(tmp_path):
-    made = studies.Comparisons(Samples(40, 1), tmp_path)
-    names = {one.name for stage in studies.MAKERS for one in made[stage].variants}
+def test_claims_refer_to_existing_variants(tmp_path):
+    comparisons = studies.Comparisons(Samples(40, 1), tmp_path)
+    names = {variant.name for stage in studies.MAKERS for variant in comparisons[stage].variants}
     assert names >= {*AS_PRINTED, *AS_CLAIMED, studies.ELASTIC}
 
 
-def test_the_page_of_all_stages_can_be_read_by_everyone(tmp_path):
-    found = GrainsComputation(tmp_path, Samples(40, 1))
+def test_the_page_of_all_stages_is_accessible(tmp_path):
+    computation = GrainsComputation(tmp_path, Samples(40, 1))
     sizes = {"final_particles": 90, "spheres": 900, "density_kg_m3": 250.0}
-    found.tests = LoadingTests([table.assign(**sizes) for table in made_up().tables])
-    write_report(REPRODUCTION, REPRODUCTION.size("quick"), tmp_path, found)
+    computation.tests = LoadingTests([table.assign(**sizes) for table in made_up().tables])
+    write_report(REPRODUCTION, REPRODUCTION.size("quick"), tmp_path, computation)
     text = (tmp_path / "hagenmuller.html").read_text(encoding="utf-8")
     assert "Nothing is computed yet" not in text and "confirmed" in text
     check_page(tmp_path / "hagenmuller.html")
 
 
-def test_a_report_of_nothing_says_so(tmp_path, capsys):
+def test_an_empty_report_states_that_nothing_is_computed(tmp_path, capsys):
     folder = tmp_path / "out"
     assert main(["reproduce", "hagenmuller", "-o", str(folder), "--report-only"]) == 0
     assert "Nothing is computed yet" in (folder / "hagenmuller.html").read_text(encoding="utf-8")

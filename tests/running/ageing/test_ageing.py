@@ -18,7 +18,7 @@ WEEK = [Interval(2 * DAY, -3.0), Interval(5 * DAY, -8.0)]
 
 
 def block_of_snow(height=1.0, **values):
-    """A block at rest on nothing: it is only looked at between events."""
+    """A block without ground, observed only between events."""
     scene = Scene.preset("lab-50").update({"dimension": 2, "numerics.dx": 0.05, **values})
     scene.panel = scene.slab = None
     scene.update({"events.count": 2, "events.max_time": 1e-4, "events.rest_time": 1e-5})
@@ -60,14 +60,14 @@ def test_a_block_settles_as_a_column_of_thin_layers():
     assert row["density_kg_m3"] > row["density_before_kg_m3"] == pytest.approx(210, rel=1e-3)
 
 
-def broken(simulation, plastic_strain):
+def break_snow(simulation, plastic_strain):
     """Give all snow a volumetric plastic strain."""
     change = plastic_strain - simulation.plastic_strains()
     simulation.settle(np.zeros(len(change)), change)
 
 
 def strength(simulation):
-    """p0 of (1.1.42) over that of new snow, computed again."""
+    """p0 of (1.1.42) relative to new snow, computed independently."""
     snow = json.loads(simulation.snows[0])
     bulk = snow["youngs_modulus"] / (3 * (1 - 2 * snow["poissons_ratio"]))
     strains = np.minimum(simulation.plastic_strains(), 0.0)
@@ -79,14 +79,14 @@ def test_broken_snow_regains_strength_with_a_power_of_time(name):
     exponent = SINTERING_LAWS[name].exponent
     for hours, expected in [(1.0, (1 / 24) ** exponent), (24.0, 1.0), (240.0, 1.0)]:
         simulation = block_of_snow(0.3)
-        broken(simulation, 0.2)
+        break_snow(simulation, 0.2)
         row = Ageing({2: [Interval(3600 * hours, -5.0)]}, sintering=name).apply(simulation, 2, 9.81)
         assert strength(simulation) == pytest.approx(expected, rel=1e-4)
         assert (row["intact_before"], row["crest_sank_m"]) == (0.0, 0.0)
         assert row["intact"] == pytest.approx(expected, rel=1e-4)
 
 
-def test_two_pauses_strengthen_as_one_and_strong_snow_stays():
+def test_two_pauses_strengthen_as_one_and_strong_snow_is_unchanged():
     law = SINTERING_LAWS["podolskiy-2014"]
     start = np.array([0.0, 0.1, 0.7, 1.0, 3.0])
     twice = law.strengthen(law.strengthen(start, 0.2), 0.3)
@@ -103,18 +103,18 @@ def aged(tmp_path_factory):
 
 def test_a_stack_ages_between_its_events(aged, finished):
     table, folder, _ = aged
-    still = pd.read_csv(finished / "events.csv")
+    unaged = pd.read_csv(finished / "events.csv")
     row = pd.read_csv(folder / "ageing.csv").iloc[0]
     assert row["event"] == 2
     assert 0 < row["crest_sank_m"] < table.height_m[0]
     assert row["density_kg_m3"] > row["density_before_kg_m3"]
     assert row["intact"] > row["intact_before"]
     measures = ["height_m", "length_m", "mass_kg"]
-    # The other run keeps the energy balance, with kernels that round differently.
-    expected = still.loc[0, measures].tolist()
+    # The other run records the energy balance, with kernels that round differently.
+    expected = unaged.loc[0, measures].tolist()
     assert table.loc[0, measures].tolist() == pytest.approx(expected, rel=1e-5)
-    assert table.mass_kg[1] == pytest.approx(still.mass_kg[1], rel=1e-3)
-    assert table.height_m[1] != still.height_m[1]
+    assert table.mass_kg[1] == pytest.approx(unaged.mass_kg[1], rel=1e-3)
+    assert table.height_m[1] != unaged.height_m[1]
 
 
 def test_an_interrupted_run_ages_as_an_uninterrupted_one(aged, tmp_path):
@@ -126,26 +126,26 @@ def test_an_interrupted_run_ages_as_an_uninterrupted_one(aged, tmp_path):
 
     with pytest.raises((KeyboardInterrupt, Interrupted)):
         run_events(tiny_scene(), tmp_path / "a", ageing=ageing, progress=stop, pictures=False)
-    again = run_events(tiny_scene(), tmp_path / "a", ageing=ageing, resume=True, pictures=False)
+    resumed = run_events(tiny_scene(), tmp_path / "a", ageing=ageing, resume=True, pictures=False)
     measured = ["height_m", "length_m", "head_m", "tail_m", "volume_m3"]
-    assert again[measured].equals(table[measured])
+    assert resumed[measured].equals(table[measured])
     assert (tmp_path / "a" / "ageing.csv").read_bytes() == (folder / "ageing.csv").read_bytes()
 
 
-def test_a_run_resumes_only_as_it_aged(aged):
+def test_a_run_resumes_only_with_its_ageing(aged):
     _, folder, _ = aged
-    for other in (None, Ageing({2: WEEK}, "essery-2013")):
+    for changed in (None, Ageing({2: WEEK}, "essery-2013")):
         with pytest.raises(InputError, match=r"ageing\.json: ageing settings differ"):
-            run_events(tiny_scene(), folder, ageing=other, resume=True, pictures=False)
+            run_events(tiny_scene(), folder, ageing=changed, resume=True, pictures=False)
 
 
-def test_a_run_that_was_killed_before_it_began_ages_all_the_same(aged, tmp_path):
-    """Its folder holds the scene, and not yet how its stack ages."""
+def test_a_run_killed_before_its_first_event_ages_when_resumed(aged, tmp_path):
+    """Its folder holds the scene, but no ageing settings yet."""
     table, folder, ageing = aged
     with open_sequence(tiny_scene().resolve(), tmp_path / "a", resume=False):
         pass
-    again = run_events(tiny_scene(), tmp_path / "a", ageing=ageing, resume=True, pictures=False)
-    assert again["height_m"].equals(table["height_m"])
+    resumed = run_events(tiny_scene(), tmp_path / "a", ageing=ageing, resume=True, pictures=False)
+    assert resumed["height_m"].equals(table["height_m"])
     assert (tmp_path / "a" / "ageing.json").read_bytes() == (folder / "ageing.json").read_bytes()
 
 
@@ -166,7 +166,7 @@ def test_without_laws_or_time_nothing_changes(tmp_path, finished):
         ({"strength_age": float("nan")}, "strength age: nan hours; must be positive"),
     ],
 )
-def test_what_is_refused(values, message):
+def test_bad_settings_are_refused(values, message):
     with pytest.raises(InputError, match=message):
         Ageing(**values)
 

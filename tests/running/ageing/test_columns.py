@@ -61,12 +61,12 @@ def test_snow_beyond_a_gap_neither_presses_nor_sinks():
     assert stress == pytest.approx(alone.at_particles(alone.stresses(9.81)))
 
 
-def test_no_snow_is_no_column():
+def test_without_snow_drops_are_empty():
     columns = columns_of(np.zeros((0, 3)), np.zeros(0), 2)
     assert columns.drops(np.zeros_like(columns.masses)).shape == (0,)
 
 
-def test_snow_all_over_the_place_is_refused():
+def test_snow_spread_too_far_is_refused():
     positions = np.array([[0.0, 0.0, 0.0], [1e4, 1e4, 1e3]])
     with pytest.raises(InputError, match=r"more than 1\.5e\+08 cells of 0\.05 m"):
         columns_of(positions, np.ones(2), 3)

@@ -22,7 +22,7 @@ def terrain(tmp_path):
     return tmp_path / "dem.asc"
 
 
-def test_polygons_with_holes_and_thickness(tmp_path):
+def test_polygons_have_holes_and_a_thickness(tmp_path):
     (area,) = read_areas(write_polygons(tmp_path / "a.geojson", WITH_HOLE, name="A", thickness=0.4))
     assert (area.name, area.thickness, len(area.outline), len(area.holes)) == ("A", 0.4, 4, 1)
 
@@ -36,18 +36,18 @@ def test_polygons_with_holes_and_thickness(tmp_path):
         (SQUARE, "EPSG:31287", {"thickness": "deep"}, "thickness 'deep' is not a number"),
     ],
 )
-def test_bad_polygons_are_named(tmp_path, rings, crs, fields, message):
+def test_bad_polygons_are_refused(tmp_path, rings, crs, fields, message):
     with pytest.raises(InputError, match=message):
         read_areas(write_polygons(tmp_path / "a.geojson", rings, crs, **fields))
 
 
-def test_files_that_hold_no_polygons(tmp_path):
+def test_files_without_polygons_are_refused(tmp_path):
     (tmp_path / "a.shp").write_bytes(b"\x00junk")
     with pytest.raises(InputError, match="not a file of polygons"):
         read_areas(tmp_path / "a.shp")
 
 
-def test_a_thickness_must_come_from_somewhere(tmp_path, terrain):
+def test_a_thickness_is_required(tmp_path, terrain):
     release = write_polygons(tmp_path / "a.geojson")
     with pytest.raises(InputError, match="gives no thickness"):
         slide_scene(terrain, release)
@@ -55,7 +55,7 @@ def test_a_thickness_must_come_from_somewhere(tmp_path, terrain):
     assert scene.resolve().data["terrain"]["release"][0]["thickness"] == 0.3
 
 
-def test_elevations_in_feet_are_noticed(tmp_path):
+def test_elevations_in_feet_are_refused(tmp_path):
     write_ascii_grid(tmp_path / "feet.asc", Raster(np.full((9, 9), 12000.0), 0.0, 0.0, 5.0))
     with pytest.raises(InputError, match="are they in feet"):
         slide_scene(tmp_path / "feet.asc", write_polygons(tmp_path / "a.geojson", thickness=0.3))

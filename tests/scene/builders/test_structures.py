@@ -12,33 +12,35 @@ PANEL = {"height": 0.6, "length": 1.0, "tilt": 40.0, "snow": 0.1, "dx": 0.05}
 ROOF = {"eaves": 2.0, "length": 2.0, "tilt": 30.0, "snow": 0.2, "dx": 0.05}
 
 
-def laid(scene):
-    """The simulation of a scene with the snow of its first event in place."""
-    ready = scene.set("numerics.threads", 1).resolve()
-    simulation = _core.Simulation(ready.json, ready.base_dir)
+def begin_simulation(scene):
+    """Return a simulation that has the snow of its first event."""
+    resolved = scene.set("numerics.threads", 1).resolve()
+    simulation = _core.Simulation(resolved.json, resolved.base_dir)
     simulation.begin_event()
     return simulation
 
 
-def distance(simulation, *places):
-    """Distances to obstacles (without panel and ground) at points (x, z)."""
-    return simulation.obstacle_distance(np.array([[x, 0.0, z] for x, z in places]))
+def distance(simulation, *points):
+    """Return distances from points (x, z) to obstacles, without panel and ground."""
+    return simulation.obstacle_distance(np.array([[x, 0.0, z] for x, z in points]))
 
 
-def test_rows_stand_a_pitch_apart_with_the_same_snow():
-    simulation = laid(panel_rows(3, 2.0, **PANEL))
+def test_rows_are_a_pitch_apart_and_carry_the_same_snow():
+    simulation = begin_simulation(panel_rows(3, 2.0, **PANEL))
     x, _, z = simulation.positions().T
-    one = np.abs(x) < 0.5
-    assert simulation.masses().sum() == pytest.approx(3 * simulation.masses()[one].sum(), rel=0.01)
-    for away in (2.0, 4.0):
-        assert np.ptp(x[np.abs(x - away) < 0.5]) == pytest.approx(np.ptp(x[one]), abs=0.02)
+    first_row = np.abs(x) < 0.5
+    assert simulation.masses().sum() == pytest.approx(
+        3 * simulation.masses()[first_row].sum(), rel=0.01
+    )
+    for offset in (2.0, 4.0):
+        assert np.ptp(x[np.abs(x - offset) < 0.5]) == pytest.approx(np.ptp(x[first_row]), abs=0.02)
         face = 0.6 + 0.5 * math.sin(math.radians(40.0))
-        assert abs(distance(simulation, (away, face))[0]) < 1e-6
-        assert z[np.abs(x - away) < 0.5].min() == pytest.approx(z[one].min(), abs=0.03)
+        assert abs(distance(simulation, (offset, face))[0]) < 1e-6
+        assert z[np.abs(x - offset) < 0.5].min() == pytest.approx(z[first_row].min(), abs=0.03)
 
 
 def test_rows_on_tilted_ground_keep_their_height_above_it():
-    simulation = laid(panel_rows(2, 2.0, ground_tilt=10.0, **PANEL))
+    simulation = begin_simulation(panel_rows(2, 2.0, ground_tilt=10.0, **PANEL))
     edge = 0.5 * math.cos(math.radians(40.0))
     lower = (2.0 + edge, 0.6 - (2.0 + edge) * math.tan(math.radians(10.0)))
     assert abs(distance(simulation, lower)[0]) < 1e-6
@@ -46,29 +48,32 @@ def test_rows_on_tilted_ground_keep_their_height_above_it():
 
 def test_a_table_has_gaps_and_stands_on_its_posts():
     scene = panel_table(2, 0.1, module_length=1.0, height=0.6, tilt=30.0, snow=0.1, dx=0.05)
-    simulation = laid(scene)
+    simulation = begin_simulation(scene)
     cos, sin = math.cos(math.radians(30.0)), math.sin(math.radians(30.0))
 
-    def place(up):
-        return 0.5 * cos - up * cos, 0.6 + up * sin
+    def point_on_table(along):
+        return 0.5 * cos - along * cos, 0.6 + along * sin
 
-    gap, module = distance(simulation, place(1.05), place(1.6))
+    gap, module = distance(simulation, point_on_table(1.05), point_on_table(1.6))
     assert gap == pytest.approx(0.05, abs=1e-6)
     assert abs(module) < 1e-6
-    post = place(0.8 * 2.1)[0]
+    post = point_on_table(0.8 * 2.1)[0]
     assert distance(simulation, (post, 0.3))[0] < 0
     assert simulation.masses().sum() == pytest.approx(2.1 * 0.1 * 210.0, rel=1e-6)
 
 
-def test_snow_guards_stand_in_the_snow_and_nothing_else_does():
-    open_roof, guarded = laid(shed_roof(**ROOF)), laid(shed_roof(guards=[0.4], **ROOF))
+def test_snow_guards_displace_only_their_volume_of_snow():
+    open_roof, guarded = (
+        begin_simulation(shed_roof(**ROOF)),
+        begin_simulation(shed_roof(guards=[0.4], **ROOF)),
+    )
     assert distance(guarded, *guarded.positions()[:, [0, 2]]).min() > -1e-3
     missing = open_roof.masses().sum() - guarded.masses().sum()
     assert missing == pytest.approx(0.1 * 0.15 * 210.0, rel=0.1)
 
 
 def test_a_gable_is_symmetric_about_its_ridge():
-    simulation = laid(gable_roof(**ROOF))
+    simulation = begin_simulation(gable_roof(**ROOF))
     x, _, z = simulation.positions().T
     ridge = -0.5 * 2.0 * math.cos(math.radians(30.0))
     right = x > ridge
@@ -80,7 +85,7 @@ def test_a_gable_is_symmetric_about_its_ridge():
     assert eaves[0] < 0 < eaves[1]  # the house is under the roof, and nothing is above it
 
 
-def test_structures_in_3d():
+def test_structures_may_be_3d():
     for scene in (
         panel_rows(2, 2.0, width=0.5, **PANEL),
         panel_table(2, 0.1, module_length=1.0, height=0.6, tilt=30.0, snow=0.1, width=0.6, dx=0.05),
@@ -111,7 +116,7 @@ f 4 1 5 8
 def test_snow_on_a_mesh_lies_on_top_of_it(tmp_path, dimension):
     (tmp_path / "box.obj").write_text(CUBE)
     scene = mesh_structure(tmp_path / "box.obj", snow=0.2, dx=0.1, dimension=dimension, scale=0.5)
-    simulation = laid(scene)
+    simulation = begin_simulation(scene)
     assert simulation.masses().sum() == pytest.approx(1.0 * 0.2 * 210.0, rel=0.05)
     x, _, z = simulation.positions().T
     assert z.min() >= 0.5 and z.max() <= 0.7
@@ -125,7 +130,7 @@ def test_a_tracker_turns_to_its_tilt_and_dumps_its_snow():
         settle=0.3,
     )  # fmt: skip
     scene.update({"snow.youngs_modulus": 1e5, "seeding.particles_per_voxel": 4})
-    simulation = laid(scene)
+    simulation = begin_simulation(scene)
     before = simulation.positions()
     simulation.run(lambda _: True)
     assert simulation.time_s >= 0.6
@@ -161,6 +166,6 @@ def test_a_tracker_turns_to_its_tilt_and_dumps_its_snow():
         (lambda: mesh_structure("a.stl", snow=-1.0), "snow: -1 is not allowed"),
     ],
 )
-def test_what_is_refused(build, message):
+def test_impossible_structures_are_refused(build, message):
     with pytest.raises(InputError, match=message):
         build()

@@ -25,9 +25,9 @@ def test_the_script_that_puts_a_panel_on_terrain(tmp_path, monkeypatch):
     header = "ncols 60\nnrows 60\nxllcorner 2600090\nyllcorner 1200185\ncellsize 1\n"
     rows = "\n".join(" ".join(f"{z:.2f}" for z in row) for row in heights)
     (tmp_path / "hill.asc").write_text(header + rows + "\n")
-    found = {}
-    exec(scripts("structures.md")[1], found)
-    assert found["scene"].resolve().data["obstacles"][0]["name"] == "terrain"
+    variables = {}
+    exec(scripts("structures.md")[1], variables)
+    assert variables["scene"].resolve().data["obstacles"][0]["name"] == "terrain"
 
 
 def test_the_script_on_relations(capsys):

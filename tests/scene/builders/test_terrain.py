@@ -23,13 +23,13 @@ NODATA_value -9999
 """
 
 
-def test_an_ascii_grid_is_read_from_the_south(tmp_path):
+def test_rows_of_an_ascii_grid_begin_in_the_south(tmp_path):
     (tmp_path / "a.asc").write_text(ASCII)
     raster = read_raster(tmp_path / "a.asc")
     assert (raster.east, raster.north, raster.cell) == (1005.0, 2005.0, 10.0)
     np.testing.assert_array_equal(raster.heights, [[4, 5, np.nan], [1, 2, 3]])
-    found = raster.height_at(np.array([1005.0, 1010.0]), np.array([2015.0, 2010.0]))
-    np.testing.assert_allclose(found, [1.0, 3.0])
+    heights = raster.height_at(np.array([1005.0, 1010.0]), np.array([2015.0, 2010.0]))
+    np.testing.assert_allclose(heights, [1.0, 3.0])
     with pytest.raises(InputError, match=r"a\.asc: no height at 1020 east, 2010 north"):
         raster.height_at(np.array([1020.0]), np.array([2010.0]))
     with pytest.raises(InputError, match="999 east, 2010 north is outside the raster"):
@@ -51,22 +51,22 @@ def test_an_ascii_grid_is_read_from_the_south(tmp_path):
         ("4 5", "4 inf", "'inf' is not a valid number"),
     ],
 )
-def test_bad_ascii_grids_are_named(tmp_path, old, new, message):
+def test_bad_ascii_grids_are_refused(tmp_path, old, new, message):
     (tmp_path / "a.asc").write_text(ASCII.replace(old, new))
     with pytest.raises(InputError, match=rf"a\.asc.*{message}"):
         read_raster(tmp_path / "a.asc")
 
 
-def write_geotiff(path, crs, heights=((1, 2, 3), (4, 5, -9999)), dtype="float32", **more):
+def write_geotiff(path, crs, heights=((1, 2, 3), (4, 5, -9999)), dtype="float32", **options):
     form = {"driver": "GTiff", "width": 3, "height": 2, "count": 1, "dtype": dtype, "crs": crs}
     form.update(nodata=-9999, transform=rasterio.Affine(10, 0, 1000, 0, -10, 2020))
-    with rasterio.open(path, "w", **{**form, **more}) as out:
+    with rasterio.open(path, "w", **{**form, **options}) as out:
         if heights is not None:
             out.write(np.array(heights, dtype=dtype), 1)
 
 
 @pytest.mark.parametrize(
-    ("more", "message"),
+    ("options", "message"),
     [
         (
             {"heights": None, "width": 100_000, "height": 100_000, "tiled": True,
@@ -79,18 +79,22 @@ def write_geotiff(path, crs, heights=((1, 2, 3), (4, 5, -9999)), dtype="float32"
          "not a GeoTIFF"),
     ],
 )  # fmt: skip
-def test_geotiffs_that_hold_no_terrain_are_named(tmp_path, more, message):
-    write_geotiff(tmp_path / "a.tif", "EPSG:2056", **more)
+def test_geotiffs_without_terrain_are_refused(tmp_path, options, message):
+    write_geotiff(tmp_path / "a.tif", "EPSG:2056", **options)
     with pytest.raises(InputError, match=rf"a\.tif: {message}"):
         read_raster(tmp_path / "a.tif")
 
 
-def test_a_geotiff_holds_the_same_as_the_ascii_grid(tmp_path):
+def test_a_geotiff_and_an_ascii_grid_give_the_same_raster(tmp_path):
     write_geotiff(tmp_path / "a.tif", "EPSG:2056")
     (tmp_path / "a.asc").write_text(ASCII)
-    one, other = read_raster(tmp_path / "a.tif"), read_raster(tmp_path / "a.asc")
-    np.testing.assert_array_equal(one.heights, other.heights)
-    assert (one.east, one.north, one.cell) == (other.east, other.north, other.cell)
+    geotiff, ascii_grid = read_raster(tmp_path / "a.tif"), read_raster(tmp_path / "a.asc")
+    np.testing.assert_array_equal(geotiff.heights, ascii_grid.heights)
+    assert (geotiff.east, geotiff.north, geotiff.cell) == (
+        ascii_grid.east,
+        ascii_grid.north,
+        ascii_grid.cell,
+    )
     write_geotiff(tmp_path / "degrees.tif", "EPSG:4326")
     with pytest.raises(InputError, match=r"its map is in degrees .*; project it to metres first"):
         read_raster(tmp_path / "degrees.tif")
@@ -110,7 +114,7 @@ def test_without_its_library_a_geotiff_says_what_to_install(tmp_path, monkeypatc
         read_raster(tmp_path / "none.tif")
 
 
-def test_distances_from_a_slope_are_those_of_its_plane():
+def test_distances_from_a_slope_agree_with_its_plane():
     xs = np.linspace(0.0, 2.0, 21)
     slope = math.radians(25.0)
     distances, bottom = signed_distances(-math.tan(slope) * xs[:, None], xs, np.zeros(1), 0.1)
@@ -132,7 +136,7 @@ def test_distances_in_3d_above_a_ridge():
     assert corner == pytest.approx(math.hypot(0.4, z) - 0.5, abs=0.01)
 
 
-def test_snow_on_a_terrain_of_one_slope_acts_as_on_tilted_ground(tmp_path):
+def test_terrain_with_a_single_slope_equals_tilted_ground(tmp_path):
     """The grid made from a plane raster has the same distances as the plane."""
     psi = math.radians(20.0)
     east = np.arange(0.0, 21.0)
@@ -142,23 +146,23 @@ def test_snow_on_a_terrain_of_one_slope_acts_as_on_tilted_ground(tmp_path):
         panel, raster, tmp_path / "hill.npy", origin=(10.0, 2.0), azimuth=90.0, x=(-2, 4),
         spacing=0.2,
     )  # fmt: skip
-    ready = scene.resolve()
-    simulation = _core.Simulation(ready.json, ready.base_dir)
+    resolved = scene.resolve()
+    simulation = _core.Simulation(resolved.json, resolved.base_dir)
     edge = 0.5 * math.cos(math.radians(45.0))
     for x, above in ((edge, 0.5), (1.5, 0.0), (1.0, 0.1)):
         z = above - (x - edge) * math.tan(psi)
-        found = simulation.obstacle_distance(np.array([[x, 0.0, z]]))[0]
-        assert found == pytest.approx(above * math.cos(psi), abs=0.01)
+        distance = simulation.obstacle_distance(np.array([[x, 0.0, z]]))[0]
+        assert distance == pytest.approx(above * math.cos(psi), abs=0.01)
     assert panel.ground is not None and panel.obstacles is None  # the given scene is unchanged
 
 
-def test_terrain_that_cannot_be_made(tmp_path):
+def test_impossible_terrain_is_refused(tmp_path):
     raster = Raster(np.zeros((5, 5)), 0.0, 0.0, 1.0, "hill")
-    place = {"origin": (2.0, 2.0), "azimuth": 0.0}
+    location = {"origin": (2.0, 2.0), "azimuth": 0.0}
     with pytest.raises(InputError, match=r"hill: .* is outside the raster"):
-        on_terrain(Scene(dimension=2), raster, tmp_path / "a.npy", x=(-5, 5), **place)
+        on_terrain(Scene(dimension=2), raster, tmp_path / "a.npy", x=(-5, 5), **location)
     with pytest.raises(InputError, match="x: 1 to 1 m is not allowed"):
-        on_terrain(Scene(dimension=2), raster, tmp_path / "a.npy", x=(1, 1), **place)
+        on_terrain(Scene(dimension=2), raster, tmp_path / "a.npy", x=(1, 1), **location)
     spike = np.zeros((5, 5))
     spike[2, 2] = 1e3
     with pytest.raises(InputError, match=r"spacing: 0\.01 m makes a grid of 201 x 201"):
@@ -170,6 +174,6 @@ def test_terrain_that_cannot_be_made(tmp_path):
             y=(-1, 1),
             spacing=0.01,
             max_slope=90.0,
-            **place,
+            **location,
         )
     assert not (tmp_path / "a.npy").exists()

@@ -26,12 +26,12 @@ def sloping(change=None, fall=0.3, low=900.0, cell=CELL):
         (sloping(0.0, low=60.0), "elevations of 45 m beside 0 m"),
         (sloping(-100.0, low=100.0), "are some missing"),
         (sloping(1200.0), "beside 1200 m within 5 m"),
-        (sloping(-9999.0), r"-9999 to 900 m do not occur on Earth .* as that at \(50, 50\)"),
+        (sloping(-9999.0), r"-9999 to 900 m do not occur on Earth .* such as that at \(50, 50\)"),
         (sloping(9999.0), "a missing value that the file does not declare as NODATA"),
     ],
     ids=["zero", "low zero", "below", "spike", "-9999", "9999"],
 )
-def test_missing_elevations_are_no_ground(terrain, message):
+def test_missing_elevations_are_refused(terrain, message):
     with pytest.raises(InputError, match=message):
         check_terrain(terrain)
 
@@ -44,11 +44,11 @@ def test_missing_elevations_are_no_ground(terrain, message):
     ],
     ids=["slope", "pit of 25 m", "low shore", "face of 100 m", "hole", "42 degrees"],
 )  # fmt: skip
-def test_ground_that_can_be_is_accepted(terrain):
+def test_plausible_ground_is_accepted(terrain):
     check_terrain(terrain)
 
 
-def test_a_steeper_slope_may_be_believed():
+def test_steeper_slopes_may_be_allowed():
     check_terrain(sloping(0.0, low=60.0), max_slope=88.0)
     check_terrain(sloping(0.0), max_slope=90.0)
 
@@ -57,16 +57,16 @@ def test_a_steeper_slope_may_be_believed():
 @pytest.mark.parametrize(
     ("form", "message"),
     [
-        ({"crs": "EPSG:2232"}, "its map is in feet .*gdalwarp -t_srs"),
+        ({"crs": "EPSG:2232"}, "its coordinates are in feet .*gdalwarp -t_srs"),
         ({"crs": "EPSG:4326"}, "its map is in degrees"),
         ({"bands": np.stack([SLOPE, SLOPE])}, "has 2 bands"),
-        ({"bands": SLOPE % 200, "dtype": "uint8"}, "numbers of 8 bits are those of a picture"),
+        ({"bands": SLOPE % 200, "dtype": "uint8"}, "8-bit values are those of a picture"),
         ({"bands": np.where(SLOPE[5, 5] == SLOPE, 0, SLOPE)}, "are some missing"),
         ({"bands": SLOPE / 0.3048 * 12}, "do not occur on Earth"),
     ],
     ids=["feet", "degrees", "bands", "picture", "zero", "inches"],
 )
-def test_slides_and_structures_refuse_the_same(tmp_path, form, message):
+def test_slides_and_structures_refuse_the_same_terrain(tmp_path, form, message):
     file = write_geotiff(tmp_path / "dem.tif", **form)
     panel = single_panel(height=0.8, length=1.0, tilt=45.0, snow=0.15, dx=0.1)
     origin = {"origin": (500_030.0, 6_700_030.0), "azimuth": 90.0, "x": (-3, 4)}
@@ -86,15 +86,15 @@ def test_slides_and_structures_refuse_the_same(tmp_path, form, message):
         pytest.param(np.stack([SLOPE * 0, SLOPE]), None, 2, marks=pytest.mark.slow),
     ],
 )
-def test_structures_stand_on_the_same_ground_whatever_its_unit(tmp_path, bands, change, band):
+def test_the_ground_of_structures_does_not_depend_on_the_unit(tmp_path, bands, change, band):
     panel = single_panel(height=0.8, length=1.0, tilt=45.0, snow=0.15, dx=0.1)
     origin = {"origin": (500_030.0, 6_700_030.0), "azimuth": 90.0, "x": (-3, 4)}
     grounds = []
-    for file, how in (
+    for file, options in (
         (write_geotiff(tmp_path / "plain.tif"), {}),
         (write_geotiff(tmp_path / "other.tif", bands, change=change), {"band": band}),
     ):
-        on_terrain(panel, file, tmp_path / "ground.npy", **origin, **how)
+        on_terrain(panel, file, tmp_path / "ground.npy", **origin, **options)
         grounds.append(np.load(tmp_path / "ground.npy"))
     # Whether the highest samples are above the ground's highest point depends on rounding.
     np.testing.assert_allclose(*(ground[..., :25] for ground in grounds), atol=1e-4)
@@ -116,7 +116,7 @@ def test_a_packed_plane_of_many_cells_is_refused(tmp_path):
         read_terrain(file)
 
 
-def test_a_grid_of_text_is_read_by_the_same_reader(tmp_path):
+def test_a_text_grid_is_checked_too(tmp_path):
     (tmp_path / "dem.asc").write_text(grid_text(np.where(SLOPE[5, 5] == SLOPE, 0, SLOPE)))
     with pytest.raises(InputError, match=r"dem\.asc: elevations of .* are some missing"):
         read_terrain(tmp_path / "dem.asc")

@@ -29,7 +29,7 @@ def scripts(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_to_json_leaves_lua_behind(scripts, capsys):
+def test_to_json_writes_the_scene_of_the_scripts(scripts, capsys):
     assert main(["lua", "init.lua", "update.lua", "--to-json", "scene.json"]) == 0
     assert capsys.readouterr().err == "tilt 50\n"
     expected = Scene.preset("lab-50").update(
@@ -43,7 +43,7 @@ def test_to_json_leaves_lua_behind(scripts, capsys):
     assert json.loads((scripts / "scene.json").read_text()) == expected.resolve().data
 
 
-def test_a_scene_runs_as_its_json_does(scripts, capsys):
+def test_a_script_and_its_json_give_the_same_run(scripts, capsys):
     assert main(["lua", "init.lua", "-q", "-o", "a", "--to-json", "scene.json"]) == 0
     assert capsys.readouterr() == ("", "")
     assert main(["run", "scene.json", "-q", "-o", "b"]) == 0
@@ -52,7 +52,7 @@ def test_a_scene_runs_as_its_json_does(scripts, capsys):
     assert (scripts / "a" / "stack.png").exists()
 
 
-def test_named_runs_get_folders_and_resume_starts_the_missing(scripts, capsys):
+def test_named_runs_get_folders_and_resume_starts_missing_runs(scripts, capsys):
     assert main(["lua", "init.lua", "runs.lua", "-o", "out"]) == 0
     assert "run 2 of 2: t45" in capsys.readouterr().out
     tilts = [json.loads((scripts / f"out/t{t}/scene.json").read_text()) for t in (35, 45)]
@@ -65,7 +65,7 @@ def test_named_runs_get_folders_and_resume_starts_the_missing(scripts, capsys):
     assert len(read_events("out/t35")) == len(read_events("out/t45")) == 1
 
 
-def test_named_scenes_go_to_a_folder(scripts, capsys):
+def test_named_scenes_are_written_to_a_folder(scripts, capsys):
     assert main(["lua", "init.lua", "runs.lua", "--to-json", "scenes"]) == 0
     assert sorted(f.name for f in (scripts / "scenes").iterdir()) == ["t35.json", "t45.json"]
     assert main(["lua", "init.lua", "runs.lua", "--to-json", "init.lua"]) == 2
@@ -82,7 +82,7 @@ def test_named_scenes_go_to_a_folder(scripts, capsys):
         (["init.lua", "bad.lua", "-q", "-o", "out"], "bad.lua:1: os is not available"),
     ],
 )
-def test_bad_input_is_one_line_and_leaves_nothing(scripts, capsys, arguments, message):
+def test_bad_input_gives_one_line_and_no_files(scripts, capsys, arguments, message):
     (scripts / "bad.lua").write_text("os.exit(0)")
     (scripts / "bytes.lua").write_bytes(b"x = '\xff'")
     assert main(["lua", *arguments]) == 2
@@ -100,7 +100,7 @@ def test_without_lupa_the_error_says_what_to_install(scripts, capsys, hide):
     assert main(["scene", "--preset", "lab-50"]) == 0  # everything else works
 
 
-def test_nothing_of_lua_is_imported_by_the_other_commands():
+def test_other_commands_do_not_import_lua():
     modules = modules_after("import snowshed.cli.main")
     assert "snowshed.cli.main" in modules
     assert not [m for m in modules if m.startswith(("lupa", "snowshed.scene.lua"))]

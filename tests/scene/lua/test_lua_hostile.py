@@ -14,9 +14,9 @@ STOPPED = "stopped after 10000000 instructions"
 MEMORY = "stopped: more than 8 MB of memory"
 SOFT = "stopped after 0.25 s"
 HARD = "stopped in one operation that takes more than the 0.4 s"
-PATIENCE = 1.0  # s of processor time
+TIME_LIMIT = 1.0  # s of processor time
 # Large enough that a slow moment of the machine does not stop a script before its own action.
-UNHURRIED = LuaLimits(soft_seconds=3, hard_seconds=3)
+LONG_LIMITS = LuaLimits(soft_seconds=3, hard_seconds=3)
 
 # A table with gaps that claims 2^40 items; all of its keys are in the hash part.
 GAPS = "{" + ",".join(f"[{2**k}]=1" for k in range(41)) + "}"
@@ -97,7 +97,7 @@ SCRIPTS = {
     "no message": ("error()", 1, "error with a nil instead of a message"),
     "terminal": ("error('\\27[31m\\n\\255', 0)", 1, "init.lua:1:  [31m "),
     "long message": ("error(('x'):rep(1e6))", 1, "xxx..."),
-    "forged place": ("error('script7:9: lie', 0)", 1, "init.lua:1: script7:9: lie"),
+    "forged location": ("error('script7:9: lie', 0)", 1, "init.lua:1: script7:9: lie"),
     "without globals": ("for k in next, _G do _G[k] = nil end", 1, "nil value"),
     "cycle": ("local t = {}\nt.t = t\nset('title', t)", 3, "nested more than 64 deep"),
     "function": ("title(print)", 1, "a function cannot be part of a scene"),
@@ -162,17 +162,17 @@ SCRIPTS = {
 
 
 @pytest.mark.parametrize("name", SCRIPTS)
-def test_stopped_in_time_with_a_clear_error(name, tmp_path):
+def test_hostile_scripts_are_stopped_in_time_with_a_clear_error(name, tmp_path):
     script, line, message = SCRIPTS[name]
-    limits = LuaLimits() if message in (SOFT, HARD) else UNHURRIED
-    error = error_within(PATIENCE, tmp_path, script, limits=limits)
-    place = f"init.lua:{line}: " if line else "init.lua: "
-    assert error.startswith(place)
+    limits = LuaLimits() if message in (SOFT, HARD) else LONG_LIMITS
+    error = error_within(TIME_LIMIT, tmp_path, script, limits=limits)
+    location = f"init.lua:{line}: " if line else "init.lua: "
+    assert error.startswith(location)
     assert message in error
     assert len(error) < 600 and error.isprintable()
 
 
-def test_what_scripts_cannot_reach_is_not_reached_through_a_text(tmp_path):
+def test_removed_functions_are_not_reached_through_texts(tmp_path):
     assert "stopped" in error_of(tmp_path, "while true do local x = ('x'):rep(5):upper() end")
     assert "method 'dump'" in error_of(tmp_path, "string.dump = nil; (''):dump()")
 
@@ -221,7 +221,7 @@ def test_instructions_are_counted(tmp_path):
 
 def test_an_endless_call_ends_with_the_process(tmp_path):
     unlimited = LuaLimits(instructions=10**15, soft_seconds=1e9, hard_seconds=0.1)
-    error = error_within(PATIENCE, tmp_path, "x = 1", "while true do end", limits=unlimited)
+    error = error_within(TIME_LIMIT, tmp_path, "x = 1", "while true do end", limits=unlimited)
     assert error == (
         "init.lua with update.lua: stopped in one operation that takes more than the 0.1 s of "
         "processor time scripts have"
@@ -231,7 +231,7 @@ def test_an_endless_call_ends_with_the_process(tmp_path):
     assert error == "init.lua: stopped after 0.1 s by the clock"
 
 
-def test_what_was_printed_before_an_error_is_shown(tmp_path):
+def test_output_before_an_error_is_shown(tmp_path):
     printed = []
     error_of(tmp_path, "print('here', 1, nil)\nos.exit()", echo=printed.append)
     assert printed == ["here 1 nil"]
@@ -263,11 +263,11 @@ except MemoryError:
 """
 
 
-def test_the_process_gives_up_files_and_memory():
+def test_the_process_drops_its_rights_to_files_and_memory():
     done = subprocess.run([sys.executable, "-c", REDUCED_LIMITS], capture_output=True, text=True)
     assert done.stdout.splitlines() == [os.strerror(errno.EMFILE), "no memory"], done.stderr
 
 
-def test_scripts_that_are_no_text(tmp_path):
+def test_scripts_that_are_too_long_are_refused(tmp_path):
     error = error_of(tmp_path, "x" * (2 << 20))
     assert error == "init.lua: longer than 1 MB"

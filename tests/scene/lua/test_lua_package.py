@@ -21,7 +21,7 @@ def test_the_guide_has_every_shape_and_symbol(name):
 
 def test_the_guide_has_the_limits():
     limits = LuaLimits()
-    for shown in (
+    for text in (
         f"{limits.instructions // 10**6} million instructions",
         f"{limits.memory_bytes >> 20} MB of memory",
         f"{limits.calls // 1000} 000 calls",
@@ -29,4 +29,4 @@ def test_the_guide_has_the_limits():
         f"{limits.hard_seconds:g} s of processor time, {limits.wall_seconds:g} s by the clock",
         f"{limits.script_bytes >> 20} MB of text a script, {limits.printed_lines} printed lines",
     ):
-        assert shown in DOCS
+        assert text in DOCS

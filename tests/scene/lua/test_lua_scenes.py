@@ -20,14 +20,14 @@ def scene_of(folder, init, update=None):
     return run.scene.data
 
 
-def test_the_lab_examples_are_the_presets():
+def test_the_lab_examples_equal_the_presets():
     (at_40,) = load_lua(EXAMPLES / "lab_init.lua")
     (at_50,) = load_lua(EXAMPLES / "lab_init.lua", EXAMPLES / "lab_update.lua")
     assert at_40.scene.data == Scene.preset("lab-40").resolve().data
     assert at_50.scene.data == Scene.preset("lab-50").resolve().data
 
 
-def test_the_sensitivity_example_covers_the_table():
+def test_the_sensitivity_example_covers_the_table_of_the_thesis():
     reference, *others = load_lua(EXAMPLES / "sensitivity_init.lua")
     assert not others
     assert reference.scene.data == Scene.preset("sensitivity").resolve().data
@@ -56,7 +56,7 @@ def test_the_yard_example_overrides_by_name():
             assert {**obstacle, "friction": 0} == {**old, "friction": 0}
 
 
-def test_words_and_scenes_say_the_same(tmp_path):
+def test_every_word_sets_its_part_of_the_scene(tmp_path):
     data = scene_of(
         tmp_path,
         """
@@ -146,7 +146,7 @@ def test_words_and_scenes_say_the_same(tmp_path):
     assert data == expected.resolve().data
 
 
-def test_the_last_value_wins(tmp_path):
+def test_the_last_value_applies(tmp_path):
     data = scene_of(
         tmp_path,
         'preset "lab-50"\nmaterial { M = 0.3, beta = 0.1 }\nangle = 35',
@@ -158,13 +158,13 @@ def test_the_last_value_wins(tmp_path):
     assert data == expected.resolve().data
 
 
-def test_a_preset_drops_what_came_before(tmp_path):
+def test_a_preset_replaces_earlier_settings(tmp_path):
     script = 'levelset { name = "a", friction = 1 } preset "lab-50" material "reference"'
     expected = Scene.preset("lab-50").update({"snow": {"preconsolidation_pressure": 5000}})
     assert scene_of(tmp_path, script) == expected.set("snow.cohesion", 0.1).resolve().data
 
 
-def test_values_can_be_taken_back_and_lists_replaced(tmp_path):
+def test_values_can_be_removed_and_lists_replaced(tmp_path):
     data = scene_of(
         tmp_path,
         """
@@ -185,7 +185,7 @@ def test_values_can_be_taken_back_and_lists_replaced(tmp_path):
     assert "domain" not in data
 
 
-def test_a_shape_replaces_the_one_before(tmp_path):
+def test_a_shape_replaces_the_former_shape(tmp_path):
     data = scene_of(
         tmp_path,
         """
@@ -216,12 +216,12 @@ def test_a_script_makes_the_same_scene_every_time(tmp_path):
     assert len(names) == 30 and names == sorted(names)
 
 
-def test_files_are_found_in_the_folder_of_the_scripts(tmp_path):
+def test_paths_are_relative_to_the_folder_of_the_scripts(tmp_path):
     (tmp_path / "parts").mkdir()
     np.save(tmp_path / "parts" / "heap.npy", np.ones((3, 3, 3)))
     (tmp_path / "parts" / "heap.vdb").touch()
-    for word, file, rest in (("grid", "heap.npy", "spacing = 0.1"), ("vdb", "heap.vdb", "")):
-        shape = f'{{ file = "parts/{file}", {rest} }}'
+    for word, file, settings in (("grid", "heap.npy", "spacing = 0.1"), ("vdb", "heap.vdb", "")):
+        shape = f'{{ file = "parts/{file}", {settings} }}'
         data = scene_of(tmp_path, f'preset "lab-50" body {{ shape = {word}{shape} }}')
         assert data["bodies"][0]["shape"]["type"] == word
         assert data["bodies"][0]["shape"]["file"] == str(tmp_path / "parts" / file)
@@ -237,7 +237,7 @@ def test_files_are_found_in_the_folder_of_the_scripts(tmp_path):
         ("heap.npy", "there is no file 'heap.npy'"),
     ],
 )
-def test_files_that_scripts_may_not_name(tmp_path, file, message):
+def test_files_outside_the_folder_of_the_scripts_are_refused(tmp_path, file, message):
     (tmp_path / "link.npy").symlink_to("/dev/zero")
     script = (
         f'preset "lab-50"\nlocal s = union {{ vdb {{ file = "{file}" }} }}\nbody {{ shape = s }}'
@@ -303,7 +303,7 @@ def test_errors_name_script_and_line(tmp_path, init, update, message):
     assert re.match(r"(init|update)\.lua(:[1-9]\d*)?: ", error)
 
 
-def test_lines_that_a_return_replaced_are_left_out(tmp_path):
+def test_lines_lost_by_a_tail_call_are_left_out(tmp_path):
     assert error_of(tmp_path, "return panel(4)").startswith("init.lua: panel needs a table")
 
 
@@ -342,7 +342,7 @@ def test_errors_in_the_docs_are_real(tmp_path):
     assert shown.splitlines() == [f"error: {error}" for error in errors]
 
 
-def test_a_scene_from_lua_is_an_ordinary_one(tmp_path):
+def test_a_scene_from_lua_is_an_ordinary_scene(tmp_path):
     (run,) = load(tmp_path, VALID)
     assert Scene.from_data(json.loads(run.scene.json)).panel.tilt == 50
     with pytest.raises(InputError, match="unknown key"):

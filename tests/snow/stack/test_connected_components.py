@@ -9,13 +9,13 @@ def row(*x: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize("shift", np.linspace(0, 0.01, 5))
-def test_closer_than_a_cell_is_linked_wherever_the_grid_lies(shift):
+def test_particles_closer_than_a_cell_are_linked_at_any_grid_offset(shift):
     labels = connected_bodies(row(-0.013 - shift, 0.0, 0.0099), 0.01)
     assert labels[1] == labels[2]
 
 
 @pytest.mark.parametrize("direction", np.eye(3))
-def test_gaps_wider_than_two_cells_part(direction):
+def test_gaps_wider_than_two_cells_separate_bodies(direction):
     labels = connected_bodies(np.outer([0, 0.0201], direction), 0.01)
     assert labels[0] != labels[1]
 
@@ -37,7 +37,7 @@ def test_rows_of_voxels_do_not_touch_end_to_start():
     assert len(np.unique(connected_bodies(corners * [0.1, 0.5, 0.5], 0.1))) == 4
 
 
-def test_agrees_with_a_plain_search():
+def test_components_agree_with_a_plain_search():
     random = np.random.default_rng(5)
     points = random.uniform(0, 1, (150, 3))
     voxel = np.floor((points - points.min(axis=0)) / 0.11).astype(int)

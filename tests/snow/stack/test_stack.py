@@ -3,7 +3,8 @@ import pandas as pd
 import pytest
 from helpers.piles import ball, cone, triangle
 
-from snowshed import InputError, levelled_positions, measure_stack
+from snowshed import InputError, measure_stack
+from snowshed.snow import levelled_positions
 from snowshed.snow.stack.trimming import TRIMMINGS
 
 
@@ -22,7 +23,7 @@ def tilt(positions, degrees):
     return np.outer(x, down) + np.outer(y, [0, 1, 0]) + np.outer(z, up)
 
 
-def test_ridge():
+def test_the_measure_of_a_ridge():
     """A triangle loses 1.5 % at either end, sqrt(0.03) of half its base, and a surface cell."""
     base, height = 1.0, 0.3
     stack = measure(triangle(base, height))
@@ -35,7 +36,7 @@ def test_ridge():
     assert stack.width == 1.0
 
 
-def test_cone():
+def test_the_measure_of_a_cone():
     """97 % of a cone's volume lies within 0.894 of its radius: 3 s^2 - 2 s^3 = 0.97."""
     stack = measure(cone(0.5, 0.3), dimension=3)
     assert stack.height == pytest.approx(0.3, rel=0.05)
@@ -60,7 +61,7 @@ def test_centre_of_mass_and_spread_count_masses():
 
 
 @pytest.mark.parametrize("gap, bodies", [(0.005, 1), (0.025, 2)])
-def test_what_is_one_body_does_not_depend_on_the_grid(gap, bodies):
+def test_bodies_do_not_depend_on_the_grid(gap, bodies):
     x, z = np.meshgrid(np.arange(0, 0.1, 0.001), np.arange(0, 0.02, 0.001))
     slab = np.column_stack([x.ravel(), 0 * x.ravel(), z.ravel()])
     both = np.vstack([slab, slab + [x.max() + gap, 0, 0]])
@@ -78,7 +79,7 @@ def test_mass_volume_and_density():
     assert stack.density == pytest.approx(150)
 
 
-def test_a_particle_that_flew_apart_fills_no_more_than_a_voxel():
+def test_a_dispersed_particle_fills_at_most_a_voxel():
     pile = triangle(1.0, 0.3, count=1000)
     densities = np.full(1000, 200.0)
     densities[:10], densities[10:20] = 1e-70, 0.0
@@ -96,7 +97,7 @@ def test_a_roller_counts_for_the_stack_but_not_for_its_body():
     assert together.mass == pytest.approx(43.0)
 
 
-def test_a_stack_is_measured_by_both_readings_and_is_that_of_the_one_asked_for():
+def test_a_stack_has_both_readings_and_reports_the_requested_one():
     snow = np.vstack([triangle(1.0, 0.3), ball((4.0, 0, 0.05), 0.05, 1000)])
     stacks = {name: measure(snow, trimming=name) for name in TRIMMINGS}
     for name, stack in stacks.items():
@@ -107,7 +108,7 @@ def test_a_stack_is_measured_by_both_readings_and_is_that_of_the_one_asked_for()
     assert repr(solid.trimmed["equal_pace"]) == repr(solid.trimmed["outermost_first"])
 
 
-def test_snow_on_the_panel_is_set_aside():
+def test_snow_on_the_panel_is_excluded():
     ridge, slab = triangle(1.0, 0.3), ball((-1.0, 0, 1.0), 0.1, 500)
     together = np.vstack([ridge, slab])
     on_panel = np.arange(len(together)) >= len(ridge)
@@ -135,35 +136,35 @@ def test_level_turns_the_ground_normal_upright():
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_no_snow(dimension):
+def test_without_snow_a_stack_is_empty(dimension):
     stack = measure(np.zeros((0, 3)), dimension=dimension)
     assert (stack.height, stack.length, stack.mass, stack.body.height) == (0, 0, 0, 0)
     assert np.isnan(stack.head) and np.isnan(stack.density)
     assert stack.outline.shape == (0, 2)
 
 
-def test_all_snow_on_the_panel():
+def test_all_snow_on_the_panel_gives_an_empty_stack():
     stack = measure(triangle(1.0, 0.3, count=100), exclude=np.ones(100, dtype=bool))
     assert stack.mass == 0
     assert stack.on_panel_mass == pytest.approx(0.1)
 
 
-def test_input_is_left_alone():
+def test_input_is_not_changed():
     pile = triangle(1.0, 0.3, count=100) + [0, 1, 0]
     before = pile.copy()
     measure(pile)
     assert np.array_equal(pile, before)
 
 
-def test_anything_array_like_is_measured_alike():
+def test_arrays_lists_and_tables_give_the_same_stack():
     pile = triangle(1.0, 0.3, count=300).astype(np.float32)
     table = pd.DataFrame({"x": pile[:, 0], "z": pile[:, 2], "mass": 0.25, "density": 200})
     exclude = [i < 5 for i in range(300)]
     options = {"dimension": 2, "dx": 0.1, "exclude": exclude, "ground_tilt_deg": 10}
     expected = measure_stack(pile, np.full(300, 0.25), np.full(300, 200.0), **options)
-    of_lists = measure_stack(pile.tolist(), [0.25] * 300, [200] * 300, **options)
-    of_table = measure_stack(table[["x", "z"]], table["mass"], table["density"], **options)
-    for stack in (of_lists, of_table):
+    from_lists = measure_stack(pile.tolist(), [0.25] * 300, [200] * 300, **options)
+    from_table = measure_stack(table[["x", "z"]], table["mass"], table["density"], **options)
+    for stack in (from_lists, from_table):
         assert repr(stack) == repr(expected)
 
 
@@ -190,7 +191,7 @@ def test_anything_array_like_is_measured_alike():
     ],
 )
 def test_errors_name_the_argument(given, message):
-    sound = {
+    valid = {
         "positions": np.zeros((2, 3)),
         "masses": np.ones(2),
         "densities": np.ones(2),
@@ -198,7 +199,7 @@ def test_errors_name_the_argument(given, message):
         "dx": 0.1,
     }
     with pytest.raises(InputError, match=message):
-        measure_stack(**{**sound, **given})
+        measure_stack(**{**valid, **given})
 
 
 def test_a_measured_stack_prints_on_one_line():

@@ -1,4 +1,4 @@
-"""The snow of a scene that has come down: grains at an edge, a roof, terrain."""
+"""Stacks of simulated scenes: below a roof, and on terrain."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from snowshed.scene.builders.roofs import gable_roof
 from snowshed.scene.builders.terrain import on_terrain
 
 
-def test_snow_that_stays_on_a_roof_is_no_stack():
+def test_snow_that_stays_on_a_roof_is_excluded_from_the_stack():
     """The pile is 0.5 m high; with the snow on the house, the stack would be 3.29 m high."""
     roof = gable_roof(eaves=1.0, length=1.0, tilt=30.0, snow=0.2, dx=0.05, friction=2.0)
     simulation = Simulation(roof)

@@ -1,4 +1,4 @@
-"""The stack is the snow that has come down to the ground below."""
+"""A stack is the snow that rests on the ground below."""
 
 import numpy as np
 import pytest
@@ -13,8 +13,8 @@ def measure(*clouds, **flags):
     snow = np.vstack(clouds)
     ones = np.ones(len(snow))
     marked = {
-        name: np.concatenate([np.full(len(cloud), i in of) for i, cloud in enumerate(clouds)])
-        for name, of in flags.items()
+        name: np.concatenate([np.full(len(cloud), i in numbers) for i, cloud in enumerate(clouds)])
+        for name, numbers in flags.items()
     }
     return measure_stack(snow, 1e-3 * ones, 200 * ones, dimension=2, dx=DX, **marked)
 
@@ -30,7 +30,7 @@ def test_snow_that_hangs_over_the_edge_belongs_to_the_panel():
     assert stack.members.sum() == len(PILE) and not stack.joined
 
 
-def test_snow_on_a_roof_is_no_stack_and_snow_against_a_wall_is():
+def test_snow_on_a_roof_is_excluded_and_snow_against_a_wall_counts():
     roof = ball((3.0, 0, 2.0), 0.1, 300)
     stack = measure(PILE, roof, structures=[1])
     assert (stack.height, stack.on_structures_mass) == (measure(PILE).height, pytest.approx(0.3))
@@ -49,10 +49,10 @@ def test_a_slab_across_the_edge_joins_the_stack_to_the_snow_on_the_panel():
     bridge = np.column_stack([np.linspace(0, 0.5, 200), np.zeros(200), np.linspace(0.28, 0.6, 200)])
     stack = measure(PILE, bridge, ball((0.52, 0, 0.61), 0.05, 300), exclude=[2])
     assert stack.joined
-    assert stack.height > 0.5  # it lies on the ground, by the pile
+    assert stack.height > 0.5  # the pile supports it on the ground
 
 
-def test_heights_are_those_above_the_ground_below():
+def test_heights_are_measured_above_the_ground():
     hill = 0.4 * PILE[:, 0]
     raised = PILE + np.column_stack([0 * hill, 0 * hill, hill - 2.0])
     ones = np.ones(len(PILE))

@@ -3,7 +3,7 @@ import numpy as np
 from snowshed.snow.stack.surface import outline_particles, surface_particles
 
 
-def test_keeps_the_highest_particle_of_each_cell():
+def test_the_surface_has_the_highest_particle_of_each_cell():
     random = np.random.default_rng(1)
     heap = random.uniform(0, 1, (50_000, 3))
     top = surface_particles(heap)
@@ -35,6 +35,6 @@ def test_outline_follows_the_surface():
     assert np.abs(profile[:, 1] - 1 - 0.5 * np.sin(2 * profile[:, 0])).max() < 0.03
 
 
-def test_nothing_has_no_surface():
-    nothing = np.zeros((0, 3))
-    assert len(surface_particles(nothing)) == len(outline_particles(nothing)) == 0
+def test_without_snow_the_surface_is_empty():
+    empty = np.zeros((0, 3))
+    assert len(surface_particles(empty)) == len(outline_particles(empty)) == 0

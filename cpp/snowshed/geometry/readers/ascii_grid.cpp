@@ -11,7 +11,7 @@
 #include "snowshed/geometry/readers/text_scanner.hpp"
 #include "snowshed/io/file_bytes.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 // Equal to MAX_RASTER_CELLS in python/snowshed/base/limits.py, which gives the reason.
@@ -114,10 +114,10 @@ int count_of(const Header& header, const std::string& key, const TextScanner& sc
 /// The coordinate of the first node, given by its centre or by the corner of its cell.
 double first_node(const Header& header, const std::string& axis, double cell,
                   const TextScanner& scanner) {
-  const std::string centre = axis + "llcenter", corner = axis + "llcorner";
-  if (header.has(centre) == header.has(corner))
-    scanner.fail("the header must have one of " + centre + " and " + corner);
-  const double value = header.has(centre) ? header.at(centre) : header.at(corner) + cell / 2;
+  const std::string center = axis + "llcenter", corner = axis + "llcorner";
+  if (header.has(center) == header.has(corner))
+    scanner.fail("the header must have one of " + center + " and " + corner);
+  const double value = header.has(center) ? header.at(center) : header.at(corner) + cell / 2;
   if (std::abs(value) > max_coordinate) scanner.fail(axis + "ll... lies beyond 1e8 m");
   return value;
 }
@@ -125,7 +125,7 @@ double first_node(const Header& header, const std::string& axis, double cell,
 }  // namespace
 
 HeightField read_ascii_grid(const std::filesystem::path& file, GridAssumptions* assumptions) {
-  const std::string text = read_bytes(file);
+  const std::string text = io::read_bytes(file);
   const std::string_view mark = "\xEF\xBB\xBF";
   TextScanner scanner(file,
                       std::string_view(text).substr(text.rfind(mark, 0) == 0 ? mark.size() : 0));
@@ -168,4 +168,4 @@ HeightField read_ascii_grid(const std::filesystem::path& file, GridAssumptions* 
   return field;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

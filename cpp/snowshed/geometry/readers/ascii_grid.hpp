@@ -6,7 +6,7 @@
 
 #include "snowshed/geometry/height_field.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 /// Assumptions made when a grid was read.
 struct GridAssumptions {
@@ -23,4 +23,4 @@ struct GridAssumptions {
 HeightField read_ascii_grid(const std::filesystem::path& file,
                             GridAssumptions* assumptions = nullptr);
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

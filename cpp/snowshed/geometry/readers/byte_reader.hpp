@@ -10,7 +10,7 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/io/file_bytes.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 enum class ByteOrder { little, big };
 
@@ -41,7 +41,7 @@ class ByteReader {
   }
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw InputError(at_byte(path_, offset_), what);
+    throw InputError(io::at_byte(path_, offset_), what);
   }
 
  private:
@@ -58,4 +58,4 @@ class ByteReader {
   ByteOrder order_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

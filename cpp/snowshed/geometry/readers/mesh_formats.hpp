@@ -6,7 +6,7 @@
 
 #include "snowshed/geometry/triangle_mesh.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 /// The largest number of vertices or triangles that is read, so that a small file cannot take much
 /// memory.
@@ -16,4 +16,4 @@ TriangleMesh parse_stl(const std::filesystem::path& path, std::string_view bytes
 TriangleMesh parse_obj(const std::filesystem::path& path, std::string_view bytes);
 TriangleMesh parse_ply(const std::filesystem::path& path, std::string_view bytes);
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

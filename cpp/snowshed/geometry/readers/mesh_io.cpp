@@ -8,7 +8,7 @@
 #include "snowshed/geometry/readers/mesh_formats.hpp"
 #include "snowshed/io/file_bytes.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 TriangleMesh parse(const std::filesystem::path& path) {
@@ -20,7 +20,7 @@ TriangleMesh parse(const std::filesystem::path& path) {
                       : extension == ".ply" ? parse_ply
                                             : nullptr;
   if (!parser) throw InputError(path.string(), "not a mesh file; allowed: .stl, .obj, .ply");
-  return parser(path, read_bytes(path));
+  return parser(path, io::read_bytes(path));
 }
 
 }  // namespace
@@ -40,4 +40,4 @@ TriangleMesh read_mesh(const std::filesystem::path& path, double scale) {
   return merged_layers(read_solid(path, scale));
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -6,7 +6,7 @@
 #include "snowshed/geometry/mesh_shells.hpp"
 #include "snowshed/geometry/triangle_mesh.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 /// Reads a .stl (binary or ASCII), .obj or .ply (ASCII or binary) file. Polygons are cut into
 /// triangles, identical vertices are merged, and coordinates are multiplied by `scale`. The surface
@@ -19,4 +19,4 @@ ShellSolid read_solid(const std::filesystem::path& path, double scale = 1.0);
 /// Returns the surface of the same solid, as one mesh.
 TriangleMesh read_mesh(const std::filesystem::path& path, double scale = 1.0);
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

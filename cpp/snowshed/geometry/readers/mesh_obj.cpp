@@ -4,7 +4,7 @@
 #include "snowshed/geometry/readers/mesh_formats.hpp"
 #include "snowshed/geometry/readers/text_scanner.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 /// Returns the vertex that `word` refers to: "7", "7/1", "7/1/2", "7//2", or "-1" for the last of
@@ -47,4 +47,4 @@ TriangleMesh parse_obj(const std::filesystem::path& path, std::string_view bytes
   return mesh;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

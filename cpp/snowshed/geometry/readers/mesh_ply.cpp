@@ -8,7 +8,7 @@
 #include "snowshed/geometry/readers/mesh_formats.hpp"
 #include "snowshed/geometry/readers/text_scanner.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 enum class Type { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
@@ -238,4 +238,4 @@ TriangleMesh parse_ply(const std::filesystem::path& path, std::string_view bytes
   return builder.take();
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

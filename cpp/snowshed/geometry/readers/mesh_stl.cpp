@@ -2,7 +2,7 @@
 #include "snowshed/geometry/readers/mesh_formats.hpp"
 #include "snowshed/geometry/readers/text_scanner.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 constexpr std::size_t header_size = 84, record_size = 50;
@@ -70,10 +70,10 @@ TriangleMesh parse_stl(const std::filesystem::path& path, std::string_view bytes
     return parse_binary(reader, count);
   }
   if (solid) return parse_ascii(TextScanner(path, bytes));
-  throw InputError(at_byte(path, header_size - 4),
+  throw InputError(io::at_byte(path, header_size - 4),
                    std::to_string(count) + " triangles declared, which take " +
                        std::to_string(header_size + record_size * count) + " bytes; the file has " +
                        std::to_string(bytes.size()));
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

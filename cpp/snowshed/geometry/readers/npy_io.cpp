@@ -10,7 +10,7 @@
 #include "snowshed/core/memory.hpp"
 #include "snowshed/geometry/readers/byte_reader.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 constexpr std::size_t max_header = 1024;
@@ -27,7 +27,7 @@ struct ArrayHeader {
 
 [[noreturn]] void fail(const std::filesystem::path& path, std::size_t offset,
                        const std::string& what) {
-  throw InputError(at_byte(path, offset), what);
+  throw InputError(io::at_byte(path, offset), what);
 }
 
 /// Returns the text of the value of `key` in the header's dictionary.
@@ -118,7 +118,7 @@ std::int64_t next_integer(ByteReader& reader, const ArrayHeader& header) {
 }  // namespace
 
 NpyArray read_npy(const std::filesystem::path& path) {
-  const std::string bytes = read_bytes(path);
+  const std::string bytes = io::read_bytes(path);
   const ArrayHeader header = parse_header(path, bytes, samples);
   const std::size_t count = checked_count(path, header, bytes.size() - header.data_offset);
   ByteReader reader(path, bytes, header.data_offset, ByteOrder::little);
@@ -133,12 +133,13 @@ NpyArray read_npy(const std::filesystem::path& path) {
 
 namespace {
 
-/// Throws InputError if a file has more labels than a sample may have, before all are read, because
-/// a sparse file takes no room on the disk. An image of 512^3 voxels is too large to be loaded.
+/// Throws InputError if a file has more labels than a sample may have. Reads only the header: a
+/// sparse file can claim a lot of memory without using disk space. Samples of 512^3 voxels are
+/// already too large for a loading test.
 void check_label_count(const std::filesystem::path& path) {
   constexpr std::uintmax_t max_bytes = std::uintmax_t(640) << 20;
   constexpr double max_labels = 512.0 * 512.0 * 512.0;
-  const std::uintmax_t size = check_readable(path);
+  const std::uintmax_t size = io::check_readable(path);
   if (size > max_bytes)
     throw InputError(path.string(),
                      std::to_string(size) + " bytes; at most 640 MiB of labels are read");
@@ -155,7 +156,7 @@ void check_label_count(const std::filesystem::path& path) {
 
 NpyLabels read_npy_labels(const std::filesystem::path& path) {
   check_label_count(path);
-  const std::string bytes = read_bytes(path);
+  const std::string bytes = io::read_bytes(path);
   const ArrayHeader header = parse_header(path, bytes, labels);
   const std::size_t count = checked_count(path, header, bytes.size() - header.data_offset);
   if (count * sizeof(std::int32_t) > available_memory_bytes())
@@ -171,4 +172,4 @@ NpyLabels read_npy_labels(const std::filesystem::path& path) {
   return array;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 /// An array in C order; the last index runs fastest.
 struct NpyArray {
@@ -29,4 +29,4 @@ struct NpyLabels {
 /// or above 2^31 - 1. Memory is checked before it is allocated.
 NpyLabels read_npy_labels(const std::filesystem::path& path);
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -12,7 +12,7 @@
 
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 /// Splits a text into lines of words. Throws InputError with the file and the line.
 class TextScanner {
@@ -83,4 +83,4 @@ class TextScanner {
   std::vector<std::string_view> words_;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

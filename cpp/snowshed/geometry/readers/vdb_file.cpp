@@ -9,7 +9,7 @@
 #include "snowshed/geometry/rebuild_distance.hpp"
 #include "snowshed/io/file_bytes.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 std::string where(const VdbSource& source) {
@@ -23,7 +23,7 @@ std::string run_reader(const VdbSource& source) {
     throw InputError(where(source),
                      "reading it needs OpenVDB, without which this snowshed was built; install it "
                      "(Debian, Ubuntu: libopenvdb-dev libboost-dev) and build snowshed again");
-  check_readable(source.path);
+  io::check_readable(source.path);
   const ChildResult result = run_child(*program, {"read", source.path.string(), source.grid});
   if (result.signal == SIGXCPU)
     throw InputError(where(source), "damaged: reading it does not come to an end");
@@ -69,10 +69,10 @@ GridSamples read_vdb(const VdbSource& source) {
     rebuild_distance(samples, 0, where(source));
   } else {
     for (float& value : samples.values) value = static_cast<float>(source.scale * value);
-    // Because of the factor, values that were cut off at the band lie outside it despite rounding.
+    // Because of the factor, values clipped at the band lie outside it despite rounding.
     rebuild_distance(samples, 0.999 * source.scale * header.background, where(source));
   }
   return samples;
 }
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

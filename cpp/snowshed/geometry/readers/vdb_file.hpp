@@ -6,7 +6,7 @@
 
 #include "snowshed/geometry/sampled_grid.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 /// A grid of a file, and the meaning of its values.
 struct VdbSource {
@@ -28,4 +28,4 @@ struct VdbSource {
 /// `max_vdb_samples`; and if snowshed was built without OpenVDB.
 GridSamples read_vdb(const VdbSource& source);
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

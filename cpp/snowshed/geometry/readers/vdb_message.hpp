@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace snowshed {
+namespace snowshed::geometry {
 
 /// The largest number of voxels in the box around a grid's active voxels.
 inline constexpr std::uint64_t max_vdb_samples = 50'000'000;
@@ -24,4 +24,4 @@ struct VdbHeader {
   std::uint32_t padding = 0;
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -4,7 +4,7 @@
 #include "snowshed/core/simd_pack.hpp"
 #include "snowshed/core/simd_vec.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(grains)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::grains)
 
 /// Motion of the second of two spheres in a step, relative to the first.
 template <class V>
@@ -86,4 +86,4 @@ struct BondLaw {
   }
 };
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

@@ -5,7 +5,7 @@
 
 #include "snowshed/core/angles.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
 void Boundary::move(double dt) {
   for (int p = 0; p < 2; ++p) plate[p] += dt * plate_velocity[p];
@@ -29,10 +29,10 @@ double Boundary::top_speed() const {
   return fastest;
 }
 
-SurfaceContact meet_cone(const Cone& cone, const Vec3& centre, double radius) {
+SurfaceContact meet_cone(const Cone& cone, const Vec3& center, double radius) {
   // Coordinates in the plane of the axis and the centre: rho outward, h up from the tip. The cone's
   // profile goes from the tip to the shoulder and from there upward.
-  const double rho = std::hypot(centre.x(), centre.y()), h = centre.z();
+  const double rho = std::hypot(center.x(), center.y()), h = center.z();
   const double half = radians(cone.half_angle);
   const double slant = cone.radius / std::sin(half), shoulder = slant * std::cos(half);
   const double sine = std::sin(half), cosine = std::cos(half);
@@ -48,8 +48,8 @@ SurfaceContact meet_cone(const Cone& cone, const Vec3& centre, double radius) {
   // At a distance of zero the direction is the normal of the surface.
   in = depth > 0 ? Eigen::Vector2d(in / depth)
                  : (on_shaft ? Eigen::Vector2d(-1, 0) : Eigen::Vector2d(-cosine, sine));
-  const Vec3 outward = rho > 0 ? Vec3(centre.x() / rho, centre.y() / rho, 0) : Vec3::UnitX();
+  const Vec3 outward = rho > 0 ? Vec3(center.x() / rho, center.y() / rho, 0) : Vec3::UnitX();
   return {(inside ? -depth : depth) - radius, in[0] * outward + in[1] * Vec3::UnitZ()};
 }
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

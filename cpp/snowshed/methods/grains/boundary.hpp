@@ -7,7 +7,7 @@
 #include "snowshed/core/vec.hpp"
 #include "snowshed/methods/scene_parts.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
 /// Bodies, other than grains, that a grain can touch. They are numbered after the last grain.
 enum class Partner : std::uint32_t { bottom_plate, top_plate, west, east, south, north, cone };
@@ -67,14 +67,14 @@ struct SurfaceContact {
   Vec3 normal;  // into the surface
 };
 
-/// Contact of a cone with a shaft and a sphere whose centre lies at `centre` from the tip.
-SurfaceContact meet_cone(const Cone&, const Vec3& centre, double radius);
+/// Contact of a cone with a shaft and a sphere whose centre lies at `center` from the tip.
+SurfaceContact meet_cone(const Cone&, const Vec3& center, double radius);
 
 /// The wall that a sphere with this centre meets.
-inline SurfaceContact meet_side(const Boundary& b, int side, const Vec3& centre, double radius) {
+inline SurfaceContact meet_side(const Boundary& b, int side, const Vec3& center, double radius) {
   const int axis = side / 2;
   const double sign = side % 2 == 0 ? -1 : 1;  // outward
-  return {sign * (b.side[side] - centre[axis]) - radius, sign * Vec3::Unit(axis)};
+  return {sign * (b.side[side] - center[axis]) - radius, sign * Vec3::Unit(axis)};
 }
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

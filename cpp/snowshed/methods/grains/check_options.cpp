@@ -9,7 +9,7 @@
 #include "snowshed/core/message_format.hpp"
 #include "snowshed/methods/grains/describe.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 namespace {
 
 [[noreturn]] void refuse(const std::string& where, double value, const std::string& allowed) {
@@ -49,7 +49,7 @@ void check_clump(const Sample& sample, std::size_t c, std::size_t spheres) {
   if (clump.first_sphere != spheres)
     throw InputError(where, "its spheres do not follow those of the grain before");
   if (clump.spheres == 0) throw InputError(where, "it has no spheres");
-  if (!(clump.volume > 0) || !std::isfinite(clump.volume) || !clump.centre.allFinite())
+  if (!(clump.volume > 0) || !std::isfinite(clump.volume) || !clump.center.allFinite())
     throw InputError(where, "its volume or centre is not sound");
   const Mat3& inertia = clump.inertia;
   if (!inertia.allFinite() || !inertia.isApprox(inertia.transpose(), 1e-9))
@@ -171,4 +171,4 @@ void check_grains(const Options& o) {
     throw InputError("sample", "a periodic sample must be at least four spheres wide");
 }
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

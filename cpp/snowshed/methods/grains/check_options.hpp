@@ -5,7 +5,7 @@
 
 #include "snowshed/methods/grains/solver.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
 /// Throws InputError if settings, sample and loading do not fit each other.
 void check_grains(const Options&);
@@ -13,4 +13,4 @@ void check_grains(const Options&);
 /// Throws InputError if a stage cannot follow those before it, such as an unloading without a load.
 void check_stages(const std::vector<LoadingStage>&, const Settings&);
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -9,7 +9,7 @@
 #include "snowshed/methods/grains/listing.hpp"
 #include "snowshed/methods/grains/solver_impl.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 namespace {
 
 /// A pair of spheres in an archive.
@@ -60,7 +60,7 @@ void visit_state(Archive& archive, State& s, StoredParts& stored) {
   archive.numbers("clock", s.time, s.dt, s.counters.smallest_dt, l.displacement, l.duration,
                   l.peak_kinetic, e.friction, e.damping, e.broken, e.boundary, e.added);
   auto& c = s.counters;
-  archive.counts("counters", stored.grains, c.steps, c.sorts, c.particle_updates, s.bonds,
+  archive.counts("counters", stored.grains, c.steps, s.pair_searches, c.particle_updates, s.bonds,
                  s.broken_in_tension, s.broken_in_shear, s.first_id, s.next_id, l.stage,
                  stored.flags, stored.searched_flags, s.boundary.top_contacts);
 }
@@ -140,7 +140,7 @@ void check_counts(const StateReader& archive, const State& s, const CheckpointPa
 
 }  // namespace
 
-void SolverImpl::save(BinaryWriter& out) const {
+void SolverImpl::save(io::BinaryWriter& out) const {
   soundness_.require();
   CheckpointParts parts;
   for (const PairHistory& h : state_.pairs.all()) parts.pairs.push_back(stored(h));
@@ -153,7 +153,7 @@ void SolverImpl::save(BinaryWriter& out) const {
   visit_state(archive, state_, parts);
 }
 
-SolverImpl::LoadedState SolverImpl::read_state(const BinaryReader& in) const {
+SolverImpl::LoadedState SolverImpl::read_state(const io::BinaryReader& in) const {
   const StateReader archive(in);
   LoadedState result;
   State& next = result.state;
@@ -180,7 +180,7 @@ SolverImpl::LoadedState SolverImpl::read_state(const BinaryReader& in) const {
     }
     next.pairs = std::move(listing.pairs);
     next.searched_poses = std::move(listing.poses);
-    work.groups_of = std::move(listing.groups_of);
+    work.groups_by_body = std::move(listing.groups_by_body);
     work.results = std::move(listing.results);
     work.max_step = listing.max_step;
     if (next.pairs.all().size() != past.size()) archive.refuse("pairs of near spheres are missing");
@@ -191,7 +191,7 @@ SolverImpl::LoadedState SolverImpl::read_state(const BinaryReader& in) const {
   return result;
 }
 
-void SolverImpl::load(const BinaryReader& in) {
+void SolverImpl::load(const io::BinaryReader& in) {
   LoadedState next = read_state(in);
   std::vector<std::uint32_t> order(next.state.bodies.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -201,6 +201,6 @@ void SolverImpl::load(const BinaryReader& in) {
   soundness_ = {};
 }
 
-void SolverImpl::check(const BinaryReader& in) const { read_state(in); }
+void SolverImpl::check(const io::BinaryReader& in) const { read_state(in); }
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -10,7 +10,7 @@
 #include "snowshed/core/angles.hpp"
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 namespace {
 
 constexpr std::uint32_t no_sphere = std::numeric_limits<std::uint32_t>::max();
@@ -103,7 +103,7 @@ class ClumpOfLabel {
   std::uint32_t last_clump_ = 0;
 };
 
-Vec3 voxel_centre(const LabelImage& image, std::size_t i, std::size_t j, std::size_t k) {
+Vec3 voxel_center(const LabelImage& image, std::size_t i, std::size_t j, std::size_t k) {
   return image.voxel_size * Vec3(double(i) + 0.5, double(j) + 0.5, double(k) + 0.5);
 }
 
@@ -113,12 +113,12 @@ void weigh(const LabelImage& image, ClumpOfLabel& clump_of, std::vector<Clump>& 
   for_each_ice(image, [&](std::size_t voxel, std::size_t i, std::size_t j, std::size_t k) {
     Clump& c = clumps[clump_of(image.labels[voxel])];
     c.volume += volume;
-    c.centre += volume * voxel_centre(image, i, j, k);
+    c.center += volume * voxel_center(image, i, j, k);
   });
-  for (Clump& c : clumps) c.centre /= c.volume;
+  for (Clump& c : clumps) c.center /= c.volume;
   for_each_ice(image, [&](std::size_t voxel, std::size_t i, std::size_t j, std::size_t k) {
     Clump& c = clumps[clump_of(image.labels[voxel])];
-    const Vec3 d = voxel_centre(image, i, j, k) - c.centre;
+    const Vec3 d = voxel_center(image, i, j, k) - c.center;
     c.inertia +=
         volume * ((d.squaredNorm() + side * side / 6) * Mat3::Identity() - d * d.transpose());
   });
@@ -183,7 +183,7 @@ Sample make_sample(const LabelImage& image) {
   for_each_ice(image, [&](std::size_t voxel, std::size_t i, std::size_t j, std::size_t k) {
     if (!is_interface(image, i, j, k)) return;
     sphere_at[voxel] = next[clump_of(image.labels[voxel])]++;
-    sample.spheres[sphere_at[voxel]] = voxel_centre(image, i, j, k);
+    sample.spheres[sphere_at[voxel]] = voxel_center(image, i, j, k);
   });
   std::size_t bonds = 0;
   for_each_bond(image, [&](std::size_t, std::size_t) { ++bonds; });
@@ -194,4 +194,4 @@ Sample make_sample(const LabelImage& image) {
   return sample;
 }
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

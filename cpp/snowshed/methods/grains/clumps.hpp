@@ -8,12 +8,12 @@
 #include "snowshed/methods/grains/label_image.hpp"
 #include "snowshed/methods/grains/label_pieces.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
 /// A grain: a rigid body with spheres on its surface. The clump has the spheres of Sample from
 /// `first_sphere` on.
 struct Clump {
-  Vec3 centre = Vec3::Zero();   // m, of mass
+  Vec3 center = Vec3::Zero();   // m, of mass
   double volume = 0;            // m3, of all its voxels
   Mat3 inertia = Mat3::Zero();  // m5, over density, about the centre, in space
   std::uint32_t first_sphere = 0, spheres = 0;
@@ -55,4 +55,4 @@ double median_diameter(const Sample&);
 /// and inertia are those of all voxels of a grain. Throws InputError if there is no grain.
 Sample make_sample(const LabelImage&);
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -3,7 +3,7 @@
 
 #include "snowshed/methods/grains/state.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
 /// The place and direction of a pair's contact.
 struct PairGeometry {
@@ -49,4 +49,4 @@ void for_each_touching(const Model& model, const State& state, const Visit& visi
       });
 }
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -7,7 +7,7 @@
 #include "snowshed/core/message_format.hpp"
 #include "snowshed/methods/enum_names.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 namespace {
 
 /// The time of a stage per height of the sample, s/m.
@@ -73,4 +73,4 @@ std::vector<Feature> features_of(const Settings& s, const SceneView& scene) {
   return features;
 }
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

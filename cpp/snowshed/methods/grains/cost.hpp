@@ -6,7 +6,7 @@
 #include "snowshed/methods/cost.hpp"
 #include "snowshed/methods/grains/solver.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
 /// The time (s) of the stages on a sample of this height (m) if none ends before its strain. The
 /// time of `hold` counts as zero.
@@ -24,4 +24,4 @@ CostEstimate estimate_cost(const SceneView&, const Sample&, const Method& grains
 
 std::vector<Feature> features_of(const Settings&, const SceneView&);
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

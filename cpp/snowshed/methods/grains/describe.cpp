@@ -2,7 +2,7 @@
 
 #include "snowshed/methods/allowed.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
 void describe(SettingsVisitor& v, Settings& s) {
   v.accuracy({"density_scaling", "courant_factor"});
@@ -22,10 +22,10 @@ void describe(SettingsVisitor& v, Settings& s) {
   v.number("damping", s.damping, "", non_negative.below(1.0),
            "Local damping: share of the unbalanced force that opposes the motion");
   v.number("courant_factor", s.courant_factor, "", positive.up_to(1.0),
-           "Time step over the root of mass over stiffness");
+           "Time step relative to sqrt(m/k), the smallest of all grains");
   v.choice("sides", s.sides, "The vertical sides: rigid and frictionless, or periodic");
   v.flag("bonded_plates", s.bonded_plates, "Whether the snow is frozen to the plates");
   v.integer("threads", s.threads, non_negative.up_to(4096), "Threads; 0: all");
 }
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -5,7 +5,7 @@
 #include "snowshed/methods/grains/settings.hpp"
 #include "snowshed/methods/settings_visitor.hpp"
 
-namespace snowshed {
+namespace snowshed::methods {
 
 template <>
 struct EnumNames<grains::Sides> {
@@ -13,11 +13,11 @@ struct EnumNames<grains::Sides> {
                                                   {grains::Sides::periodic, "periodic"}};
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::methods
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
 /// Shows a visitor each setting in turn: key, unit, range and meaning.
 void describe(SettingsVisitor&, Settings&);
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

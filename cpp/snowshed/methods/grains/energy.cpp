@@ -3,7 +3,7 @@
 #include "snowshed/methods/grains/contacts.hpp"
 #include "snowshed/methods/grains/state.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
 NamedEnergies named_energies(const EnergyBalance& e) {
   return {{"kinetic_j", e.kinetic},       {"potential_j", e.potential},
@@ -35,4 +35,4 @@ void store_energy(const Model& model, const State& state, EnergyBalance& e) {
   });
 }
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -3,7 +3,7 @@
 
 #include "snowshed/methods/energy_balance.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
 struct Model;
 struct State;
@@ -33,4 +33,4 @@ double kinetic_energy(const Model&, const State&);
 /// Sets the stored energies of a balance.
 void store_energy(const Model&, const State&, EnergyBalance&);
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

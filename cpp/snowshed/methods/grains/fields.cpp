@@ -5,7 +5,7 @@
 #include "snowshed/methods/field_sources.hpp"
 #include "snowshed/methods/grains/solver_impl.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
 /// Calls visit(info, view) for each field; view() returns its view.
 template <class Visit>
@@ -38,11 +38,11 @@ void SolverImpl::visit_fields(Visit visit) const {
   show.computed("event", [&] { return state_.events; });
 }
 
-std::vector<FieldInfo> SolverImpl::fields() const {
+std::vector<particles::FieldInfo> SolverImpl::fields() const {
   return list_fields([this](const auto& visit) { visit_fields(visit); });
 }
 
-FieldView SolverImpl::field(const std::string& name) const {
+particles::FieldView SolverImpl::field(const std::string& name) const {
   return find_field(name, [this](const auto& visit) { visit_fields(visit); });
 }
 
@@ -53,7 +53,6 @@ ParticleState SolverImpl::state() const {
     s.velocities.push_back(state_.bodies[i].velocity);
     s.masses.push_back(model_.settings.density * model_.grains[i].volume);
     s.densities.push_back(model_.settings.density);
-    s.pressures.push_back(0.0);
     s.ids.push_back(state_.first_id + std::uint32_t(i));
     s.events.push_back(state_.events[i]);
   }
@@ -78,8 +77,8 @@ std::size_t SolverImpl::bytes() const {
   return state_.pairs.bytes() +
          bytes_of(model_.grains, model_.spheres.offsets, model_.spheres.grain, model_.bonds,
                   state_.bodies, state_.events, state_.searched_poses, workspace_.next,
-                  workspace_.frames, workspace_.results, workspace_.groups_of.begin,
-                  workspace_.groups_of.entry, workspace_.damped_energy, order_);
+                  workspace_.frames, workspace_.results, workspace_.groups_by_body.begin,
+                  workspace_.groups_by_body.entry, workspace_.damped_energy, order_);
 }
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -6,7 +6,7 @@
 #include "snowshed/core/parallel.hpp"
 #include "snowshed/methods/grains/contacts.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 namespace {
 
 constexpr std::ptrdiff_t groups_in_piece = 16, bodies_in_piece = 32;
@@ -133,8 +133,8 @@ void gather(const Model& model, State& state, const Workspace& work, std::size_t
   GrainBody& body = state.bodies[i];
   body.force = Vec3(0, 0, -model.grains[i].weight);
   body.torque.setZero();
-  for (std::uint32_t e = work.groups_of.begin[i]; e < work.groups_of.begin[i + 1]; ++e) {
-    const std::uint32_t entry = work.groups_of.entry[e];
+  for (std::uint32_t e = work.groups_by_body.begin[i]; e < work.groups_by_body.begin[i + 1]; ++e) {
+    const std::uint32_t entry = work.groups_by_body.entry[e];
     const GroupForce& f = work.results[entry >> 1];
     const bool second = (entry & 1) != 0;
     body.force += (second ? -1.0 : 1.0) * vec(f.force);
@@ -212,4 +212,4 @@ void evaluate_forces(const Model& model, State& state, Workspace& work, double d
   sum_up(model, state, work);
 }
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

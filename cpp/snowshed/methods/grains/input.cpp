@@ -8,7 +8,7 @@
 #include "snowshed/geometry/readers/npy_io.hpp"
 #include "snowshed/io/fingerprint.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 namespace {
 
 /// Throws InputError if the image holds no grain, or its clumps do not fit into memory.
@@ -26,7 +26,7 @@ void check_size(const LabelImage& image) {
 
 Sample read_sample(const SampleSpec& spec, const std::filesystem::path& base_dir) {
   const std::filesystem::path file = base_dir / spec.file;
-  NpyLabels array = read_npy_labels(file);
+  geometry::NpyLabels array = geometry::read_npy_labels(file);
   LabelImage image;
   image.size = {array.shape[2], array.shape[1], array.shape[0]};
   image.voxel_size = spec.voxel_size;
@@ -50,12 +50,12 @@ Sample read_sample(const SampleSpec& spec, const std::filesystem::path& base_dir
 Input::Input(const SampleSpec& spec, const std::filesystem::path& base_dir)
     : file_(spec.file), split_labels_(spec.split_labels), sample_(read_sample(spec, base_dir)) {}
 
-std::vector<FilePrint> Input::files() const {
-  Fingerprint print;
+std::vector<FileFingerprint> Input::files() const {
+  io::Fingerprint print;
   print.add(sample_.box.data(), 3);
   print.add(&sample_.radius, 1);
   for (const Clump& c : sample_.clumps) {
-    print.add(c.centre.data(), 3);
+    print.add(c.center.data(), 3);
     print.add(&c.volume, 1);
     print.add(&c.spheres, 1);
   }
@@ -67,4 +67,4 @@ std::vector<FilePrint> Input::files() const {
   return {{file_, print.value()}};
 }
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

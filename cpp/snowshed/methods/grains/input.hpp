@@ -7,7 +7,7 @@
 #include "snowshed/methods/scene_parts.hpp"
 #include "snowshed/methods/surroundings.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
 class Input final : public MethodInput {
  public:
@@ -15,8 +15,8 @@ class Input final : public MethodInput {
   Input(const SampleSpec&, const std::filesystem::path& base_dir);
 
   const char* section() const override { return "sample"; }
-  std::vector<FilePrint> files() const override;
-  std::string remark() const override { return label_note(sample_.pieces, split_labels_); }
+  std::vector<FileFingerprint> files() const override;
+  std::string note() const override { return label_note(sample_.pieces, split_labels_); }
 
   const Sample& sample() const { return sample_; }
 
@@ -26,4 +26,4 @@ class Input final : public MethodInput {
   Sample sample_;
 };
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

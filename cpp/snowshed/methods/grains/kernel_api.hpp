@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
 /// Number of sphere pairs that kernels process at a time. The number of entries of each group is a
 /// multiple of it.
@@ -59,4 +59,4 @@ struct Kernels {
 /// Returns the kernels of the instruction set in use.
 const Kernels& chosen_kernels();
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -2,7 +2,7 @@
 #include "snowshed/core/kernel_variant.hpp"
 #include "snowshed/methods/grains/kernel_api.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
 namespace baseline {
 extern const Kernels kernel_table;
@@ -33,4 +33,4 @@ const Kernels& chosen_kernels() {
   }
 }
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
 /// Voxel (i, j, k) has its centre at ((i, j, k) + 1/2) voxel_size and the label
 /// labels[(k ny + j) nx + i]: x runs fastest, z is up. 0 is air, any other number is a grain.
@@ -20,4 +20,4 @@ struct LabelImage {
   }
 };
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -6,7 +6,7 @@
 
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 namespace {
 
 /// Disjoint sets of voxels. The first voxel in the order of storage identifies a set.
@@ -78,9 +78,9 @@ void check_labels(const LabelPieces& counts) {
   if (counts.pieces <= pieces_per_label * counts.labels ||
       counts.voxels >= min_piece * counts.pieces)
     return;
-  throw InputError("", "no labels: its " + std::to_string(counts.labels) + " numbers lie in " +
+  throw InputError("", "not a label image: its " + std::to_string(counts.labels) + " values form " +
                            std::to_string(counts.pieces) +
-                           " pieces of few voxels each, as grey values do; find the grains of an "
+                           " pieces of a few voxels each, as grey values do; find the grains of an "
                            "image with `snowshed grains segment`");
 }
 
@@ -109,4 +109,4 @@ void split_pieces(LabelImage& image) {
   }
 }
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -1,4 +1,4 @@
-// Labels whose voxels lie in several places, because numbers were wrapped or given twice.
+// Labels of several unconnected pieces, because label numbers were wrapped or used twice.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 #include "snowshed/methods/grains/label_image.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
 /// Number of labels in an image, and of their pieces. Voxels of one label belong to one piece if
 /// they share a face, an edge or a corner.
@@ -28,4 +28,4 @@ std::string label_note(const LabelPieces&, bool split);
 /// Makes each piece a label of its own, from 1 on in the order of storage.
 void split_pieces(LabelImage&);
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -5,7 +5,7 @@
 #include "snowshed/methods/grains/contacts.hpp"
 #include "snowshed/methods/grains/time_step.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 namespace {
 
 PairSearch search_of(const Model& model) {
@@ -37,7 +37,7 @@ Listing listing_of(const Model& model, std::vector<GrainPose> poses, const Bound
   Listing listing;
   const PairSearch search = search_of(model);
   listing.pairs = make_list(search, find_pairs(search, poses, boundary), past);
-  listing.groups_of = groups_of_bodies(listing.pairs, poses.size());
+  listing.groups_by_body = groups_of_bodies(listing.pairs, poses.size());
   listing.results.resize(listing.pairs.groups.size());
   listing.max_step = max_step(model, boundary, listing.pairs, poses);
   listing.poses = std::move(poses);
@@ -73,4 +73,4 @@ std::vector<PairHistory> initial_bonds(const Model& model, const std::vector<Gra
   return bonds;
 }
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

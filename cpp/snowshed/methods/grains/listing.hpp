@@ -3,13 +3,13 @@
 
 #include "snowshed/methods/grains/state.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
 /// A list of pairs and the arrays whose sizes depend on it.
 struct Listing {
   PairList pairs;
   std::vector<GrainPose> poses;
-  BodyGroups groups_of;
+  BodyGroups groups_by_body;
   std::vector<GroupForce> results;
   double max_step;  // s
 };
@@ -26,4 +26,4 @@ std::vector<PairHistory> initial_bonds(const Model&, const std::vector<GrainPose
 /// Poses of the grains in a state, or at the beginning.
 std::vector<GrainPose> poses_of(const std::vector<GrainBody>&);
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -7,7 +7,7 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/io/binary_archive.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 namespace {
 
 /// Columns before those of peaks and energies.
@@ -42,7 +42,7 @@ constexpr std::size_t peak_columns = 7;
 
 /// Returns the rows of a checkpoint from a version without peaks in the present form. The peak of a
 /// row is the row itself.
-std::vector<double> with_peaks(const ArrayView<double>& values, std::size_t columns,
+std::vector<double> with_peaks(const io::ArrayView<double>& values, std::size_t columns,
                                const std::vector<std::string>& names) {
   std::vector<double> filled;
   filled.reserve(values.size / columns * (columns + peak_columns));
@@ -148,7 +148,7 @@ void LoadingCurve::add_row(const Solver& grains) {
     for (const auto& energy : grains.energies()) values_.push_back(energy.second);
 }
 
-void LoadingCurve::save(BinaryWriter& out) const {
+void LoadingCurve::save(io::BinaryWriter& out) const {
   out.add("curve/values", values_);
   out.add("curve/stage", std::vector<std::int64_t>{stage_, points_done_});
   out.add("curve/begun", std::vector<double>{begun_});
@@ -157,7 +157,7 @@ void LoadingCurve::save(BinaryWriter& out) const {
   out.add("curve/peak", std::move(peak));
 }
 
-void LoadingCurve::load(const BinaryReader& in) {
+void LoadingCurve::load(const io::BinaryReader& in) {
   const auto values = in.view<double>("curve/values");
   const auto stage = in.get<std::int64_t>("curve/stage", 2);
   const auto stages = std::int64_t(stages_.size());
@@ -185,4 +185,4 @@ void LoadingCurve::load(const BinaryReader& in) {
   points_done_ = int(stage[1]);
 }
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

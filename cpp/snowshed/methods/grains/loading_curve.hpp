@@ -7,7 +7,7 @@
 
 #include "snowshed/methods/grains/solver.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
 /// Rows of instantaneous values at the beginning of the test, at `points` strains of each stage,
 /// and at the end of each stage. The strains are (k / points)^2 of the stage's final strain,
@@ -30,8 +30,8 @@ class LoadingCurve final : public Curve {
   const std::vector<std::string>& columns() const override { return columns_; }
   const std::vector<double>& values() const override { return values_; }
 
-  void save(BinaryWriter&) const override;
-  void load(const BinaryReader&) override;
+  void save(io::BinaryWriter&) const override;
+  void load(const io::BinaryReader&) override;
 
  private:
   double next_time() const;
@@ -50,4 +50,4 @@ class LoadingCurve final : public Curve {
   std::optional<LoadingStresses> peak_;  // peak of the steps since the last row, if there were any
 };
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 namespace {
 
 /// Number of steps in which the top plate corrects an error of its force. The plate thus acts as a
-/// dashpot, which takes energy and cannot excite vibrations. Explicit steps are stable from one
-/// step on.
+/// dashpot, which takes energy and cannot excite vibrations. The correction is stable for any value
+/// of at least 1.
 constexpr double servo_steps = 5;
 
 /// Upward velocity with which the force on the top plate approaches that of the stage.
@@ -104,4 +104,4 @@ void count_step(const std::vector<LoadingStage>& stages, const LoadedSample& sam
   begin_stage(stages, sample, progress, b);
 }
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -6,7 +6,7 @@
 #include "snowshed/methods/grains/boundary.hpp"
 #include "snowshed/methods/scene_parts.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
 struct LoadingProgress {
   int stage = 0;            // stage being loaded; the number of stages when all are done
@@ -49,4 +49,4 @@ void set_velocities(const std::vector<LoadingStage>&, const LoadedSample&, const
 void count_step(const std::vector<LoadingStage>&, const LoadedSample&, const LoadingGauge&,
                 double dt, LoadingProgress&, Boundary&);
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -6,7 +6,7 @@
 #include "snowshed/methods/grains/loading_curve.hpp"
 #include "snowshed/methods/grains/solver_impl.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
 LoadingStresses SolverImpl::stresses() const {
   const Boundary& b = state_.boundary;
@@ -122,4 +122,4 @@ std::vector<Vec3> SolverImpl::sphere_positions() const {
   return positions;
 }
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -12,7 +12,7 @@
 #include "snowshed/methods/grains/input.hpp"
 #include "snowshed/methods/grains/solver.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 namespace {
 
 class Descriptor final : public DescriptorBase<Descriptor, Settings> {
@@ -38,7 +38,8 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
       throw InputError("/loading",
                        "a sample is loaded in at least one stage, such as {\"kind\": "
                        "\"compress\"}");
-    if (scene.dimension != 3) throw InputError("/dimension", "grains move in space; allowed: 3");
+    if (scene.dimension != 3)
+      throw InputError("/dimension", "grains need three dimensions; allowed: 3");
     if (scene.events.count != 1)
       throw InputError("/events/count", show(scene.events.count) + " events; a loading is 1");
     check_stages(scene.loading, settings_);
@@ -95,4 +96,4 @@ const MethodDescriptor& descriptor() {
   return instance;
 }
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -5,7 +5,7 @@
 #include "snowshed/core/parallel.hpp"
 #include "snowshed/methods/grains/state.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 namespace {
 
 /// k_n = 2 E r1 r2 / (r1 + r2) with equal radii, and k_s = ratio k_n. The limits are the strengths
@@ -25,7 +25,7 @@ GrainConstants constants_of(const Clump& clump, const Settings& s, double gravit
   grain.weight = s.density * clump.volume * gravity;
   grain.inertial_mass = s.density * s.density_scaling * clump.volume;
   grain.inertia = s.density * s.density_scaling * principal.eigenvalues();
-  grain.initial_position = clump.centre;
+  grain.initial_position = clump.center;
   grain.initial_orientation = Orientation(axes).normalized();
   grain.first_sphere = clump.first_sphere;
   grain.spheres = clump.spheres;
@@ -63,4 +63,4 @@ Model::Model(Options o)
   }
 }
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

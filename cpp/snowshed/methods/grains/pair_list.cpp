@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 namespace {
 
 bool same_group(const PairGroup& g, const PairKey& k) {
@@ -165,4 +165,4 @@ BodyGroups groups_of_bodies(const PairList& list, std::size_t grains) {
   return of;
 }
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -11,7 +11,7 @@
 #include "snowshed/methods/grains/kernel_api.hpp"
 #include "snowshed/methods/grains/rotor.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
 /// Spheres as parts of rigid bodies.
 struct SphereBodies {
@@ -96,4 +96,4 @@ struct BodyGroups {
 };
 BodyGroups groups_of_bodies(const PairList&, std::size_t grains);
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -8,7 +8,7 @@
 #include "snowshed/core/parallel.hpp"
 #include "snowshed/methods/grains/pair_list.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 namespace {
 
 constexpr int half_grid = 32768;  // spheres of a plate to each side of its origin
@@ -22,7 +22,7 @@ std::uint32_t plate_number(int i, int j) {
 /// images inside.
 class SphereCells {
  public:
-  SphereCells(const PairSearch& s, const std::vector<Vec3>& centres, const Boundary& b,
+  SphereCells(const PairSearch& s, const std::vector<Vec3>& centers, const Boundary& b,
               double reach)
       : periodic_(s.periodic), boundary_(b) {
     const double bottom = std::min(b.plate[0].z(), b.plate[1].z());
@@ -30,14 +30,14 @@ class SphereCells {
     Vec3 extent(b.period(0), b.period(1), std::abs(b.plate[1].z() - b.plate[0].z()));
     extent = extent.cwiseMax(reach);
     // At most a few cells for each sphere.
-    const double volume = extent.prod() / (4.0 * double(centres.size()) + 64);
+    const double volume = extent.prod() / (4.0 * double(centers.size()) + 64);
     const double width = std::max(reach, std::cbrt(volume));
     for (int k = 0; k < 3; ++k) {
       count_[k] = std::max(1, int(std::min(extent[k] / width, 1e6)));
       per_width_[k] = count_[k] / extent[k];
     }
     if (periodic_ && (count_[0] < 3 || count_[1] < 3)) shorten(extent, reach);
-    fill(centres);
+    fill(centers);
   }
 
   int count(int axis) const { return count_[axis]; }
@@ -70,17 +70,17 @@ class SphereCells {
         x[axis] - low_[axis] - (axis < 2 ? wrap(x, axis) * boundary_.period(axis) : 0.0);
     return int(std::clamp(from_low * per_width_[axis], 0.0, count_[axis] - 0.5));
   }
-  void fill(const std::vector<Vec3>& centres) {
+  void fill(const std::vector<Vec3>& centers) {
     begin_.assign(number(0, 0, count_[2]) + 1, 0);
-    std::vector<std::uint32_t> cell(centres.size());
-    for (std::size_t s = 0; s < centres.size(); ++s) {
+    std::vector<std::uint32_t> cell(centers.size());
+    for (std::size_t s = 0; s < centers.size(); ++s) {
       cell[s] = std::uint32_t(
-          number(cell_index(centres[s], 0), cell_index(centres[s], 1), cell_index(centres[s], 2)));
+          number(cell_index(centers[s], 0), cell_index(centers[s], 1), cell_index(centers[s], 2)));
       ++begin_[cell[s] + 1];
     }
     for (std::size_t c = 1; c < begin_.size(); ++c) begin_[c] += begin_[c - 1];
-    spheres_.resize(centres.size());
-    for (std::size_t s = 0; s < centres.size(); ++s) spheres_[begin_[cell[s]]++] = std::uint32_t(s);
+    spheres_.resize(centers.size());
+    for (std::size_t s = 0; s < centers.size(); ++s) spheres_[begin_[cell[s]]++] = std::uint32_t(s);
     for (std::size_t c = begin_.size() - 1; c > 0; --c) begin_[c] = begin_[c - 1];
     begin_[0] = 0;
   }
@@ -93,16 +93,16 @@ class SphereCells {
   std::vector<std::uint32_t> begin_, spheres_;
 };
 
-std::vector<Vec3> sphere_centres(const PairSearch& s, const std::vector<GrainPose>& poses) {
+std::vector<Vec3> sphere_centers(const PairSearch& s, const std::vector<GrainPose>& poses) {
   std::vector<Mat3> rotations;
   rotations.reserve(poses.size());
   for (const GrainPose& pose : poses) rotations.push_back(pose.orientation.toRotationMatrix());
-  std::vector<Vec3> centres(s.spheres.offsets.size());
-  parallel_for_static(std::ptrdiff_t(centres.size()), s.threads, [&](std::ptrdiff_t i) {
+  std::vector<Vec3> centers(s.spheres.offsets.size());
+  parallel_for_static(std::ptrdiff_t(centers.size()), s.threads, [&](std::ptrdiff_t i) {
     const std::uint32_t g = s.spheres.grain[std::size_t(i)];
-    centres[std::size_t(i)] = poses[g].position + rotations[g] * s.spheres.offsets[std::size_t(i)];
+    centers[std::size_t(i)] = poses[g].position + rotations[g] * s.spheres.offsets[std::size_t(i)];
   });
-  return centres;
+  return centers;
 }
 
 /// Searches for pairs; spheres are in the order of their cells.
@@ -112,20 +112,20 @@ class Finder {
       : s_(s),
         b_(b),
         reach_(2 * s.radius + s.skin),
-        centres_(sphere_centres(s, poses)),
-        cells_(s, centres_, b, reach_),
-        grain_(centres_.size()) {
-    std::vector<Vec3> sorted(centres_.size());
+        centers_(sphere_centers(s, poses)),
+        cells_(s, centers_, b, reach_),
+        grain_(centers_.size()) {
+    std::vector<Vec3> sorted(centers_.size());
     for (std::uint32_t e = 0; e < sorted.size(); ++e) {
-      sorted[e] = centres_[cells_.sphere(e)];
+      sorted[e] = centers_[cells_.sphere(e)];
       grain_[e] = s.spheres.grain[cells_.sphere(e)];
     }
-    centres_ = std::move(sorted);
+    centers_ = std::move(sorted);
   }
 
   std::vector<PairKey> find() {
     find_grains();
-    for (std::uint32_t e = 0; e < centres_.size(); ++e) {
+    for (std::uint32_t e = 0; e < centers_.size(); ++e) {
       find_plate(e, 0);
       if (b_.has_top) find_plate(e, 1);
       if (!s_.periodic) find_sides(e);
@@ -196,10 +196,10 @@ class Finder {
     const std::uint32_t of_e = grain_[e], of_f = grain_[f];
     if (of_e == of_f && !s_.periodic) return;
     int shift[2] = {0, 0};
-    Vec3 separation = centres_[f] - centres_[e];
+    Vec3 separation = centers_[f] - centers_[e];
     if (s_.periodic) {
-      shift[0] = px + cells_.wrap(centres_[e], 0) - cells_.wrap(centres_[f], 0);
-      shift[1] = py + cells_.wrap(centres_[e], 1) - cells_.wrap(centres_[f], 1);
+      shift[0] = px + cells_.wrap(centers_[e], 0) - cells_.wrap(centers_[f], 0);
+      shift[1] = py + cells_.wrap(centers_[e], 1) - cells_.wrap(centers_[f], 1);
       if (of_e == of_f && shift[0] == 0 && shift[1] == 0) return;
       separation += Vec3(shift[0] * b_.period(0), shift[1] * b_.period(1), 0);
     }
@@ -216,7 +216,7 @@ class Finder {
   std::uint32_t partner(Partner p) const { return s_.grains + std::uint32_t(p); }
 
   void find_plate(std::uint32_t e, int plate) {
-    const Vec3 from = centres_[e] - b_.plate[plate];
+    const Vec3 from = centers_[e] - b_.plate[plate];
     if (std::abs(from.z()) >= reach_) return;
     const double spacing = 2 * s_.radius, x = from.x() / spacing, y = from.y() / spacing;
     if (!(std::abs(x) < half_grid - 4 && std::abs(y) < half_grid - 4)) return;
@@ -234,13 +234,13 @@ class Finder {
 
   void find_sides(std::uint32_t e) {
     for (int side = 0; side < 4; ++side)
-      if (meet_side(b_, side, centres_[e], s_.radius).gap < s_.skin)
+      if (meet_side(b_, side, centers_[e], s_.radius).gap < s_.skin)
         push(
             {grain_[e], partner(Partner::west) + std::uint32_t(side), {0, 0}, cells_.sphere(e), 0});
   }
 
   void find_cone(std::uint32_t e) {
-    if (meet_cone(s_.cone, centres_[e] - b_.tip, s_.radius).gap < s_.skin)
+    if (meet_cone(s_.cone, centers_[e] - b_.tip, s_.radius).gap < s_.skin)
       push({grain_[e], partner(Partner::cone), {0, 0}, cells_.sphere(e), 0});
   }
 
@@ -258,7 +258,7 @@ class Finder {
   const PairSearch& s_;
   const Boundary& b_;
   double reach_;
-  std::vector<Vec3> centres_;
+  std::vector<Vec3> centers_;
   SphereCells cells_;
   std::vector<std::uint32_t> grain_;
   std::vector<PairKey> pairs_;
@@ -276,4 +276,4 @@ std::vector<PairKey> find_pairs(const PairSearch& search, const std::vector<Grai
   return Finder(search, poses, boundary).find();
 }
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

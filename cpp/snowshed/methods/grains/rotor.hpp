@@ -5,7 +5,7 @@
 
 #include "snowshed/core/vec.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
 /// The rotation from a body's principal frame to space.
 using Orientation = Eigen::Quaternion<double, Eigen::DontAlign>;
@@ -51,4 +51,4 @@ inline Vec3 angular_velocity(const Mat3& rotation, const Vec3& momentum, const V
   return rotation * (rotation.transpose() * momentum).cwiseQuotient(inertia);
 }
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -1,7 +1,7 @@
 // Settings of the discrete elements of snow in a scene.
 #pragma once
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
 /// The four vertical sides of a sample: rigid walls without friction, or periodic in x and y.
 enum class Sides { walls, periodic };
@@ -19,13 +19,13 @@ struct Settings {
   // Factor of the grains' inertia, for longer steps; their weight stays.
   double density_scaling = 1;
   double damping = 0.2;         // local, of unbalanced forces
-  double courant_factor = 0.3;  // time step over the root of mass over stiffness
+  double courant_factor = 0.3;  // time step relative to the smallest sqrt(m/k) of all grains
   Sides sides = Sides::walls;
   bool bonded_plates = false;  // the snow is frozen to the plates
   int threads = 0;             // 0: all
 
-  /// The size of the smallest thing the method resolves, m; 0 if the sample's file decides.
+  /// The smallest length that the method resolves, m; 0 if the sample's file determines it.
   double resolution() const { return 0; }
 };
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -13,7 +13,7 @@
 #include "snowshed/methods/grains/solver_impl.hpp"
 #include "snowshed/methods/grains/time_step.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
 std::unique_ptr<Solver> make_solver(Options options) {
   check_grains(options);
@@ -108,7 +108,7 @@ void SolverImpl::accept(State next, Workspace work) {
   next.pairs = std::move(listing.pairs);
   next.searched_poses = std::move(listing.poses);
   next.searched_boundary = next.boundary;
-  work.groups_of = std::move(listing.groups_of);
+  work.groups_by_body = std::move(listing.groups_by_body);
   work.results = std::move(listing.results);
   work.max_step = listing.max_step;
   work.next = next.bodies;
@@ -148,6 +148,7 @@ void SolverImpl::replace(const std::vector<ParticleBatch>& batches) {
   State next = with_batches(batches);
   next.time = state_.time;
   next.counters = state_.counters;
+  next.pair_searches = state_.pair_searches;
   next.energy = state_.energy;
   next.first_id = state_.next_id;
   next.next_id = state_.next_id + std::uint32_t(next.bodies.size());
@@ -227,10 +228,10 @@ void SolverImpl::relist(const Boundary& moved) {
   state_.pairs = std::move(listing.pairs);
   state_.searched_poses = std::move(listing.poses);
   state_.searched_boundary = moved;
-  workspace_.groups_of = std::move(listing.groups_of);
+  workspace_.groups_by_body = std::move(listing.groups_by_body);
   workspace_.results = std::move(listing.results);
   workspace_.max_step = listing.max_step;
-  ++state_.counters.sorts;
+  ++state_.pair_searches;
 }
 
 void SolverImpl::step() {
@@ -286,4 +287,4 @@ void SolverImpl::end_step(const Boundary& moved, double dt) {
   soundness_.fail("the forces on a grain are not finite");
 }
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

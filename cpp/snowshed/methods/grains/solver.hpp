@@ -13,12 +13,12 @@
 #include "snowshed/methods/grains/settings.hpp"
 #include "snowshed/methods/scene_parts.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
 struct Options {
   Settings settings;
-  double gravity = 0;  // m/s2, along -z
-  Sample sample;       // clumps, bonds between them, and their box
+  double gravity = 9.81;  // m/s2, along -z
+  Sample sample;          // clumps, bonds between them, and their box
   std::vector<LoadingStage> loading;
   Cone cone;
   bool energy = false;  // whether to keep the energy balance
@@ -58,6 +58,7 @@ struct GrainContact {
 class Solver : public Method, public SeedsItself, public KeepsEnergy, public HasCurve {
  public:
   virtual std::size_t count_spheres() const = 0;
+  virtual std::int64_t pair_searches() const = 0;  ///< since the method was made
   virtual LoadingMeasures measures() const = 0;
   virtual LoadingStresses stresses() const = 0;                  ///< a cheap part of measures()
   virtual int stage() const = 0;                                 ///< measures().stage, cheaply
@@ -69,4 +70,4 @@ class Solver : public Method, public SeedsItself, public KeepsEnergy, public Has
 /// Throws InputError if settings, sample and loading do not fit each other.
 std::unique_ptr<Solver> make_solver(Options);
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

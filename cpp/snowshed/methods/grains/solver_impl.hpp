@@ -4,7 +4,7 @@
 #include "snowshed/methods/grains/state.hpp"
 #include "snowshed/methods/particle_method.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
 class SolverImpl final : public Solver {
  public:
@@ -25,8 +25,8 @@ class SolverImpl final : public Solver {
   double time_step() const override { return state_.dt; }
   const StepCounters& counters() const override { return state_.counters; }
 
-  std::vector<FieldInfo> fields() const override;
-  FieldView field(const std::string&) const override;
+  std::vector<particles::FieldInfo> fields() const override;
+  particles::FieldView field(const std::string&) const override;
   const std::vector<std::uint32_t>& order_by_id() const override { return order_; }
 
   std::size_t size() const override { return state_.bodies.size(); }
@@ -36,14 +36,15 @@ class SolverImpl final : public Solver {
   PointCloud snapshot() const override;
   std::size_t bytes() const override;
 
-  void save(BinaryWriter&) const override;
-  void load(const BinaryReader&) override;
-  void check(const BinaryReader&) const override;
+  void save(io::BinaryWriter&) const override;
+  void load(const io::BinaryReader&) override;
+  void check(const io::BinaryReader&) const override;
 
   using SeedsItself::seed;
   std::vector<ParticleBatch> seed(const StopRequest&) const override;
   std::unique_ptr<Curve> empty_curve() const override;
   std::size_t count_spheres() const override { return model_.spheres.offsets.size(); }
+  std::int64_t pair_searches() const override { return state_.pair_searches; }
   LoadingMeasures measures() const override;
   LoadingStresses stresses() const override;
   int stage() const override { return state_.loading.stage; }
@@ -57,7 +58,7 @@ class SolverImpl final : public Solver {
     State state;
     Workspace work;
   };
-  LoadedState read_state(const BinaryReader&) const;
+  LoadedState read_state(const io::BinaryReader&) const;
 
   State with_batches(const std::vector<ParticleBatch>&) const;
   void accept(State, Workspace);
@@ -78,4 +79,4 @@ class SolverImpl final : public Solver {
   std::vector<std::uint32_t> order_;
 };
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -15,7 +15,7 @@
 #include "snowshed/methods/grains/rotor.hpp"
 #include "snowshed/methods/grains/solver.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
 /// Motion of a grain, and the forces on it.
 struct GrainBody {
@@ -78,6 +78,7 @@ struct State {
   double time = 0, dt = 0;  // s
   std::int64_t bonds = 0, broken_in_tension = 0, broken_in_shear = 0;
   StepCounters counters;
+  std::int64_t pair_searches = 0;
   EnergyBalance energy;  // sums over steps; stored energies are computed on request
 };
 
@@ -85,9 +86,9 @@ struct Workspace {
   std::vector<GrainBody> next;        // grains at the end of a step
   std::vector<BodyFrame> frames;      // one per grain and plate
   std::vector<GroupForce> results;    // one per group of pairs
-  BodyGroups groups_of;               // groups of each grain
+  BodyGroups groups_by_body;          // groups of each grain
   double max_step = 0;                // s, largest that all listed pairs allow
   std::vector<double> damped_energy;  // J, lost by each grain in a step
 };
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -8,7 +8,7 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/methods/grains/contacts.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 namespace {
 
 /// Stiffness of a grain's pairs against its displacement and its rotation, in the grain's frame.
@@ -65,4 +65,4 @@ double choose_step(const Model& model, const State& state, double max_step) {
   return dt;
 }
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

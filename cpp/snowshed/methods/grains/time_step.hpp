@@ -3,10 +3,10 @@
 
 #include "snowshed/methods/grains/state.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
-/// The Courant factor times the least, over grains, of sqrt(m / K) and of the same for rotation. K
-/// is the stiffness of all listed pairs, touching or not, because no other pairs can touch before
+/// The Courant factor times the smallest sqrt(m / K) of all grains, in translation and in rotation.
+/// K is the stiffness of all listed pairs, touching or not, because no other pairs can touch before
 /// the next list is made. For rotation it is the largest eigenvalue of the stiffness against
 /// turning, sum k (c^2 - c c^T) with the arms c of the contacts, relative to the inertia. The
 /// squared frequency of a mode is at most four times the largest K / m (two bodies, each with
@@ -17,4 +17,4 @@ double max_step(const Model&, const Boundary&, const PairList&, const std::vecto
 /// Throws SimulationError if the step would be zero.
 double choose_step(const Model&, const State&, double max_step);
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -5,7 +5,7 @@
 
 #include "snowshed/core/parallel.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
 /// Calls f(neighbour index, key) for the 3^D blocks around a block, including itself.
@@ -67,31 +67,31 @@ void BlockLayout<D>::connect(int threads) {
       around_nodes[i][n] = find_block(particle_blocks, k);
     });
   });
-  find_meetings();
+  find_overlaps();
 }
 
 template <int D>
-void BlockLayout<D>::find_meetings() {
+void BlockLayout<D>::find_overlaps() {
   if (grid_blocks.empty() || field_of(grid_blocks.back()) == 0) return;  // one field
   std::vector<std::pair<BlockCoord<D>, std::int32_t>> by_coord;
   for (std::size_t g = 0; g < grid_blocks.size(); ++g)
     by_coord.push_back({block_coord<D>(grid_blocks[g]), std::int32_t(g)});
   std::sort(by_coord.begin(), by_coord.end());
-  has_meeting.assign(grid_blocks.size(), 0);
+  has_overlap.assign(grid_blocks.size(), 0);
   for (std::size_t i = 0, end; i < by_coord.size(); i = end) {
     end = i + 1;
     while (end < by_coord.size() && by_coord[end].first == by_coord[i].first) ++end;
     if (end - i < 2) continue;
     for (std::size_t k = i; k < end; ++k) {
-      meeting_blocks.push_back(by_coord[k].second);
-      has_meeting[by_coord[k].second] = 1;
+      overlap_blocks.push_back(by_coord[k].second);
+      has_overlap[by_coord[k].second] = 1;
     }
-    meeting_first.push_back(std::int32_t(meeting_blocks.size()));
+    overlap_first.push_back(std::int32_t(overlap_blocks.size()));
   }
-  if (meeting_blocks.empty()) has_meeting.clear();
+  if (overlap_blocks.empty()) has_overlap.clear();
 }
 
 template struct BlockLayout<2>;
 template struct BlockLayout<3>;
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

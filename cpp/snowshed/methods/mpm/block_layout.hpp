@@ -8,7 +8,7 @@
 
 #include "snowshed/methods/mpm/kernel_api.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 
 /// Integer position of a block; its first node is at coordinate * block_edge.
 template <int D>
@@ -69,12 +69,11 @@ struct BlockLayout {
   /// For each grid block, the particle blocks around it in the same order, or -1 if there is none.
   std::vector<Neighbours> around_nodes;
 
-  /// Meetings are positions at which several fields have blocks of nodes. Meeting i has the grid
-  /// blocks meeting_blocks[k], meeting_first[i] <= k < meeting_first[i + 1]. `has_meeting` has a
-  /// flag for each grid block: whether it belongs to a meeting. It is empty if there are no
-  /// meetings.
-  std::vector<std::int32_t> meeting_first{0}, meeting_blocks;
-  std::vector<std::uint8_t> has_meeting;
+  /// An overlap is a position at which several fields have blocks of nodes. Overlap i has the grid
+  /// blocks overlap_blocks[k], overlap_first[i] <= k < overlap_first[i + 1]. `has_overlap` has a
+  /// flag for each grid block: whether it belongs to an overlap. It is empty without overlaps.
+  std::vector<std::int32_t> overlap_first{0}, overlap_blocks;
+  std::vector<std::uint8_t> has_overlap;
 
   /// Returns the layout of the given particle blocks.
   static BlockLayout of(std::vector<BlockKey> blocks, std::vector<std::int32_t> starts,
@@ -87,7 +86,7 @@ struct BlockLayout {
 
  private:
   void connect(int threads);
-  void find_meetings();
+  void find_overlaps();
 };
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

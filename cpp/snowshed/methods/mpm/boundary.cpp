@@ -7,10 +7,10 @@
 
 #include "snowshed/core/parallel.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 
-ThickSolid thickened_for_grid(Shape shape, double dx, int dimension) {
-  return thickened(std::move(shape), dx, dimension);
+geometry::ThickSolid thickened_for_grid(geometry::Shape shape, double dx, int dimension) {
+  return geometry::thickened(std::move(shape), dx, dimension);
 }
 
 Obstacle thickened_obstacle(Obstacle obstacle, double dx, int dimension) {
@@ -19,8 +19,8 @@ Obstacle thickened_obstacle(Obstacle obstacle, double dx, int dimension) {
 }
 
 template <class T, int D>
-Boundary<T, D>::Boundary(std::vector<Obstacle> obstacles, double dx, std::vector<Shape> surfaces,
-                         double margin)
+Boundary<T, D>::Boundary(std::vector<Obstacle> obstacles, double dx,
+                         std::vector<geometry::Shape> surfaces, double margin)
     : surfaces_(std::move(surfaces)), dx_(dx), margin_(margin) {
   if (surfaces_.empty())
     for (const Obstacle& o : obstacles) surfaces_.push_back(o.shape);
@@ -42,7 +42,7 @@ VecD<D> node_position(const BlockCoord<D>& block, int node, double dx) {
 }
 
 template <int D>
-VecD<D> block_centre(const BlockCoord<D>& block, double dx) {
+VecD<D> block_center(const BlockCoord<D>& block, double dx) {
   constexpr int B = block_edge<D>;
   VecD<D> x;
   for (int d = 0; d < D; ++d) x[d] = (block[d] * B + 0.5 * (B - 1)) * dx;
@@ -60,9 +60,9 @@ void Boundary<T, D>::find(BlockKey key, double time, bool moving,
   for (std::size_t o = 0; o < obstacles_.size(); ++o) {
     const Obstacle& obstacle = obstacles_[o];
     if (obstacle.motion.has_value() != moving) continue;
-    const RigidPose pose = moving ? obstacle.motion->at(time) : RigidPose{};
+    const geometry::RigidPose pose = moving ? obstacle.motion->at(time) : geometry::RigidPose{};
     const auto local = [&](const Vec3& x) { return moving ? pose.to_body(x) : x; };
-    if (obstacle.shape->distance(local(embed(block_centre<D>(block, dx_)))) > reach + margin_)
+    if (obstacle.shape->distance(local(embed(block_center<D>(block, dx_)))) > reach + margin_)
       continue;
     for (int node = 0; node < block_nodes<D>; ++node) {
       const Vec3 x = embed(node_position<D>(block, node, dx_));
@@ -195,4 +195,4 @@ template class Contacts<float, 3>;
 template class Contacts<double, 2>;
 template class Contacts<double, 3>;
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

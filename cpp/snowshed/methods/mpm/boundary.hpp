@@ -3,8 +3,8 @@
 // The conditions are the thesis's (1.2.3). Two things are ours:
 // - Friction acts on the running mean of the net normal impulse (see NodeKernels::apply), so the
 //   contacts have a memory that outlives a step.
-// - Where gravity presses snow onto an obstacle, `separate` releases the snow only after pull has
-//   used up the push before it. A vibrating slab thus stays on its panel. Elsewhere `separate`
+// - Where gravity presses snow onto an obstacle, `separate` releases the snow only when pulls have
+//   used up the stored push. A vibrating slab thus stays on its panel. Elsewhere `separate`
 //   releases snow at once, so that snow never hangs from a panel's back.
 #pragma once
 
@@ -16,11 +16,11 @@
 #include "snowshed/methods/mpm/block_layout.hpp"
 #include "snowshed/methods/obstacle.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 
 /// Returns a solid as the grid must see it. Parts thinner than two cells would slip between the
 /// nodes. Their surface is moved out until they are two cells thick.
-ThickSolid thickened_for_grid(Shape shape, double dx, int dimension);
+geometry::ThickSolid thickened_for_grid(geometry::Shape shape, double dx, int dimension);
 Obstacle thickened_obstacle(Obstacle obstacle, double dx, int dimension);
 
 /// Returns the unit vector along the projection of a normal onto the section, or the upward
@@ -46,7 +46,7 @@ class Boundary {
   /// `surfaces` are the shapes of the obstacles before thin parts were made thicker. If the list is
   /// empty, the shapes of `obstacles` are used. Nodes outside a surface have contacts, too, if they
   /// are within `margin` (m) of it.
-  Boundary(std::vector<Obstacle> obstacles, double dx, std::vector<Shape> surfaces = {},
+  Boundary(std::vector<Obstacle> obstacles, double dx, std::vector<geometry::Shape> surfaces = {},
            double margin = 0);
 
   const std::vector<ContactLaw>& laws() const { return laws_; }
@@ -61,7 +61,8 @@ class Boundary {
   /// The surface of an obstacle, not thickened, at a time.
   class Surface {
    public:
-    Surface(const LevelSet& shape, const std::optional<RigidMotion>& motion, double time)
+    Surface(const geometry::LevelSet& shape, const std::optional<geometry::RigidMotion>& motion,
+            double time)
         : shape_(shape) {
       if (motion) pose_ = motion->at(time);
     }
@@ -74,8 +75,8 @@ class Boundary {
     }
 
    private:
-    const LevelSet& shape_;
-    std::optional<RigidPose> pose_;
+    const geometry::LevelSet& shape_;
+    std::optional<geometry::RigidPose> pose_;
   };
   Surface surface(std::int32_t obstacle, double time) const {
     return {*surfaces_[obstacle], obstacles_[obstacle].motion, time};
@@ -87,7 +88,7 @@ class Boundary {
 
  private:
   std::vector<Obstacle> obstacles_;
-  std::vector<Shape> surfaces_;  // shapes of the obstacles, not thickened
+  std::vector<geometry::Shape> surfaces_;  // shapes of the obstacles, not thickened
   std::vector<ContactLaw> laws_;
   double dx_, margin_;
   bool any_motion_ = false;
@@ -161,4 +162,4 @@ class Contacts {
   std::vector<Contact<T>> contacts_;
 };
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -6,7 +6,7 @@
 #include "snowshed/methods/archive.hpp"
 #include "snowshed/methods/mpm/solver_impl.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
 /// Contents of a checkpoint about contacts and sleep, besides the particles and the numbers.
@@ -14,7 +14,7 @@ template <class T, int D>
 struct CheckpointParts {
   std::vector<typename Contacts<T, D>::StoredImpulse> impulses;
   std::vector<typename Sleep<D>::State> sleep;
-  std::vector<FieldContact<T>> meetings;
+  std::vector<EventContact<T>> event_contacts;
 };
 
 /// Returns whether a solver with a single snow may lack this array. Solvers with several snows have
@@ -57,13 +57,13 @@ void visit_rest(Archive& archive, Layout& layout, CheckpointParts<T, D>& stored,
   archive.numbers("energy", e.kinetic, e.gravitational, e.elastic, e.plastic, e.friction,
                   e.sticking, e.impact, e.transfer, e.sleep, e.added);
   archive.numbers("clock", p.time, p.dt, p.speed, c.smallest_dt, p.stress_power);
-  archive.counts("counters", c.steps, c.rejected, c.sorts, c.particle_updates, p.slept_updates,
+  archive.counts("counters", c.steps, c.rejected, p.sorts, c.particle_updates, p.slept_updates,
                  p.next_id);
   if (settings.fields == Fields::events) {
-    using Meeting = FieldContact<T>;
-    archive.columns(stored.meetings, column("met/first", &Meeting::first_key),
-                    column("met/second", &Meeting::second_key), column("met/node", &Meeting::node),
-                    column("met/amount", &Meeting::next_impulse));
+    using Contact = EventContact<T>;
+    archive.columns(stored.event_contacts, column("met/first", &Contact::first_key),
+                    column("met/second", &Contact::second_key), column("met/node", &Contact::node),
+                    column("met/amount", &Contact::next_impulse));
   }
   if (settings.damps_over_length()) {
     archive.numbers("damping", p.undamped_time, e.damping);
@@ -114,44 +114,44 @@ void check_materials(const StateReader& archive, const AlignedVector<std::uint8_
 }  // namespace
 
 template <class T, int D>
-void SolverImpl<T, D>::save(BinaryWriter& out) const {
+void SolverImpl<T, D>::save(io::BinaryWriter& out) const {
   soundness_.require();
   StateWriter archive(out);
   CheckpointParts<T, D> stored{state_.contacts.stored_impulses(), state_.sleep.states(),
-                               state_.field_contacts};
+                               state_.event_contacts};
   visit_particles(archive, state_.particles, model_.materials.size());
-  visit_rest<T, D>(archive, state_.layout, stored, state_.progress, model_.options.settings);
+  visit_rest<T, D>(archive, state_.layout, stored, state_.totals, model_.options.settings);
 }
 
 template <class T, int D>
-State<T, D> SolverImpl<T, D>::read_state(const BinaryReader& in) const {
+State<T, D> SolverImpl<T, D>::read_state(const io::BinaryReader& in) const {
   const StateReader archive(in);
   State<T, D> next(model_);
   CheckpointParts<T, D> stored;
   visit_particles(archive, next.particles, model_.materials.size());
   check_materials(archive, next.particles.material_id, model_.materials.size());
-  visit_rest<T, D>(archive, next.layout, stored, next.progress, model_.options.settings);
+  visit_rest<T, D>(archive, next.layout, stored, next.totals, model_.options.settings);
   next.find_elastic_limits(model_);
-  next.layout =
-      whole_layout<T>(archive, std::move(next.layout), next.particles.size(), work_.grid.tile_size);
+  next.layout = whole_layout<T>(archive, std::move(next.layout), next.particles.size(),
+                                workspace_.grid.tile_size);
   next.contacts =
-      next.contacts.relocated(model_.boundary, next.layout.grid_blocks, next.progress.time);
+      next.contacts.relocated(model_.boundary, next.layout.grid_blocks, next.totals.time);
   next.contacts.restore(stored.impulses);
   next.sleep = next.sleep.with_states(next.layout, std::move(stored.sleep));
-  next.field_contacts = std::move(stored.meetings);
+  next.event_contacts = std::move(stored.event_contacts);
   next.find_event_fields();
   return next;
 }
 
 template <class T, int D>
-void SolverImpl<T, D>::load(const BinaryReader& in) {
+void SolverImpl<T, D>::load(const io::BinaryReader& in) {
   accept(read_state(in));
-  work_.since_sort = 0;
+  workspace_.since_sort = 0;
   soundness_ = {};
 }
 
 template <class T, int D>
-void SolverImpl<T, D>::check(const BinaryReader& in) const {
+void SolverImpl<T, D>::check(const io::BinaryReader& in) const {
   read_state(in);
 }
 
@@ -160,4 +160,4 @@ template class SolverImpl<float, 3>;
 template class SolverImpl<double, 2>;
 template class SolverImpl<double, 3>;
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -9,7 +9,7 @@
 #include "snowshed/methods/mpm/kernel_api.hpp"
 #include "snowshed/methods/mpm/time_step.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
 /// Memory of the solver. A particle holds position, velocity, elastic and plastic strain, mass, id
@@ -92,9 +92,10 @@ double steps_per_event(const Settings& n, const SnowMotion& motion, double time_
 
 }  // namespace
 
-double stable_time_step(const Settings& n, const std::vector<Snow>& snows, int dimension) {
+double stable_time_step(const Settings& n, const std::vector<material::Snow>& snows,
+                        int dimension) {
   double limit = std::numeric_limits<double>::infinity();
-  for (const Snow& snow : snows)
+  for (const material::Snow& snow : snows)
     limit = std::min(limit, elastic_time_step(snow.youngs_modulus, snow.poissons_ratio,
                                               snow.density, dimension, n.dx, n.transfer, n.basis));
   return next_time_step(limit, 0.0, n.dx, n.courant_factor);
@@ -124,9 +125,9 @@ CostEstimate estimate_cost(const Settings& n, const SceneView& scene, const Scen
 
 std::vector<Feature> features_of(const Settings& n, const SceneView& scene,
                                  const SceneOutline& outline) {
-  const bool yields = std::any_of(outline.snows.begin(), outline.snows.end(), [](const Snow& snow) {
-    return snow.model == SnowModel::cam_clay;
-  });
+  const bool yields = std::any_of(
+      outline.snows.begin(), outline.snows.end(),
+      [](const material::Snow& snow) { return snow.model == material::SnowModel::cam_clay; });
   std::vector<Feature> features{
       {"third dimension", scene.dimension == 3},
       {"double precision", n.precision == Precision::float64},
@@ -156,4 +157,4 @@ std::vector<Feature> features_of(const Settings& n, const SceneView& scene,
   return features;
 }
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -2,7 +2,7 @@
 
 #include "snowshed/methods/allowed.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 
 void describe(SettingsVisitor& v, Settings& n) {
   v.accuracy({"dx", "scheme", "precision", "transfer", "flip_ratio", "damping_rate",
@@ -50,7 +50,7 @@ void describe(SettingsVisitor& v, Settings& n) {
            "of the snow itself at the critical state, M/sqrt(3)");
   v.choice("basis", n.basis, "B-spline of the grid");
   v.number("courant_factor", n.courant_factor, "", positive.up_to(1.0),
-           "Time step over the largest stable one");
+           "Time step relative to the largest stable time step");
   v.number("strain_limit", n.strain_limit, "", positive.up_to(0.5),
            "Largest |dt grad v| that a step may impose on a particle");
   v.number("sleep_speed", n.sleep_speed, "m/s", non_negative.up_to(1e4),
@@ -60,4 +60,4 @@ void describe(SettingsVisitor& v, Settings& n) {
   v.integer("threads", n.threads, non_negative.up_to(4096), "Threads; 0: all");
 }
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

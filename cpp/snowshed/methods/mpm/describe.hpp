@@ -5,7 +5,7 @@
 #include "snowshed/methods/mpm/settings.hpp"
 #include "snowshed/methods/settings_visitor.hpp"
 
-namespace snowshed {
+namespace snowshed::methods {
 
 template <>
 struct EnumNames<mpm::Precision> {
@@ -44,11 +44,11 @@ struct EnumNames<mpm::Basis> {
                                                {mpm::Basis::cubic, "cubic"}};
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::methods
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 
 /// Shows a visitor each setting in turn: key, unit, range and meaning.
 void describe(SettingsVisitor&, Settings&);
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

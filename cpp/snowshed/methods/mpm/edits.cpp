@@ -6,7 +6,7 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/methods/mpm/solver_impl.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
 /// Appends the batches to a state and updates all that depends on them.
@@ -27,7 +27,7 @@ void add_to(State<T, D>& state, const Model<T, D>& model,
 template <class T, int D>
 void SolverImpl<T, D>::accept(State<T, D> next) noexcept {
   state_ = std::move(next);
-  work_.tiles_valid = false;
+  workspace_.tiles_valid = false;
 }
 
 template <class T, int D>
@@ -42,9 +42,9 @@ template <class T, int D>
 void SolverImpl<T, D>::replace(const std::vector<ParticleBatch>& batches) {
   soundness_.require();
   State<T, D> next(model_);
-  next.progress = state_.progress;
+  next.totals = state_.totals;
   if (model_.options.energy) {
-    EnergyBalance& balance = next.progress.energy;
+    EnergyBalance& balance = next.totals.energy;
     balance.added -= state_.energy(model_).stored();
     balance.kinetic = balance.gravitational = balance.elastic = 0;
   }
@@ -70,14 +70,14 @@ void SolverImpl<T, D>::add_velocity(const std::vector<Vec3>& velocity_changes) {
     }
     fastest = std::max(fastest, v2);
   }
-  state_.progress.speed = std::sqrt(fastest);
+  state_.totals.speed = std::sqrt(fastest);
   if (model_.options.energy) {
-    EnergyBalance& balance = state_.progress.energy;
+    EnergyBalance& balance = state_.totals.energy;
     balance.kinetic = state_.kinetic_energy(model_);
     balance.added += balance.kinetic - before;
   }
-  state_.sleep.wake_all(state_.layout, state_.progress.time);
-  work_.tiles_valid = false;
+  state_.sleep.wake_all(state_.layout, state_.totals.time);
+  workspace_.tiles_valid = false;
 }
 
 template <class T, int D>
@@ -91,7 +91,7 @@ void SolverImpl<T, D>::settle(const std::vector<double>& drops,
     if (!std::isfinite(drops[k]) || !std::isfinite(plastic_changes[k]))
       throw InputError("settling", "not finite");
   const Settings& n = model_.options.settings;
-  const double stored = model_.options.energy ? energy().stored() : 0.0;
+  const double stored = model_.options.energy ? state_.energy(model_).stored() : 0.0;
   State<T, D> next = state_;
   std::vector<BlockKey> blocks = blocks_of_particles(next.layout);
   for (std::size_t k = 0; k < at.size(); ++k) {
@@ -102,9 +102,9 @@ void SolverImpl<T, D>::settle(const std::vector<double>& drops,
     if (next.particles.has_plastic) next.particles.plastic[i] += T(plastic_changes[k]);
   }
   next.arrange(model_, std::move(blocks));
-  next.sleep.wake_all(next.layout, next.progress.time);
+  next.sleep.wake_all(next.layout, next.totals.time);
   if (model_.options.energy) {
-    EnergyBalance& balance = next.progress.energy;
+    EnergyBalance& balance = next.totals.energy;
     balance.gravitational = next.gravitational_energy(model_);
     balance.added += balance.stored() - stored;
   }
@@ -116,4 +116,4 @@ template class SolverImpl<float, 3>;
 template class SolverImpl<double, 2>;
 template class SolverImpl<double, 3>;
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

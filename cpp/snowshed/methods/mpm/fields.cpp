@@ -5,11 +5,12 @@
 #include "snowshed/methods/field_sources.hpp"
 #include "snowshed/methods/mpm/solver_impl.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
 /// One component of a vector or tensor, such as velocity_x.
-FieldInfo component_of(const Quantity& q, const std::string& axes, FieldType type) {
+particles::FieldInfo component_of(const Quantity& q, const std::string& axes,
+                                  particles::FieldType type) {
   return {q.name + "_" + axes, q.unit, q.meaning + "; component " + axes, 1, type, true};
 }
 
@@ -23,22 +24,23 @@ template <int D>
 std::string symmetric_axes(int k) {
   for (int i = 0; i < D; ++i)
     for (int j = i; j < D; ++j)
-      if (Sym<double, D>::index(i, j) == k) return {axis_names<D>()[i], axis_names<D>()[j]};
+      if (material::Sym<double, D>::index(i, j) == k)
+        return {axis_names<D>()[i], axis_names<D>()[j]};
   return {};
 }
 
 }  // namespace
 
 template <class T, int D>
-Sym<double, D> SolverImpl<T, D>::elastic_strain(std::size_t i) const {
-  Sym<double, D> a;
+material::Sym<double, D> SolverImpl<T, D>::elastic_strain(std::size_t i) const {
+  material::Sym<double, D> a;
   for (int k = 0; k < a.size; ++k) a.c[k] = double(state_.particles.be_minus_identity[k][i]);
-  return hencky_strain(a);
+  return material::hencky_strain(a);
 }
 
 template <class T, int D>
 double SolverImpl<T, D>::elastic_volumetric_strain(std::size_t i) const {
-  return trace(elastic_strain(i));
+  return material::trace(elastic_strain(i));
 }
 
 template <class T, int D>
@@ -52,16 +54,21 @@ double SolverImpl<T, D>::volume_ratio(std::size_t i) const {
 }
 
 template <class T, int D>
+double SolverImpl<T, D>::density(std::size_t i) const {
+  return state_.material_of(model_, i).density / volume_ratio(i);
+}
+
+template <class T, int D>
 double SolverImpl<T, D>::pressure(std::size_t i) const {
   return -state_.material_of(model_, i).elastic.bulk * elastic_volumetric_strain(i);
 }
 
 template <class T, int D>
 double SolverImpl<T, D>::deviatoric_stress(std::size_t i) const {
-  Sym<double, D> deviator = elastic_strain(i);
-  const double mean = trace(deviator) / D;
+  material::Sym<double, D> deviator = elastic_strain(i);
+  const double mean = material::trace(deviator) / D;
   for (int k = 0; k < D; ++k) deviator.c[k] -= mean;
-  return state_.material_of(model_, i).elastic.mu * std::sqrt(6 * norm_squared(deviator));
+  return state_.material_of(model_, i).elastic.mu * std::sqrt(6 * material::norm_squared(deviator));
 }
 
 template <class T, int D>
@@ -107,7 +114,7 @@ void SolverImpl<T, D>::visit_fields(Visit visit) const {
   const FieldSources show(visit, state_.particles.size(), model_.max_threads);
   const auto components = [&show](const char* name, const auto& arrays, auto axes) {
     for (int k = 0; k < int(arrays.size()); ++k)
-      show.stored(component_of(quantity(name), axes(k), field_type<T>()), arrays[k]);
+      show.stored(component_of(quantity(name), axes(k), particles::field_type<T>()), arrays[k]);
   };
 
   show.computed("position", [this] { return positions(); });
@@ -115,9 +122,7 @@ void SolverImpl<T, D>::visit_fields(Visit visit) const {
   components("velocity", state_.particles.velocity,
              [](int d) { return std::string(1, axis_names<D>()[d]); });
   show.column("mass", state_.particles.mass);
-  show.of_each("density", [this](std::size_t i) {
-    return state_.material_of(model_, i).density / volume_ratio(i);
-  });
+  show.of_each("density", [this](std::size_t i) { return density(i); });
   show.of_each("volume_ratio", [this](std::size_t i) { return volume_ratio(i); });
   show.of_each("pressure", [this](std::size_t i) { return pressure(i); });
   show.of_each("deviatoric_stress", [this](std::size_t i) { return deviatoric_stress(i); });
@@ -143,12 +148,12 @@ void SolverImpl<T, D>::visit_fields(Visit visit) const {
 }
 
 template <class T, int D>
-std::vector<FieldInfo> SolverImpl<T, D>::fields() const {
+std::vector<particles::FieldInfo> SolverImpl<T, D>::fields() const {
   return list_fields([this](const auto& visit) { visit_fields(visit); });
 }
 
 template <class T, int D>
-FieldView SolverImpl<T, D>::field(const std::string& name) const {
+particles::FieldView SolverImpl<T, D>::field(const std::string& name) const {
   return find_field(name, [this](const auto& visit) { visit_fields(visit); });
 }
 
@@ -165,17 +170,11 @@ ParticleState SolverImpl<T, D>::state() const {
   by_id(s.positions, [&](std::size_t i) { return Vec3::Map(&x[3 * i]); });
   by_id(s.velocities, [this](std::size_t i) { return velocity(i); });
   by_id(s.masses, [this](std::size_t i) { return double(state_.particles.mass[i]); });
-  by_id(s.volume_ratios, [this](std::size_t i) { return volume_ratio(i); });
-  by_id(s.pressures, [this](std::size_t i) { return pressure(i); });
-  by_id(s.plastic_strains, [this](std::size_t i) { return plastic_strain(i); });
-  if (state_.particles.has_affine) by_id(s.affine, [this](std::size_t i) { return affine(i); });
+  by_id(s.densities, [this](std::size_t i) { return density(i); });
   by_id(s.ids, [this](std::size_t i) { return state_.particles.id[i]; });
   by_id(s.events, [this](std::size_t i) { return state_.particles.event[i]; });
   if (model_.options.snows.size() > 1)
     by_id(s.material_ids, [this](std::size_t i) { return state_.particles.material_id[i]; });
-  s.densities.resize(at.size());
-  for (std::size_t k = 0; k < at.size(); ++k)
-    s.densities[k] = state_.material_of(model_, at[k]).density / s.volume_ratios[k];
   return s;
 }
 
@@ -193,7 +192,8 @@ MotionSummary SolverImpl<T, D>::motion(double speed) const {
 
 template <class T, int D>
 std::size_t SolverImpl<T, D>::bytes() const {
-  std::size_t total = work_.grid.bytes() + (work_.average ? work_.average->bytes() : 0);
+  std::size_t total =
+      workspace_.grid.bytes() + (workspace_.average ? workspace_.average->bytes() : 0);
   state_.particles.for_each_array(
       [&total](const char*, const auto& array) { total += bytes_of(array); });
   return total;
@@ -204,4 +204,4 @@ template class SolverImpl<float, 3>;
 template class SolverImpl<double, 2>;
 template class SolverImpl<double, 3>;
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -5,7 +5,7 @@
 #include "snowshed/core/aligned_vector.hpp"
 #include "snowshed/methods/mpm/block_layout.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 
 template <class T, int D>
 struct Grid {
@@ -64,4 +64,4 @@ struct Grid {
   }
 };
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <tuple>
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 
 /// Calls f(index) for all indices in [begin, end) along each direction. The last direction changes
 /// fastest. An index is an array of integers.
@@ -25,4 +25,4 @@ void for_each_index(const Index& begin, const Index& end, F f) {
   }
 }
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -11,7 +11,7 @@
 #include "snowshed/methods/contact_law.hpp"
 #include "snowshed/methods/mpm/settings.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 
 /// Nodes along one edge of a grid block.
 template <int D>
@@ -103,7 +103,7 @@ struct StepParameters {
 /// Returns the share of its stored normal impulse for which a contact exerts friction in a step.
 /// `speed` is the sliding speed (m/s); see NodeKernels::apply.
 template <class T>
-SNOWSHED_INLINE T drain_rate(const StepParameters<T>& step, T speed) {
+SNOWSHED_INLINE T decay_share(const StepParameters<T>& step, T speed) {
   const T rate = step.friction_rate_per_speed * speed;
   return rate < step.friction_rate ? step.friction_rate : rate < T(1) ? rate : T(1);
 }
@@ -169,7 +169,7 @@ struct CarriedMotion {
 /// Rule by which a contact releases snow that is pulled off the obstacle.
 enum class Release : std::uint8_t {
   never,       // slip
-  after_push,  // separate, where gravity presses snow on: after pull has used up the push before it
+  after_push,  // separate, where gravity presses snow on: when pulls have used up the stored push
   at_once      // separate elsewhere
 };
 
@@ -225,7 +225,7 @@ struct KernelChoice {
   int dimension;
   Transfer transfer;
   Basis basis;
-  SnowModel model;  // the model of the only snow
+  material::SnowModel model;  // the model of the only snow
   bool several_materials = false;
   bool energy = false;
   bool regularised = false;  // Cam-Clay with a crack band or a relaxation time
@@ -243,4 +243,4 @@ struct KernelChoice {
 template <class T>
 Kernels<T> select_kernels(const KernelChoice&);
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

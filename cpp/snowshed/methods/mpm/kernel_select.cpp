@@ -2,7 +2,7 @@
 #include "snowshed/core/kernel_variant.hpp"
 #include "snowshed/methods/mpm/kernel_api.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 
 #define SNOWSHED_DECLARE(variant)                 \
   namespace variant {                             \
@@ -61,4 +61,4 @@ SNOWSHED_SELECT(double)
 #undef SNOWSHED_CASE_AVX512
 #undef SNOWSHED_CASE_AVX2
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -2,13 +2,14 @@
 
 #include "snowshed/methods/mpm/time_step.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
 template <class T>
-RegularisedCamClay<T> law_of(const Snow& s, int dimension, double softening) {
-  auto law = RegularisedCamClay<T>::from(s.youngs_modulus, s.poissons_ratio, s.critical_state_slope,
-                                         s.cohesion, s.hardening_factor, dimension);
+material::RegularisedCamClay<T> law_of(const material::Snow& s, int dimension, double softening) {
+  auto law = material::RegularisedCamClay<T>::from(s.youngs_modulus, s.poissons_ratio,
+                                                   s.critical_state_slope, s.cohesion,
+                                                   s.hardening_factor, dimension);
   law.softening = T(softening);
   law.band_begin = T(law.initial_plastic_strain(s.preconsolidation_pressure));
   return law;
@@ -16,30 +17,30 @@ RegularisedCamClay<T> law_of(const Snow& s, int dimension, double softening) {
 
 }  // namespace
 
-Material::Material(const Snow& s, int dimension, const Settings& n)
-    : elastic(Elasticity<double>::from(s.youngs_modulus, s.poissons_ratio, dimension)),
+Material::Material(const material::Snow& s, int dimension, const Settings& n)
+    : elastic(material::Elasticity<double>::from(s.youngs_modulus, s.poissons_ratio, dimension)),
       density(s.density),
       elastic_time_step(mpm::elastic_time_step(s.youngs_modulus, s.poissons_ratio, s.density,
                                                dimension, n.dx, n.transfer, n.basis)) {
-  if (s.model == SnowModel::elastic) return;
+  if (s.model == material::SnowModel::elastic) return;
   law = law_of<double>(s, dimension, n.softening());
   initial_plastic_strain = law.band_begin;
 }
 
 template <class T>
-MaterialConstants<T> material_constants(const Snow& s, int dimension, double softening) {
-  const RegularisedCamClay<T> c = law_of<T>(s, dimension, softening);
+MaterialConstants<T> material_constants(const material::Snow& s, int dimension, double softening) {
+  const material::RegularisedCamClay<T> c = law_of<T>(s, dimension, softening);
   MaterialConstants<T> k{c.elastic.lambda, c.elastic.mu, c.elastic.bulk, c.m2,
                          c.beta,           c.xi,         c.hardening,    T(1 / s.density),
                          c.softening,      c.band_begin};
-  if (s.model == SnowModel::elastic) {
+  if (s.model == material::SnowModel::elastic) {
     k.m2 = 0;
     k.beta = T(-0.5);
   }
   return k;
 }
 
-template MaterialConstants<float> material_constants(const Snow&, int, double);
-template MaterialConstants<double> material_constants(const Snow&, int, double);
+template MaterialConstants<float> material_constants(const material::Snow&, int, double);
+template MaterialConstants<double> material_constants(const material::Snow&, int, double);
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

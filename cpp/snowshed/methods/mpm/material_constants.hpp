@@ -7,22 +7,22 @@
 #include "snowshed/methods/mpm/kernel_api.hpp"
 #include "snowshed/methods/mpm/settings.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 
 struct Material {
-  Elasticity<double> elastic;
-  double density = 0;                 // kg/m3, initial
-  double initial_plastic_strain = 0;  // volumetric; not used for elastic snow
-  RegularisedCamClay<double> law;     // all zero for elastic snow
-  double elastic_time_step = 0;       // s
+  material::Elasticity<double> elastic;
+  double density = 0;                        // kg/m3, initial
+  double initial_plastic_strain = 0;         // volumetric; not used for elastic snow
+  material::RegularisedCamClay<double> law;  // all zero for elastic snow
+  double elastic_time_step = 0;              // s
 
-  Material(const Snow&, int dimension, const Settings&);
+  Material(const material::Snow&, int dimension, const Settings&);
 };
 
 /// Returns the constants for the kernels. Elastic snow has Cam-Clay constants whose yield function
 /// is zero everywhere (M = 0, beta = -1/2), so that it can stand beside snow that yields.
 /// `softening` is the factor of the crack band (Settings::softening).
 template <class T>
-MaterialConstants<T> material_constants(const Snow&, int dimension, double softening = 1);
+MaterialConstants<T> material_constants(const material::Snow&, int dimension, double softening = 1);
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -7,7 +7,7 @@
 #include "snowshed/methods/mpm/describe.hpp"
 #include "snowshed/methods/mpm/solver.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
 void check_damping(const Settings& n) {
@@ -86,7 +86,7 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
     check_damping(settings_);
     check_crack_band(settings_);
   }
-  ThickSolid thickened(const Shape& shape, int dimension) const override {
+  geometry::ThickSolid thickened(const geometry::Shape& shape, int dimension) const override {
     return thickened_for_grid(shape, settings_.dx, dimension);
   }
   std::unique_ptr<Method> build(const SceneView& scene,
@@ -119,4 +119,4 @@ const MethodDescriptor& descriptor() {
   return own;
 }
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -10,7 +10,7 @@
 #include "snowshed/methods/mpm/material_constants.hpp"
 #include "snowshed/methods/mpm/solver.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 
 /// Smallest number of particles for which it is worth waking another thread twice a step.
 inline constexpr int particles_per_thread = 2000;
@@ -36,14 +36,15 @@ struct Model {
   /// least friction.
   double event_friction() const {
     double slope = options.snows.front().critical_state_slope;
-    for (const Snow& snow : options.snows) slope = std::min(slope, snow.critical_state_slope);
+    for (const material::Snow& snow : options.snows)
+      slope = std::min(slope, snow.critical_state_slope);
     return options.settings.event_friction * slope / std::sqrt(3.0);
   }
 
   bool has_affine() const { return options.settings.has_affine(); }
   bool touches() const { return options.settings.contact == ContactRule::touch; }
   bool has_plastic() const {
-    return material_per_particle || options.snows.front().model == SnowModel::cam_clay;
+    return material_per_particle || options.snows.front().model == material::SnowModel::cam_clay;
   }
 
   /// Returns the number of threads that is worth using for this number of particles.
@@ -70,11 +71,11 @@ struct Model {
         max_threads(threads_to_use(options.settings.threads)),
         boundary(std::move(options.obstacles), options.settings.dx, std::move(options.surfaces),
                  touches() ? touch_margin * options.settings.dx : 0.0) {
-    for (const Snow& snow : options.snows) {
+    for (const material::Snow& snow : options.snows) {
       materials.emplace_back(snow, D, options.settings);
       constants.push_back(material_constants<T>(snow, D, options.settings.softening()));
     }
   }
 };
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -8,7 +8,7 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/parallel.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 
 template <int D>
 Placement<D> Placement<D>::of(const VecD<D>& position, double dx, Basis basis, int field) {
@@ -144,4 +144,4 @@ template class ParticleSort<double, 3>;
 template std::vector<BlockKey> blocks_of_particles(const BlockLayout<2>&);
 template std::vector<BlockKey> blocks_of_particles(const BlockLayout<3>&);
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -5,7 +5,7 @@
 #include "snowshed/methods/mpm/block_layout.hpp"
 #include "snowshed/methods/mpm/particles.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 
 /// The block in which a position (m) lies, and the `cell` coordinates within this block.
 template <int D>
@@ -55,4 +55,4 @@ class ParticleSort {
 template <int D>
 std::vector<BlockKey> blocks_of_particles(const BlockLayout<D>&);
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -17,7 +17,7 @@
 #include "snowshed/methods/mpm/kernel_api.hpp"
 #include "snowshed/particles/id_order.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 
 /// State of all particles in D dimensions. Arrays that a scene does not need stay empty.
 template <class T, int D>
@@ -112,7 +112,8 @@ struct Particles {
   /// Returns the index of each particle, ordered by id. The first call computes the order, which is
   /// then stored until particles are rearranged.
   const std::vector<std::uint32_t>& order_by_id() const {
-    if (order_by_id_.size() != size()) order_by_id_ = snowshed::order_by_id(id.data(), size());
+    if (order_by_id_.size() != size())
+      order_by_id_ = snowshed::particles::order_by_id(id.data(), size());
     return order_by_id_;
   }
 
@@ -149,4 +150,4 @@ struct Particles {
   mutable std::vector<std::uint32_t> order_by_id_;  // empty if not known
 };
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

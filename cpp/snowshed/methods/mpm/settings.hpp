@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 
 enum class Precision { float32, float64 };
 enum class Transfer { flip, apic, affine_flip };
@@ -30,7 +30,7 @@ struct Settings {
   Fields fields = Fields::one;
   double event_friction = 1;  // friction between fields of events, over the snow's M/sqrt(3)
   Basis basis = Basis::quadratic;
-  double courant_factor = 0.9;  // time step over the largest stable one
+  double courant_factor = 0.9;  // time step over the largest stable time step
   double strain_limit = 0.2;    // largest |dt grad v| a step may impose on a particle
   double sleep_speed = 0.02;    // m/s, snow slower than this drops out of the steps; 0: never
   double sleep_time = 0.04;     // s, time for which snow must be slower before it drops out
@@ -96,4 +96,4 @@ struct Settings {
   }
 };
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

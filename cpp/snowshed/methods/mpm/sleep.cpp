@@ -6,7 +6,7 @@
 
 #include "snowshed/methods/mpm/solver_impl.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
 /// Largest speed of a single particle in a slow block, over the limit.
@@ -53,7 +53,7 @@ Sleep<D> Sleep<D>::relocated(const BlockLayout<D>& layout, double now) const {
     if (old == keys_.size()) break;
     if (keys_[old] != layout.particle_blocks[b]) continue;
     states[b] = states_[old];
-    // Sleeping snow does not leave its block, so another number means that snow has come.
+    // Sleeping snow does not leave its block, so a changed number means that snow has arrived.
     if (states[b].asleep && counts[b] != counts_[old]) states[b] = awake_since(now);
   }
   return with_states(layout, std::move(states));
@@ -160,10 +160,10 @@ void Sleep<D>::list_blocks(const BlockLayout<D>& layout) noexcept {
   std::fill(touched_.begin(), touched_.end(), false);
   for (std::int32_t b : awake_)
     for (std::int32_t g : layout.around_particles[b]) touched_[g] = true;
-  // In a meeting, the snow of each field acts on that of the others.
-  for (std::size_t i = 0; i + 1 < layout.meeting_first.size(); ++i) {
-    const auto begin = layout.meeting_blocks.begin() + layout.meeting_first[i];
-    const auto end = layout.meeting_blocks.begin() + layout.meeting_first[i + 1];
+  // In an overlap, the snow of each field acts on that of the others.
+  for (std::size_t i = 0; i + 1 < layout.overlap_first.size(); ++i) {
+    const auto begin = layout.overlap_blocks.begin() + layout.overlap_first[i];
+    const auto end = layout.overlap_blocks.begin() + layout.overlap_first[i + 1];
     if (std::any_of(begin, end, [&](std::int32_t g) { return touched_[g]; }))
       std::for_each(begin, end, [&](std::int32_t g) { touched_[g] = true; });
   }
@@ -191,12 +191,12 @@ template <class T, int D>
 void SolverImpl<T, D>::update_sleep() noexcept {
   if (!state_.sleep.allowed() || counters().steps % steps_between_checks != 0) return;
   const ParticleView<T> view = state_.particles.view();
-  const StepParameters<T> step = parameters(state_.progress.dt);
+  const StepParameters<T> step = parameters(state_.totals.dt);
   const auto& newly_asleep =
       state_.sleep.update(state_.layout, time(), steps_between_checks, time_step(), block_probe());
   for (std::int32_t b : newly_asleep) {
-    state_.progress.energy.sleep += work_.grid.block_stats[b].kinetic;
-    state_.progress.energy.kinetic -= work_.grid.block_stats[b].kinetic;
+    state_.totals.energy.sleep += workspace_.grid.block_stats[b].kinetic;
+    state_.totals.energy.kinetic -= workspace_.grid.block_stats[b].kinetic;
     state_.particles.zero_velocity(state_.layout.first[b], state_.layout.first[b + 1]);
     scatter_block(step, view, b);
   }
@@ -207,7 +207,7 @@ template <class T, int D>
 typename Sleep<D>::BlockProbe SolverImpl<T, D>::block_probe() {
   typename Sleep<D>::BlockProbe block_probe;
   block_probe.fastest = [this](std::int32_t b) {
-    return std::sqrt(work_.grid.block_stats[b].speed_squared);
+    return std::sqrt(workspace_.grid.block_stats[b].speed_squared);
   };
   block_probe.speed = [this](std::int32_t b) {
     return state_.particles.rms_speed(state_.layout.first[b], state_.layout.first[b + 1]);
@@ -219,13 +219,13 @@ typename Sleep<D>::BlockProbe SolverImpl<T, D>::block_probe() {
     const T *sums[neighbour_count<D>], *velocities[neighbour_count<D>];
     for (int k = 0; k < neighbour_count<D>; ++k) {
       const std::int32_t g = state_.layout.around_particles[b][k];
-      const bool moves = state_.sleep.is_active(g) && work_.grid.touched[g];
-      sums[k] = moves ? work_.grid.sum(g) : nullptr;
-      velocities[k] = moves ? work_.grid.velocity(g) : nullptr;
+      const bool moves = state_.sleep.is_active(g) && workspace_.grid.touched[g];
+      sums[k] = moves ? workspace_.grid.sum(g) : nullptr;
+      velocities[k] = moves ? workspace_.grid.velocity(g) : nullptr;
     }
     CarriedMotion motion;
-    model_.kernels.carried_motion(work_.grid.tile(b), work_.grid.block_stats[b].reach, sums,
-                                  velocities, motion);
+    model_.kernels.carried_motion(workspace_.grid.tile(b), workspace_.grid.block_stats[b].reach,
+                                  sums, velocities, motion);
     return motion;
   };
   block_probe.obstacle_moves = [this](std::int32_t b) {
@@ -244,8 +244,8 @@ typename Sleep<D>::BlockProbe SolverImpl<T, D>::block_probe() {
 template <class T, int D>
 void SolverImpl<T, D>::clear_idle_nodes() {
   for (std::int32_t g : state_.sleep.idle()) {
-    work_.grid.node_stats[g] = {};
-    std::fill_n(work_.grid.velocity(g), work_.grid.block_size, T(0));
+    workspace_.grid.node_stats[g] = {};
+    std::fill_n(workspace_.grid.velocity(g), workspace_.grid.block_size, T(0));
   }
 }
 
@@ -254,4 +254,4 @@ template class SolverImpl<float, 3>;
 template class SolverImpl<double, 2>;
 template class SolverImpl<double, 3>;
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -1,13 +1,15 @@
 // Snow at rest: blocks of particles that sleep, and blocks of nodes that are then not needed.
 //
-// A block of particles falls asleep when it has been slower than a limit for some time. Meanwhile
-// its snow must neither have sped up along its motion nor have changed its velocity as snow in
-// flight does, because snow that sets off or turns in the air is slow, too. The speed of a block is
-// the root of the mean square over its particles. No particle may be several times faster than the
-// limit. A sleeping block takes no part in a step, but keeps its mass and its stresses on its tile,
-// so that its neighbours rest on it. It wakes when nodes that it shares with awake snow would carry
-// it faster than the limit, or when the forces at these nodes would do so within the time that it
-// takes to fall asleep. It also wakes when particles come to it, and when an obstacle moves through
+// A block of particles falls asleep when it has been slower than a limit for some time. The speed
+// of a block is the root of the mean square over its particles, none of which may be several times
+// faster than the limit. Snow that sets off, or that turns in the air, is slow, too. During that
+// time the snow must therefore neither have accelerated along its motion, nor have changed its
+// velocity as snow in flight does.
+//
+// A sleeping block takes no part in a step, but keeps its mass and its stresses on its tile, so
+// that its neighbours rest on it. It wakes when nodes that it shares with awake snow would carry it
+// faster than the limit, or when the forces at these nodes would do so within the time that it
+// takes to fall asleep. It also wakes when particles enter it, and when an obstacle moves through
 // its nodes.
 //
 // The particles of a sleeping block lie within it. If a particle has strayed beyond its block, the
@@ -22,7 +24,7 @@
 #include "snowshed/core/vec.hpp"
 #include "snowshed/methods/mpm/block_layout.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 
 template <int D>
 class Sleep {
@@ -98,4 +100,4 @@ class Sleep {
   std::int64_t awake_particles_ = 0;
 };
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

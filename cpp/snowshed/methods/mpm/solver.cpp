@@ -10,7 +10,7 @@
 #include "snowshed/methods/mpm/solver_impl.hpp"
 #include "snowshed/methods/mpm/time_step.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
 /// Memory of the contact friction for fast snow, as a sliding distance in cells. A stored impulse
@@ -26,7 +26,7 @@ template <class T, int D>
 SolverImpl<T, D>::SolverImpl(Options options)
     : model_(std::move(options)),
       state_(model_),
-      work_(model_.options.settings, model_.boundary.laws().size()) {}
+      workspace_(model_.options.settings, model_.boundary.laws().size()) {}
 
 template <class T, int D>
 StepParameters<T> SolverImpl<T, D>::parameters(double dt) const {
@@ -39,21 +39,21 @@ StepParameters<T> SolverImpl<T, D>::parameters(double dt) const {
           T(dt / (friction_reach * n.dx)),
           T(n.overstress_share(dt)),
           model_.constants.data(),
-          work_.friction_shares.shares.data()};
+          workspace_.friction_shares.shares.data()};
 }
 
 template <class T, int D>
 void SolverImpl<T, D>::step() {
   soundness_.require();
   if (size() == 0) throw SimulationError("there is no snow to simulate");
-  const StepTotals before = state_.progress;
-  const bool tiles_were_valid = work_.tiles_valid;
+  const StepTotals before = state_.totals;
+  const bool tiles_were_valid = workspace_.tiles_valid;
   double dt;
   try {
     dt = try_step();
   } catch (...) {
-    state_.progress = before;
-    work_.tiles_valid = tiles_were_valid;
+    state_.totals = before;
+    workspace_.tiles_valid = tiles_were_valid;
     throw;
   }
   record_step(dt);
@@ -64,19 +64,19 @@ void SolverImpl<T, D>::step() {
 /// The parts of a step that can fail (time step too long, no memory). Particles move last.
 template <class T, int D>
 double SolverImpl<T, D>::try_step() {
-  if (!work_.tiles_valid) {
+  if (!workspace_.tiles_valid) {
     sort();
     scatter();
   }
   const Settings& n = model_.options.settings;
-  double dt = next_time_step(state_.elastic_limit, state_.progress.speed, n.dx, n.courant_factor);
+  double dt = next_time_step(state_.elastic_limit, state_.totals.speed, n.dx, n.courant_factor);
   gather_and_update(dt);
   try {
     dt = shorten_to_limits(dt);
     g2p2g(dt);
   } catch (...) {
     for (std::int32_t g : state_.sleep.active()) state_.contacts.reject(g);
-    for (FieldContact<T>& c : state_.field_contacts) c.next_impulse = c.impulse;
+    for (EventContact<T>& c : state_.event_contacts) c.next_impulse = c.impulse;
     throw;
   }
   return dt;
@@ -85,12 +85,12 @@ double SolverImpl<T, D>::try_step() {
 /// Records a step after the particles have moved.
 template <class T, int D>
 void SolverImpl<T, D>::record_step(double dt) noexcept {
-  StepTotals& p = state_.progress;
+  StepTotals& p = state_.totals;
   double speed_squared = 0;
   for (std::int32_t b : state_.sleep.awake()) {
-    const BlockStats& s = work_.grid.block_stats[b];
+    const BlockStats& s = workspace_.grid.block_stats[b];
     speed_squared = std::max(speed_squared, s.speed_squared);
-    if (s.escaped) work_.tiles_valid = false;
+    if (s.escaped) workspace_.tiles_valid = false;
   }
   p.speed = std::sqrt(speed_squared);
   p.dt = dt;
@@ -101,40 +101,41 @@ void SolverImpl<T, D>::record_step(double dt) noexcept {
   p.counters.particle_updates += state_.sleep.awake_particles();
   p.slept_updates += std::int64_t(size()) - state_.sleep.awake_particles();
   p.counters.smallest_dt = std::min(p.counters.smallest_dt, dt);
-  if (++work_.since_sort >= work_.until_sort) work_.tiles_valid = false;
+  if (++workspace_.since_sort >= workspace_.until_sort) workspace_.tiles_valid = false;
 }
 
 template <class T, int D>
 void SolverImpl<T, D>::sort() {
   state_.arrange(model_, blocks_of_particles(state_.layout));
-  work_.since_sort = 0;
+  workspace_.since_sort = 0;
   const double share =
       contacts_per_particle * double(size()) / std::max(double(state_.contacts.size()), 1.0);
-  work_.until_sort = int(steps_between_sorts * std::clamp(share, 1.0 / steps_between_sorts, 1.0));
-  ++state_.progress.counters.sorts;
+  workspace_.until_sort =
+      int(steps_between_sorts * std::clamp(share, 1.0 / steps_between_sorts, 1.0));
+  ++state_.totals.sorts;
 }
 
 template <class T, int D>
 void SolverImpl<T, D>::scatter() {
-  work_.grid.resize(state_.layout);
-  if (work_.average) work_.average->connect(state_.layout);
-  if (model_.touches()) work_.touch.forget(model_, state_);
-  work_.meetings.forget(model_, state_, threads());
+  workspace_.grid.resize(state_.layout);
+  if (workspace_.average) workspace_.average->connect(state_.layout);
+  if (model_.touches()) workspace_.touch.forget(model_, state_);
+  workspace_.event_contacts.forget(model_, state_, threads());
   const ParticleView<T> view = state_.particles.view();
-  const StepParameters<T> step = parameters(state_.progress.dt);
+  const StepParameters<T> step = parameters(state_.totals.dt);
   const std::ptrdiff_t n = std::ptrdiff_t(state_.layout.particle_blocks.size());
   parallel_for_dynamic(n, threads(), 1, [&](std::ptrdiff_t b) { scatter_block(step, view, b); });
   clear_idle_nodes();
-  work_.tiles_valid = true;
+  workspace_.tiles_valid = true;
 }
 
 template <class T, int D>
 void SolverImpl<T, D>::scatter_block(const StepParameters<T>& step, const ParticleView<T>& view,
                                      std::ptrdiff_t b) {
-  work_.grid.block_stats[b] = {};
+  workspace_.grid.block_stats[b] = {};
   model_.kernels.scatter(step, view, state_.layout.first[b],
-                         state_.layout.first[b + 1] - state_.layout.first[b], work_.grid.tile(b),
-                         work_.grid.block_stats[b]);
+                         state_.layout.first[b + 1] - state_.layout.first[b],
+                         workspace_.grid.tile(b), workspace_.grid.block_stats[b]);
 }
 
 /// First half of a step: the node sums and, in the same loop, the node velocities for a step of dt.
@@ -142,24 +143,24 @@ template <class T, int D>
 void SolverImpl<T, D>::gather_and_update(double dt) {
   state_.contacts.follow(model_.boundary, time(), threads());
   if (model_.touches())
-    work_.touch.update(model_, state_, state_.progress.speed * state_.progress.dt, threads());
-  if (model_.boundary.any_slip()) state_.contacts.find_friction_shares(work_.friction_shares);
+    workspace_.touch.update(model_, state_, state_.totals.speed * state_.totals.dt, threads());
+  if (model_.boundary.any_slip()) state_.contacts.find_friction_shares(workspace_.friction_shares);
   const StepParameters<T> step = parameters(dt);
   const std::vector<std::int32_t>& active = state_.sleep.active();
   parallel_for_dynamic(std::ptrdiff_t(active.size()), threads(), 8, [&](std::ptrdiff_t i) {
     const std::int32_t g = active[i];
     state_.contacts.commit(g);
     const T* tiles[neighbour_count<D>];
-    const bool touched = work_.grid.tiles_reaching(state_.layout, g, tiles);
-    work_.grid.touched[g] = touched;
-    if (touched) model_.kernels.gather(tiles, work_.grid.sum(g));
-    if (!has_meeting(g)) update_block(step, g);
+    const bool touched = workspace_.grid.tiles_reaching(state_.layout, g, tiles);
+    workspace_.grid.touched[g] = touched;
+    if (touched) model_.kernels.gather(tiles, workspace_.grid.sum(g));
+    if (!has_overlap(g)) update_block(step, g);
   });
-  if (state_.layout.has_meeting.empty()) return;
-  for (FieldContact<T>& c : state_.field_contacts) c.impulse = c.next_impulse;
-  work_.meetings.update(model_, state_, work_.grid, state_.progress.speed * state_.progress.dt,
-                        threads());
-  update_meetings(step);
+  if (state_.layout.has_overlap.empty()) return;
+  for (EventContact<T>& c : state_.event_contacts) c.impulse = c.next_impulse;
+  workspace_.event_contacts.update(model_, state_, workspace_.grid,
+                                   state_.totals.speed * state_.totals.dt, threads());
+  update_overlaps(step);
 }
 
 template <class T, int D>
@@ -167,53 +168,54 @@ void SolverImpl<T, D>::update(double dt) {
   const StepParameters<T> step = parameters(dt);
   const std::vector<std::int32_t>& active = state_.sleep.active();
   parallel_for_dynamic(std::ptrdiff_t(active.size()), threads(), 8, [&](std::ptrdiff_t i) {
-    if (!has_meeting(active[i])) update_block(step, active[i]);
+    if (!has_overlap(active[i])) update_block(step, active[i]);
   });
-  if (!state_.layout.has_meeting.empty()) update_meetings(step);
+  if (!state_.layout.has_overlap.empty()) update_overlaps(step);
 }
 
-/// In a meeting, the fields act on each other after the forces and before the contact with
+/// In an overlap, the fields act on each other after the forces and before the contact with
 /// obstacles.
 template <class T, int D>
-void SolverImpl<T, D>::update_meetings(const StepParameters<T>& step) {
-  parallel_for_dynamic(work_.meetings.meeting_count(state_.layout), threads(), 2,
-                       [&](std::ptrdiff_t meeting) { update_meeting(step, meeting); });
+void SolverImpl<T, D>::update_overlaps(const StepParameters<T>& step) {
+  parallel_for_dynamic(workspace_.event_contacts.overlap_count(state_.layout), threads(), 2,
+                       [&](std::ptrdiff_t overlap) { update_overlap(step, overlap); });
 }
 
 template <class T, int D>
-void SolverImpl<T, D>::update_meeting(const StepParameters<T>& step, std::ptrdiff_t meeting) {
-  const auto begin = state_.layout.meeting_blocks.begin() + state_.layout.meeting_first[meeting];
-  const auto end = state_.layout.meeting_blocks.begin() + state_.layout.meeting_first[meeting + 1];
+void SolverImpl<T, D>::update_overlap(const StepParameters<T>& step, std::ptrdiff_t overlap) {
+  const auto begin = state_.layout.overlap_blocks.begin() + state_.layout.overlap_first[overlap];
+  const auto end = state_.layout.overlap_blocks.begin() + state_.layout.overlap_first[overlap + 1];
   if (!state_.sleep.is_active(*begin)) return;
   for (auto g = begin; g != end; ++g) {
-    work_.grid.node_stats[*g] = {};
-    if (work_.grid.touched[*g])
-      model_.kernels.update_free(step, work_.grid.sum(*g), work_.grid.velocity(*g));
+    workspace_.grid.node_stats[*g] = {};
+    if (workspace_.grid.touched[*g])
+      model_.kernels.update_free(step, workspace_.grid.sum(*g), workspace_.grid.velocity(*g));
     else
       clear_block(*g);
   }
-  work_.meetings.exchange(step, model_.event_friction(), state_, work_.grid, meeting);
+  workspace_.event_contacts.exchange(step, model_.event_friction(), state_, workspace_.grid,
+                                     overlap);
   for (auto g = begin; g != end; ++g)
-    if (work_.grid.touched[*g])
-      model_.kernels.finish(step, work_.grid.sum(*g), work_.grid.velocity(*g),
+    if (workspace_.grid.touched[*g])
+      model_.kernels.finish(step, workspace_.grid.sum(*g), workspace_.grid.velocity(*g),
                             state_.contacts.of_block(*g), state_.contacts.count(*g),
-                            model_.boundary.laws().data(), work_.grid.node_stats[*g]);
+                            model_.boundary.laws().data(), workspace_.grid.node_stats[*g]);
 }
 
 template <class T, int D>
 void SolverImpl<T, D>::update_block(const StepParameters<T>& step, std::ptrdiff_t g) {
-  work_.grid.node_stats[g] = {};
-  if (!work_.grid.touched[g]) return clear_block(g);
-  model_.kernels.update(step, work_.grid.sum(g), work_.grid.velocity(g),
+  workspace_.grid.node_stats[g] = {};
+  if (!workspace_.grid.touched[g]) return clear_block(g);
+  model_.kernels.update(step, workspace_.grid.sum(g), workspace_.grid.velocity(g),
                         state_.contacts.of_block(g), state_.contacts.count(g),
-                        model_.boundary.laws().data(), work_.grid.node_stats[g]);
+                        model_.boundary.laws().data(), workspace_.grid.node_stats[g]);
 }
 
 /// No particle touches these nodes, so their velocities are not used.
 template <class T, int D>
 void SolverImpl<T, D>::clear_block(std::ptrdiff_t g) {
-  std::fill_n(work_.grid.node_stats[g].low, D, infinity);
-  std::fill_n(work_.grid.node_stats[g].high, D, -infinity);
+  std::fill_n(workspace_.grid.node_stats[g].low, D, geometry::infinity);
+  std::fill_n(workspace_.grid.node_stats[g].high, D, -geometry::infinity);
   Contact<T>* contacts = state_.contacts.of_block(g);
   for (int c = 0; c < state_.contacts.count(g); ++c) contacts[c].next_normal_impulse = 0;
 }
@@ -226,7 +228,7 @@ double SolverImpl<T, D>::shorten_to_limits(double dt) {
   while (true) {
     const double strain = largest_strain() * dt;
     if (strain <= limit) return dt;
-    ++state_.progress.counters.rejected;
+    ++state_.totals.counters.rejected;
     dt *= std::min(0.5, 0.8 * limit / strain);
     if (!(dt > 1e-7 * state_.elastic_limit)) {  // also if the strain is not finite
       std::ostringstream message;
@@ -250,9 +252,9 @@ double SolverImpl<T, D>::largest_strain() {
       model_.options.settings.strain_limit /
       next_time_step(state_.elastic_limit, 0.0, dx, model_.options.settings.courant_factor);
   const auto bound_over = [&](const auto& grid_blocks) {
-    VecD<D> low = VecD<D>::Constant(infinity), high = -low;
+    VecD<D> low = VecD<D>::Constant(geometry::infinity), high = -low;
     for (std::int32_t g : grid_blocks) {
-      const NodeStats& s = work_.grid.node_stats[g];
+      const NodeStats& s = workspace_.grid.node_stats[g];
       for (int d = 0; d < D; ++d) {
         low[d] = std::min(low[d], s.low[d]);
         high[d] = std::max(high[d], s.high[d]);
@@ -266,24 +268,24 @@ double SolverImpl<T, D>::largest_strain() {
   const StepParameters<T> unit = parameters(1.0);
   const ParticleView<T> view = state_.particles.view();
   const std::vector<std::int32_t>& awake = state_.sleep.awake();
-  work_.block_strain.resize(awake.size());
+  workspace_.block_strain.resize(awake.size());
   parallel_for_dynamic(std::ptrdiff_t(awake.size()), threads(), 64, [&](std::ptrdiff_t i) {
     const std::int32_t b = awake[i];
     double bound = bound_over(state_.layout.around_particles[b]);
     if (!(bound <= rate_limit)) {
       const double strain = probe(unit, view, b).strain;
-      bound = std::isfinite(strain) ? strain : infinity;
+      bound = std::isfinite(strain) ? strain : geometry::infinity;
     }
-    work_.block_strain[i] = bound;
+    workspace_.block_strain[i] = bound;
   });
-  return *std::max_element(work_.block_strain.begin(), work_.block_strain.end());
+  return *std::max_element(workspace_.block_strain.begin(), workspace_.block_strain.end());
 }
 
 template <class T, int D>
 void SolverImpl<T, D>::velocities_around(std::int32_t b,
                                          const T* (&velocities)[neighbour_count<D>]) {
   for (int k = 0; k < neighbour_count<D>; ++k)
-    velocities[k] = work_.grid.velocity(state_.layout.around_particles[b][k]);
+    velocities[k] = workspace_.grid.velocity(state_.layout.around_particles[b][k]);
 }
 
 template <class T, int D>
@@ -297,17 +299,17 @@ void SolverImpl<T, D>::g2p2g(double dt) {
     const std::int32_t b = awake[i];
     const T* velocities[neighbour_count<D>];
     velocities_around(b, velocities);
-    work_.grid.block_stats[b] = BlockStats::reaching(work_.grid.block_stats[b].reach);
+    workspace_.grid.block_stats[b] = BlockStats::reaching(workspace_.grid.block_stats[b].reach);
     model_.kernels.g2p2g(step, view, state_.layout.first[b],
                          state_.layout.first[b + 1] - state_.layout.first[b], velocities,
-                         damps ? &work_.average->tile(b) : nullptr, work_.grid.tile(b),
-                         work_.grid.block_stats[b]);
+                         damps ? &workspace_.average->tile(b) : nullptr, workspace_.grid.tile(b),
+                         workspace_.grid.block_stats[b]);
   });
 }
 
 template <class T, int D>
 bool SolverImpl<T, D>::damps_next() const {
-  return work_.average && state_.progress.undamped_steps + 1 >= steps_between_averages;
+  return workspace_.average && state_.totals.undamped_steps + 1 >= steps_between_averages;
 }
 
 /// Averages the particles' velocities. The step of dt that follows damps them, and makes up for the
@@ -315,15 +317,15 @@ bool SolverImpl<T, D>::damps_next() const {
 template <class T, int D>
 void SolverImpl<T, D>::average_velocities(double dt) noexcept {
   const double rate = model_.options.settings.damping_rate.value_or(0.0);
-  const double share = -std::expm1(-rate * (state_.progress.undamped_time + dt));
-  work_.average->update(model_.kernels, state_.particles.view(), state_.layout, state_.sleep, share,
-                        threads());
+  const double share = -std::expm1(-rate * (state_.totals.undamped_time + dt));
+  workspace_.average->update(model_.kernels, state_.particles.view(), state_.layout, state_.sleep,
+                             share, threads());
 }
 
 template <class T, int D>
 void SolverImpl<T, D>::record_damping(double dt) noexcept {
-  if (!work_.average) return;
-  StepTotals& p = state_.progress;
+  if (!workspace_.average) return;
+  StepTotals& p = state_.totals;
   const bool damped = damps_next();
   p.undamped_steps = damped ? 0 : p.undamped_steps + 1;
   p.undamped_time = damped ? 0.0 : p.undamped_time + dt;
@@ -334,7 +336,7 @@ void SolverImpl<T, D>::record_damping(double dt) noexcept {
 template <class T, int D>
 void SolverImpl<T, D>::check_particles() {
   for (std::int32_t b : state_.sleep.awake()) {
-    if (work_.grid.block_stats[b].unsound < 0) continue;
+    if (workspace_.grid.block_stats[b].unsound < 0) continue;
     soundness_.lose();  // also if the memory for the message is missing
     soundness_.fail(describe_unsound(b));
   }
@@ -342,7 +344,7 @@ void SolverImpl<T, D>::check_particles() {
 
 template <class T, int D>
 std::string SolverImpl<T, D>::describe_unsound(std::int32_t b) const {
-  const BlockStats& s = work_.grid.block_stats[b];
+  const BlockStats& s = workspace_.grid.block_stats[b];
   const Settings& n = model_.options.settings;
   const std::size_t i = std::size_t(s.unsound);
   const VecD<D> x =
@@ -366,7 +368,7 @@ BlockStats SolverImpl<T, D>::probe(const StepParameters<T>& step, const Particle
                                    std::int32_t b) {
   const T* velocities[neighbour_count<D>];
   velocities_around(b, velocities);
-  BlockStats stats = BlockStats::reaching(work_.grid.block_stats[b].reach);
+  BlockStats stats = BlockStats::reaching(workspace_.grid.block_stats[b].reach);
   model_.kernels.probe(step, view, state_.layout.first[b],
                        state_.layout.first[b + 1] - state_.layout.first[b], velocities, stats);
   return stats;
@@ -387,4 +389,4 @@ std::unique_ptr<Solver> make_solver(Options options) {
   return std::make_unique<SolverImpl<double, 3>>(std::move(options));
 }
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -1,6 +1,7 @@
 // The material point method: one explicit step at a time.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -9,27 +10,28 @@
 #include "snowshed/methods/mpm/settings.hpp"
 #include "snowshed/methods/obstacle.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 
 struct Options {
   int dimension = 3;
-  double gravity = 9.81;            // m/s2, along -z
-  std::vector<Snow> snows{Snow()};  // indexed by material_id; at least one, at most `max_materials`
+  double gravity = 9.81;  // m/s2, along -z
+  std::vector<material::Snow> snows{
+      material::Snow()};  // indexed by material_id; at least one, at most `max_materials`
   Settings settings;
   std::vector<Obstacle> obstacles;
   // Shapes that contact by touch uses, one for each obstacle in the same order. Leave this empty:
   // contact then uses the shapes of `obstacles`, and the solver itself thickens parts that are too
   // thin for the grid. Give the original shapes only if those of `obstacles` have already been
   // thickened.
-  std::vector<Shape> surfaces;
+  std::vector<geometry::Shape> surfaces;
   bool energy = false;  // whether to keep the energy balance
 };
 
 /// A solver of MPM: a method that can also settle, balance energy and sleep.
 class Solver : public Method, public Settles, public KeepsEnergy, public Sleeps {
  public:
-  virtual EnergyBalance energy() const = 0;
-  NamedEnergies energies() const override { return named_energies(energy()); }
+  /// Number of sorts of the particles by blocks since the method was made.
+  virtual std::int64_t sorts() const = 0;
 };
 
 inline constexpr int steps_between_sorts = 64;
@@ -40,4 +42,4 @@ inline constexpr double contacts_per_particle = 100;
 
 std::unique_ptr<Solver> make_solver(Options);
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

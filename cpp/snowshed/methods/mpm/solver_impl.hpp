@@ -5,8 +5,8 @@
 #include <string>
 
 #include "snowshed/material/sym_tensor.hpp"
+#include "snowshed/methods/mpm/event_contacts.hpp"
 #include "snowshed/methods/mpm/grid.hpp"
-#include "snowshed/methods/mpm/meetings.hpp"
 #include "snowshed/methods/mpm/model.hpp"
 #include "snowshed/methods/mpm/solver.hpp"
 #include "snowshed/methods/mpm/state.hpp"
@@ -14,13 +14,13 @@
 #include "snowshed/methods/mpm/velocity_average.hpp"
 #include "snowshed/methods/particle_method.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 
 /// Data that is computed from a state. It may be dropped before any sort.
 template <class T, int D>
 struct Workspace {
   Workspace(const Settings& n, std::size_t obstacles)
-      : grid(n.basis), friction_shares(obstacles), touch(n.basis), meetings(n.basis) {
+      : grid(n.basis), friction_shares(obstacles), touch(n.basis), event_contacts(n.basis) {
     if (n.damps_over_length()) average.emplace(n.damping_length, n.dx, n.basis);
   }
 
@@ -28,7 +28,7 @@ struct Workspace {
   std::optional<VelocityAverage<T, D>> average;
   FrictionShares<T> friction_shares;
   Touch<T, D> touch;
-  Meetings<T, D> meetings;
+  EventContacts<T, D> event_contacts;
   std::vector<double> block_strain;  // 1/s, of the step being tried
   bool tiles_valid = false;          // whether the tiles hold the sums of the particles
   int since_sort = 0;                // steps
@@ -47,27 +47,28 @@ class SolverImpl final : public Solver {
   void settle(const std::vector<double>& drops,
               const std::vector<double>& plastic_changes) override;
   void step() override;
-  bool at_safe_point() const override { return !work_.tiles_valid; }
+  bool at_safe_point() const override { return !workspace_.tiles_valid; }
   std::size_t size() const override { return state_.particles.size(); }
-  double time() const override { return state_.progress.time; }
-  double time_step() const override { return state_.progress.dt; }
-  const StepCounters& counters() const override { return state_.progress.counters; }
+  double time() const override { return state_.totals.time; }
+  double time_step() const override { return state_.totals.dt; }
+  const StepCounters& counters() const override { return state_.totals.counters; }
   ParticleState state() const override;
-  std::vector<FieldInfo> fields() const override;
-  FieldView field(const std::string& name) const override;
+  std::vector<particles::FieldInfo> fields() const override;
+  particles::FieldView field(const std::string& name) const override;
   const std::vector<std::uint32_t>& order_by_id() const override {
     return state_.particles.order_by_id();
   }
   MotionSummary motion(double speed) const override;
-  EnergyBalance energy() const override { return state_.energy(model_); }
-  std::int64_t slept_updates() const override { return state_.progress.slept_updates; }
+  NamedEnergies energies() const override { return named_energies(state_.energy(model_)); }
+  std::int64_t sorts() const override { return state_.totals.sorts; }
+  std::int64_t slept_updates() const override { return state_.totals.slept_updates; }
   std::size_t bytes() const override;
-  void save(BinaryWriter&) const override;
-  void load(const BinaryReader&) override;
-  void check(const BinaryReader&) const override;
+  void save(io::BinaryWriter&) const override;
+  void load(const io::BinaryReader&) override;
+  void check(const io::BinaryReader&) const override;
 
  private:
-  State<T, D> read_state(const BinaryReader&) const;
+  State<T, D> read_state(const io::BinaryReader&) const;
 
   // The phases of a step.
   double try_step();  ///< returns the length of the step
@@ -78,11 +79,11 @@ class SolverImpl final : public Solver {
   void update(double dt);
   void update_block(const StepParameters<T>& step, std::ptrdiff_t block);
   void clear_block(std::ptrdiff_t block);
-  bool has_meeting(std::int32_t grid_block) const {
-    return !state_.layout.has_meeting.empty() && state_.layout.has_meeting[grid_block];
+  bool has_overlap(std::int32_t grid_block) const {
+    return !state_.layout.has_overlap.empty() && state_.layout.has_overlap[grid_block];
   }
-  void update_meetings(const StepParameters<T>& step);
-  void update_meeting(const StepParameters<T>& step, std::ptrdiff_t meeting);
+  void update_overlaps(const StepParameters<T>& step);
+  void update_overlap(const StepParameters<T>& step, std::ptrdiff_t overlap);
   double largest_strain();  ///< largest velocity gradient of a particle, 1/s
   void g2p2g(double dt);
   bool damps_next() const;  ///< whether the next step damps velocities over a length
@@ -103,10 +104,11 @@ class SolverImpl final : public Solver {
   std::string describe_unsound(std::int32_t block) const;
   void update_energy_balance() noexcept;
   void accept(State<T, D> next) noexcept;
-  Sym<double, D> elastic_strain(std::size_t particle) const;     ///< Hencky's
-  double elastic_volumetric_strain(std::size_t particle) const;  ///< logarithmic
+  material::Sym<double, D> elastic_strain(std::size_t particle) const;  ///< Hencky's
+  double elastic_volumetric_strain(std::size_t particle) const;         ///< logarithmic
   double plastic_strain(std::size_t particle) const;
   double volume_ratio(std::size_t particle) const;
+  double density(std::size_t particle) const;            ///< kg/m3
   double pressure(std::size_t particle) const;           ///< Kirchhoff, Pa, compression positive
   double deviatoric_stress(std::size_t particle) const;  ///< Kirchhoff, Pa, von Mises's
   double preconsolidation_pressure(std::size_t particle) const;  ///< Pa; 0 for elastic snow
@@ -118,8 +120,8 @@ class SolverImpl final : public Solver {
 
   const Model<T, D> model_;
   State<T, D> state_;
-  Workspace<T, D> work_;
+  Workspace<T, D> workspace_;
   Soundness soundness_;
 };
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -9,14 +9,14 @@
 #include "snowshed/geometry/bounds.hpp"
 #include "snowshed/material/sym_tensor.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
 /// Memory of the contacts' friction, in elastic time steps of the slowest snow: longer than the
 /// vibration of a slab a few cells thick.
 constexpr double friction_memory_steps = 40;
 
-/// Largest volume of loose snow in contacts, over its initial volume.
+/// Largest volume ratio (current over initial) of loose snow that counts in contacts.
 constexpr double max_expansion = 1.5;
 
 /// Largest number of velocity fields. If there are more events, the oldest ones share a field.
@@ -32,7 +32,7 @@ State<T, D>::State(const Model<T, D>& model)
   particles.has_material_id = model.material_per_particle;
   particles.has_plastic = model.has_plastic();
   find_elastic_limits(model);
-  progress.counters.smallest_dt = elastic_limit;
+  totals.counters.smallest_dt = elastic_limit;
 }
 
 template <class T, int D>
@@ -40,7 +40,7 @@ void State<T, D>::find_elastic_limits(const Model<T, D>& model) {
   const std::vector<Material>& materials = model.materials;
   std::vector<bool> present(materials.size(), !particles.has_material_id || particles.size() == 0);
   for (const std::uint8_t material_id : particles.material_id) present[material_id] = true;
-  double shortest = infinity, longest = 0;
+  double shortest = geometry::infinity, longest = 0;
   for (std::size_t k = 0; k < materials.size(); ++k) {
     if (!present[k]) continue;
     shortest = std::min(shortest, materials[k].elastic_time_step);
@@ -70,11 +70,11 @@ void State<T, D>::append(const Model<T, D>& model, const ParticleBatch& batch,
     for (int d = 0; d < D; ++d) particles.velocity[d][i] = T(velocity[d]);
     if (particles.has_plastic) particles.plastic[i] = plastic;
     particles.mass[i] = T(batch.mass_of(k));
-    particles.id[i] = progress.next_id++;
+    particles.id[i] = totals.next_id++;
     particles.event[i] = std::uint16_t(batch.event);
     if (particles.has_material_id) particles.material_id[i] = std::uint8_t(batch.material_id);
   }
-  progress.speed = std::max(progress.speed, velocity.norm());
+  totals.speed = std::max(totals.speed, velocity.norm());
 }
 
 template <class T, int D>
@@ -126,8 +126,8 @@ void State<T, D>::arrange(const Model<T, D>& model, std::vector<BlockKey> blocks
   ParticleSort<T, D> sort(particles, std::move(blocks), layout, threads);
   std::optional<Contacts<T, D>> relocated;
   if (sort.layout.grid_blocks != layout.grid_blocks)
-    relocated = contacts.relocated(model.boundary, sort.layout.grid_blocks, progress.time, threads);
-  Sleep<D> sleep_after = sleep.relocated(sort.layout, progress.time);
+    relocated = contacts.relocated(model.boundary, sort.layout.grid_blocks, totals.time, threads);
+  Sleep<D> sleep_after = sleep.relocated(sort.layout, totals.time);
   // All memory is reserved: nothing fails from here on.
   sort.apply(particles);
   layout = std::move(sort.layout);
@@ -137,10 +137,11 @@ void State<T, D>::arrange(const Model<T, D>& model, std::vector<BlockKey> blocks
 
 template <class T, int D>
 double State<T, D>::volume_ratio(const Model<T, D>& model, std::size_t i) const {
-  Sym<double, D> a;
+  material::Sym<double, D> a;
   for (int k = 0; k < a.size; ++k) a.c[k] = double(particles.be_minus_identity[k][i]);
   const double plastic = particles.has_plastic ? double(particles.plastic[i]) : 0.0;
-  return std::exp(trace(hencky_strain(a)) + plastic - material_of(model, i).initial_plastic_strain);
+  return std::exp(material::trace(material::hencky_strain(a)) + plastic -
+                  material_of(model, i).initial_plastic_strain);
 }
 
 template <class T, int D>
@@ -190,27 +191,28 @@ double State<T, D>::elastic_energy(const Model<T, D>& model) const {
   double sum = 0;
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const Material& snow = material_of(model, i);
-    const Elasticity<double>& el = snow.elastic;
-    Sym<double, D> a;
+    const material::Elasticity<double>& el = snow.elastic;
+    material::Sym<double, D> a;
     for (int k = 0; k < a.size; ++k) a.c[k] = double(particles.be_minus_identity[k][i]);
-    const Sym<double, D> e = hencky_strain(a);
-    const double volumetric = trace(e);
-    sum += double(particles.mass[i]) / snow.density *
-           (el.mu * norm_squared(e) + 0.5 * el.lambda * volumetric * volumetric);  // (1.2.5)
+    const material::Sym<double, D> e = material::hencky_strain(a);
+    const double volumetric = material::trace(e);
+    sum +=
+        double(particles.mass[i]) / snow.density *
+        (el.mu * material::norm_squared(e) + 0.5 * el.lambda * volumetric * volumetric);  // (1.2.5)
   }
   return sum;
 }
 
 template <class T, int D>
 EnergyBalance State<T, D>::energy(const Model<T, D>& model) const {
-  EnergyBalance balance = progress.energy;
+  EnergyBalance balance = totals.energy;
   balance.gravitational = gravitational_energy(model);
   return balance;
 }
 
 template <class T, int D>
 void State<T, D>::record_added(const Model<T, D>& model, double before) {
-  EnergyBalance& balance = progress.energy;
+  EnergyBalance& balance = totals.energy;
   balance.gravitational = gravitational_energy(model);
   balance.kinetic = kinetic_energy(model);
   balance.elastic = elastic_energy(model);
@@ -222,4 +224,4 @@ template struct State<float, 3>;
 template struct State<double, 2>;
 template struct State<double, 3>;
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

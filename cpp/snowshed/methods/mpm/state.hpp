@@ -8,12 +8,12 @@
 
 #include "snowshed/methods/method.hpp"
 #include "snowshed/methods/mpm/boundary.hpp"
-#include "snowshed/methods/mpm/field_contact.hpp"
+#include "snowshed/methods/mpm/event_contact.hpp"
 #include "snowshed/methods/mpm/model.hpp"
 #include "snowshed/methods/mpm/particle_sort.hpp"
 #include "snowshed/methods/mpm/sleep.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 
 /// Part of a cell that snow may move before its contacts by touch are found again.
 inline constexpr double contact_tolerance = 0.02;
@@ -26,6 +26,7 @@ struct StepTotals {
   double stress_power = 0;  // W, see SolverImpl::update_energy_balance
   std::uint32_t next_id = 0;
   StepCounters counters;
+  std::int64_t sorts = 0;  // sorts of the particles by blocks
   std::int64_t slept_updates = 0;
   // Number and time of the steps since velocities were last damped over a length.
   std::int64_t undamped_steps = 0;
@@ -40,10 +41,10 @@ struct State {
   Particles<T, D> particles;
   BlockLayout<D> layout;
   Contacts<T, D> contacts;
-  // Contacts between fields, valid after Meetings has updated them.
-  std::vector<FieldContact<T>> field_contacts;
+  // Contacts between fields, valid after EventContacts has updated them.
+  std::vector<EventContact<T>> event_contacts;
   Sleep<D> sleep;
-  StepTotals progress;
+  StepTotals totals;
 
   std::map<int, int> event_fields;  // field of each event
 
@@ -88,4 +89,4 @@ struct State {
   void record_added(const Model<T, D>& model, double before);
 };
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

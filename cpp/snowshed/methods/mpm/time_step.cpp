@@ -4,11 +4,11 @@
 
 #include "snowshed/material/elasticity.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 
 double elastic_time_step(double youngs_modulus, double poissons_ratio, double density,
                          int dimension, double dx, Transfer transfer, Basis basis) {
-  const auto e = Elasticity<double>::from(youngs_modulus, poissons_ratio, dimension);
+  const auto e = material::Elasticity<double>::from(youngs_modulus, poissons_ratio, dimension);
   const double stiffness = dimension * e.bulk;  // d lambda + 2 mu
   return dx * std::sqrt(2 / (transfer_stability_number(transfer, basis) * stiffness / density));
 }
@@ -17,4 +17,4 @@ double next_time_step(double elastic_limit, double speed, double dx, double fact
   return factor / (1 / elastic_limit + 2 * speed / dx);
 }
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

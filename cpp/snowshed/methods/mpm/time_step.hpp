@@ -3,7 +3,7 @@
 
 #include "snowshed/methods/mpm/kernel_api.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 
 /// max over positions of sum_i (dN_i)^2 / N_i for a B-spline, per cell squared.
 constexpr double stability_number(Basis basis) { return basis == Basis::quadratic ? 6.0 : 3.2; }
@@ -41,4 +41,4 @@ double elastic_time_step(double youngs_modulus, double poissons_ratio, double de
 /// than half a cell. `factor` in (0, 1].
 double next_time_step(double elastic_limit, double speed, double dx, double factor);
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

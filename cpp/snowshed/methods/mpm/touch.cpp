@@ -6,7 +6,7 @@
 #include "snowshed/core/parallel.hpp"
 #include "snowshed/geometry/bounds.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
 static_assert(block_nodes<2> == 64 && block_nodes<3> == 64,
@@ -37,7 +37,7 @@ std::uint64_t nodes_in_box(const int (&begin)[D], int size) {
 /// particles touch the other side. The few particles on the node's side have then crossed the
 /// middle.
 constexpr int min_majority = 10;
-/// Faces count as one if the cosine between their normals is larger than this.
+/// Faces are merged if the cosine between their normals is larger than this.
 constexpr double cosine_of_one_face = 0.99;
 
 template <class T, int D, int size>
@@ -66,7 +66,7 @@ void Touch<T, D>::update(const Model<T, D>& model, State<T, D>& state, double mo
     if (all || (travel_ >= blocks_[b].next && !state.sleep.states()[b].asleep))
       due_blocks.push_back(std::int32_t(b));
   if (due_blocks.empty()) return;
-  measured_ = false;  // until all has gone well
+  measured_ = false;  // stays false if this throws
   parallel_for_dynamic(std::ptrdiff_t(due_blocks.size()), threads, 4,
                        [&](std::ptrdiff_t i) { measure(model, state, due_blocks[i]); });
   parallel_for_dynamic(std::ptrdiff_t(state.layout.grid_blocks.size()), threads, 16,
@@ -82,13 +82,13 @@ void Touch<T, D>::measure(const Model<T, D>& model, const State<T, D>& state, st
   block.touching_particles.clear();
   // Reach around the block's centre, including the cell by which particles may stray.
   const double reach = (0.5 * block_edge<D> + 1) * std::sqrt(double(D)) * n.dx;
-  VecD<D> centre;
+  VecD<D> center;
   for (int d = 0; d < D; ++d)
-    centre[d] = ((block_coord<D>(key)[d] + 0.5) * block_edge<D> + base_offset(n.basis)) * n.dx;
-  double nearest = infinity;  // smallest gap that is still open
+    center[d] = ((block_coord<D>(key)[d] + 0.5) * block_edge<D> + base_offset(n.basis)) * n.dx;
+  double nearest = geometry::infinity;  // smallest gap that is still open
   for (std::int32_t o = 0; o < std::int32_t(model.boundary.size()); ++o) {
-    const auto surface = model.boundary.surface(o, state.progress.time);
-    const double around = surface.distance(embed(centre)) - reach - largest_radius_;
+    const auto surface = model.boundary.surface(o, state.totals.time);
+    const double around = surface.distance(embed(center)) - reach - largest_radius_;
     if (around > 0) {
       nearest = std::min(nearest, around);
       continue;
@@ -179,4 +179,4 @@ template class Touch<float, 3>;
 template class Touch<double, 2>;
 template class Touch<double, 3>;
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

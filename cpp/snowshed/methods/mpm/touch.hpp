@@ -14,7 +14,7 @@
 
 #include "snowshed/methods/mpm/state.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 
 template <class T, int D>
 class Touch {
@@ -58,4 +58,4 @@ class Touch {
   bool measured_ = false;
 };
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -7,7 +7,7 @@
 #include "snowshed/core/parallel.hpp"
 #include "snowshed/methods/mpm/index_box.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
 /// The coarse grid is no finer than this part of a cell.
@@ -184,4 +184,4 @@ template class VelocityAverage<float, 3>;
 template class VelocityAverage<double, 2>;
 template class VelocityAverage<double, 3>;
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

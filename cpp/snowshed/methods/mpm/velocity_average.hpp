@@ -15,10 +15,11 @@
 #include "snowshed/methods/mpm/block_layout.hpp"
 #include "snowshed/methods/mpm/sleep.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 
-/// Number of steps from one damping to the next; each damping stands for all of them. In a step
-/// snow moves by a fraction of a cell, so little changes, and an average costs a third of a step.
+/// Number of steps from one damping to the next; each damping stands for all of them. Little
+/// changes between them, because snow moves by a fraction of a cell per step, and an average costs
+/// a third of a step.
 inline constexpr int steps_between_averages = 4;
 
 template <class T, int D>
@@ -69,4 +70,4 @@ class VelocityAverage {
   AlignedVector<T> tiles_, sums_;
 };
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -7,7 +7,7 @@
 #include "snowshed/core/aligned_vector.hpp"
 #include "snowshed/core/vec.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 
 /// Anderson's acceleration of depth one (Anderson 1965, doi:10.1145/321296.321305; Walker and Ni
 /// 2011, doi:10.1137/10078356X): the next point combines the last two results such that the
@@ -47,4 +47,4 @@ class AndersonMixing {
   Vectors last_residual_, last_result_;
 };
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 namespace {
 
 /// Number of particles in a box; consecutive particles are close to each other.
@@ -27,7 +27,7 @@ PointBox box_around(const AlignedVector<VecD<D>>& points, std::size_t begin, std
 /// Whether points in a box may be within reach of an obstacle.
 bool may_touch(const PlacedObstacle& o, const PointBox& box, double reach, int dimension) {
   if (!o.obstacle->motion) {
-    const Bounds bounds = o.obstacle->shape->bounds();
+    const geometry::Bounds bounds = o.obstacle->shape->bounds();
     for (const int d : {0, 1, 2}) {
       if (d == 1 && dimension == 2) continue;
       if (bounds.min[d] - reach > box.high[d] || bounds.max[d] + reach < box.low[d]) return false;
@@ -38,16 +38,16 @@ bool may_touch(const PlacedObstacle& o, const PointBox& box, double reach, int d
 
 }  // namespace
 
-ThickSolid thickened_for_particles(Shape shape, double spacing, int dimension) {
+geometry::ThickSolid thickened_for_particles(geometry::Shape shape, double spacing, int dimension) {
   if (shape->is_convex()) return {std::move(shape), std::nullopt};
-  return thickened(std::move(shape), spacing, dimension);
+  return geometry::thickened(std::move(shape), spacing, dimension);
 }
 
 std::vector<PlacedObstacle> place_obstacles(const std::vector<Obstacle>& obstacles, double time) {
   std::vector<PlacedObstacle> placed;
   for (std::uint32_t k = 0; k < obstacles.size(); ++k) {
     const Obstacle& o = obstacles[k];
-    placed.push_back({&o, k, o.motion ? o.motion->at(time) : RigidPose{}});
+    placed.push_back({&o, k, o.motion ? o.motion->at(time) : geometry::RigidPose{}});
   }
   return placed;
 }
@@ -100,4 +100,4 @@ template void find_contacts(const std::vector<Obstacle>&, double, const Particle
 template double largest_wall_speed(const RowLists<WallContact<2>>&);
 template double largest_wall_speed(const RowLists<WallContact<3>>&);
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

@@ -9,12 +9,12 @@
 #include "snowshed/methods/mps/row_lists.hpp"
 #include "snowshed/methods/obstacle.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 
 /// Returns the solid thickened for the particles: parts of solids that are not convex become two
 /// spacings thick if they are thinner. Thin boxes and other convex solids do not change, because
 /// they have walls on both sides (WallParticles).
-ThickSolid thickened_for_particles(Shape shape, double spacing, int dimension);
+geometry::ThickSolid thickened_for_particles(geometry::Shape shape, double spacing, int dimension);
 
 /// A particle within the radius of an obstacle's surface.
 template <int D>
@@ -30,7 +30,7 @@ struct WallContact {
 struct PlacedObstacle {
   const Obstacle* obstacle;
   std::uint32_t number;
-  RigidPose pose;
+  geometry::RigidPose pose;
 
   double thickness(const Vec3& x) const {
     return 2 * obstacle->shape->half_thickness(obstacle->motion ? pose.to_body(x) : x);
@@ -55,4 +55,4 @@ void find_contacts(const std::vector<Obstacle>& obstacles, double reach,
 template <int D>
 double largest_wall_speed(const RowLists<WallContact<D>>& contacts);
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

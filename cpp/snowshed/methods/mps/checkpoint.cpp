@@ -6,7 +6,7 @@
 #include "snowshed/methods/archive.hpp"
 #include "snowshed/methods/mps/solver_impl.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 namespace {
 
 template <class Archive, class State>
@@ -38,7 +38,7 @@ void check_particles(const StateReader& archive, const Particles<D>& p, const Mo
       archive.refuse("a particle lies outside of the period");
   }
   try {
-    CellOrder<D>().update(p.position, model.reach(), period);
+    particles::CellOrder<D>().update(p.position, model.reach(), period);
   } catch (const SimulationError& error) {
     archive.refuse(error.what());
   }
@@ -47,13 +47,13 @@ void check_particles(const StateReader& archive, const Particles<D>& p, const Mo
 }  // namespace
 
 template <int D>
-void SolverImpl<D>::save(BinaryWriter& out) const {
+void SolverImpl<D>::save(io::BinaryWriter& out) const {
   StateWriter archive(out);
   visit_state(archive, state_);
 }
 
 template <int D>
-State<D> SolverImpl<D>::read_state(const BinaryReader& in) const {
+State<D> SolverImpl<D>::read_state(const io::BinaryReader& in) const {
   const StateReader archive(in);
   State<D> next;
   visit_state(archive, next);
@@ -63,17 +63,17 @@ State<D> SolverImpl<D>::read_state(const BinaryReader& in) const {
 }
 
 template <int D>
-void SolverImpl<D>::load(const BinaryReader& in) {
+void SolverImpl<D>::load(const io::BinaryReader& in) {
   state_ = read_state(in);
   order_.forget();
 }
 
 template <int D>
-void SolverImpl<D>::check(const BinaryReader& in) const {
+void SolverImpl<D>::check(const io::BinaryReader& in) const {
   read_state(in);
 }
 
 template class SolverImpl<2>;
 template class SolverImpl<3>;
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

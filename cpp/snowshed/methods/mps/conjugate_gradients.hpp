@@ -8,7 +8,7 @@
 #include "snowshed/core/aligned_vector.hpp"
 #include "snowshed/core/parallel.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 
 struct SolveReport {
   int iterations = 0;
@@ -92,4 +92,4 @@ SolveReport conjugate_gradients(std::size_t n, double tolerance, double scale, i
   return report;
 }
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 namespace {
 
 /// Bytes of a particle with its neighbours, measured in 2D and 3D.
@@ -43,4 +43,4 @@ std::vector<Feature> features_of(const Settings& s, const SceneView& scene) {
           {"snapshots during events", scene.output.snapshot_interval > 0}};
 }
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

@@ -6,11 +6,11 @@
 #include "snowshed/methods/cost.hpp"
 #include "snowshed/methods/mps/settings.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 
 CostEstimate estimate_cost(const Settings&, const SceneView&, const SceneOutline&,
                            std::vector<double> particles);
 
 std::vector<Feature> features_of(const Settings&, const SceneView&);
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

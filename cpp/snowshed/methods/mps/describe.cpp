@@ -2,7 +2,7 @@
 
 #include "snowshed/methods/allowed.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 
 void describe(SettingsVisitor& v, Settings& s) {
   v.accuracy({"spacing", "radius", "max_time_step", "courant_factor", "pressure_tolerance",
@@ -14,7 +14,7 @@ void describe(SettingsVisitor& v, Settings& s) {
            "Longest displacement of a particle in a step, over l0");
   v.number("density", s.density, "kg/m3", positive.up_to(1e4), "Density, which is constant");
   v.choice("rheology", s.rheology, "Law of the shear stress");
-  v.choice("regularisation", s.regularisation, "Approach of the yield stress at small shear rates");
+  v.choice("regularisation", s.regularisation, "Form of the yield stress at small shear rates");
   v.number("viscosity", s.viscosity, "Pa s", non_negative.up_to(1e6), "Plastic viscosity");
   v.number("cohesion", s.cohesion, "Pa", non_negative.up_to(1e6),
            "Yield stress without pressure (adhesive force)");
@@ -23,9 +23,9 @@ void describe(SettingsVisitor& v, Settings& s) {
   v.number("stress_growth", s.stress_growth, "s", positive.up_to(1e6),
            "Coefficient m with which the yield stress is approached");
   v.number("dilatant_rate", s.dilatant_rate, "1/s", positive.up_to(1e9),
-           "Shear rate above which the stress grows as a power of it");
+           "Shear rate above which the stress grows as a power of the rate");
   v.number("dilatant_exponent", s.dilatant_exponent, "", between(1.0, 5.0),
-           "Exponent of that power");
+           "Exponent of the stress above dilatant_rate");
   v.integer("yield_iterations", s.yield_iterations, between(1, 1000),
             "Largest number of iterations for the apparent viscosity in a step");
   v.flag("erosion", s.erosion, "Whether snow is eroded and deposited");
@@ -34,7 +34,7 @@ void describe(SettingsVisitor& v, Settings& s) {
   v.number("erosion_pressure", s.erosion_pressure, "Pa", non_negative.up_to(1e9),
            "Pressure above which erodible snow begins to move");
   v.number("erosion_speed", s.erosion_speed, "m/s", non_negative.up_to(1e4),
-           "Speed that a neighbour of eroded snow must have");
+           "Speed of a neighbour above which erodible snow begins to move");
   v.number("deposition_pressure", s.deposition_pressure, "Pa", non_negative.up_to(1e9),
            "Pressure below which moving snow is deposited");
   v.number("deposition_speed", s.deposition_speed, "m/s", non_negative.up_to(1e4),
@@ -61,4 +61,4 @@ void describe(SettingsVisitor& v, Settings& s) {
   v.integer("threads", s.threads, non_negative.up_to(4096), "Threads; 0: all");
 }
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

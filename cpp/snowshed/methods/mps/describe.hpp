@@ -6,7 +6,7 @@
 #include "snowshed/methods/mps/settings.hpp"
 #include "snowshed/methods/settings_visitor.hpp"
 
-namespace snowshed {
+namespace snowshed::methods {
 
 template <>
 struct EnumNames<mps::ShearLaw> {
@@ -83,11 +83,11 @@ struct EnumNames<mps::Preconditioner> {
       {mps::Preconditioner::multigrid, "multigrid"}};
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::methods
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 
 /// Shows a visitor each setting in turn: key, unit, range and meaning.
 void describe(SettingsVisitor&, Settings&);
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

@@ -5,20 +5,19 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/methods/mps/solver_impl.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 namespace {
 
-/// Forces between particles assume that each has the mass of a cell. If a body's volume is not a
-/// whole number of cells, its mass differs from that of its cells by up to half a particle, and so
-/// does the momentum that bodies exchange. A mass below 0.5 or above 1.5 cells is refused, because
-/// it belongs to another snow.
-void check_mass(double mass, double of_cell) {
+/// The forces assume that each particle has the mass of a full cell. The particles of a body whose
+/// volume is not a whole number of cells deviate from this: in total, by up to half a cell. Masses
+/// outside 0.5 to 1.5 cells are refused, because they indicate a wrong density or spacing.
+void check_mass(double mass, double cell_mass) {
   constexpr double min_ratio = 0.5, max_ratio = 1.5;
-  if (mass < min_ratio * of_cell * (1 - 1e-6) || mass > max_ratio * of_cell * (1 + 1e-6))
+  if (mass < min_ratio * cell_mass * (1 - 1e-6) || mass > max_ratio * cell_mass * (1 + 1e-6))
     throw InputError("mass", std::to_string(mass) +
                                  " kg; allowed: 0.5 to 1.5 times the mass of a cell, density "
                                  "times spacing to the power of the dimension (" +
-                                 std::to_string(of_cell) + " kg)");
+                                 std::to_string(cell_mass) + " kg)");
 }
 
 }  // namespace
@@ -57,10 +56,10 @@ void SolverImpl<D>::append(State<D>& state, const ParticleBatch& batch) const {
   }
 }
 
-/// Takes over a state; the balance counts its energy beyond the present one as added.
+/// Replaces the state. The balance counts the change of the stored energy as added.
 template <int D>
 void SolverImpl<D>::accept(State<D> next) {
-  CellOrder<D>().update(next.particles.position, model_.reach(), model_.options.period);
+  particles::CellOrder<D>().update(next.particles.position, model_.reach(), model_.options.period);
   if (model_.options.energy)
     next.energy.added += stored_energy(model_, next.particles).stored() -
                          stored_energy(model_, state_.particles).stored();
@@ -96,4 +95,4 @@ void SolverImpl<D>::add_velocity(const std::vector<Vec3>& changes) {
 template class SolverImpl<2>;
 template class SolverImpl<3>;
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

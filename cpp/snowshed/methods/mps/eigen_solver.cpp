@@ -4,10 +4,11 @@
 #include <Eigen/SparseCore>
 #include <vector>
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 
 template <int D>
-SolveReport solve_with_eigen(const NeighbourLists<D>& lists, const AlignedVector<float>& weight,
+SolveReport solve_with_eigen(const particles::NeighbourLists<D>& lists,
+                             const AlignedVector<float>& weight,
                              const AlignedVector<double>& diagonal,
                              const AlignedVector<double>& source, double tolerance,
                              int max_iterations, AlignedVector<double>& x) {
@@ -42,11 +43,13 @@ SolveReport solve_with_eigen(const NeighbourLists<D>& lists, const AlignedVector
   return {int(solver.iterations()), solver.error(), solver.info() == Eigen::Success};
 }
 
-template SolveReport solve_with_eigen(const NeighbourLists<2>&, const AlignedVector<float>&,
-                                      const AlignedVector<double>&, const AlignedVector<double>&,
-                                      double, int, AlignedVector<double>&);
-template SolveReport solve_with_eigen(const NeighbourLists<3>&, const AlignedVector<float>&,
-                                      const AlignedVector<double>&, const AlignedVector<double>&,
-                                      double, int, AlignedVector<double>&);
+template SolveReport solve_with_eigen(const particles::NeighbourLists<2>&,
+                                      const AlignedVector<float>&, const AlignedVector<double>&,
+                                      const AlignedVector<double>&, double, int,
+                                      AlignedVector<double>&);
+template SolveReport solve_with_eigen(const particles::NeighbourLists<3>&,
+                                      const AlignedVector<float>&, const AlignedVector<double>&,
+                                      const AlignedVector<double>&, double, int,
+                                      AlignedVector<double>&);
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

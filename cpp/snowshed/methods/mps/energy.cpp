@@ -1,7 +1,6 @@
-// The balance of energy.
-#include "snowshed/methods/mps/solver_impl.hpp"
+#include "snowshed/methods/mps/energy.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 
 template <int D>
 EnergyBalance stored_energy(const Model<D>& model, const Particles<D>& particles) {
@@ -14,38 +13,60 @@ EnergyBalance stored_energy(const Model<D>& model, const Particles<D>& particles
   return e;
 }
 
-/// The work of each force in the step is its impulse times the mean of the velocities before and
-/// after, so that all works add up to the change of the kinetic energy. Gravity's work differs from
+template <int D>
+void EnergyRecorder<D>::begin_step(const Particles<D>& particles) {
+  if (!active_) return;
+  moved_.resize(particles.size());
+  for (std::size_t i = 0; i < particles.size(); ++i) moved_[i] = particles.moves(i);
+}
+
+template <int D>
+void EnergyRecorder<D>::after_viscosity(const AlignedVector<VecD<D>>& before,
+                                        const Particles<D>& particles) {
+  if (!active_) return;
+  viscous_ = particles.velocity;
+  viscous_change_.resize(particles.size());
+  for (std::size_t i = 0; i < particles.size(); ++i)
+    viscous_change_[i] = particles.velocity[i] - before[i];
+}
+
+template <int D>
+void EnergyRecorder<D>::after_forces(const Particles<D>& particles) {
+  if (active_) final_ = particles.velocity;
+}
+
+/// The work of each force is its impulse times the mean of the velocities before and after the
+/// step, so that all works add up to the change of the kinetic energy. Gravity's work differs from
 /// the change of potential energy, because particles move with the velocity after the step; this
 /// difference is the residual.
 template <int D>
-void SolverImpl<D>::record_energy(State<D>& next, double dt) const {
+void EnergyRecorder<D>::end_step(const Model<D>& model, const Workspace<D>& work, double dt,
+                                 State<D>& next) const {
+  if (!active_) return;
   const Particles<D>& after = next.particles;
   EnergyBalance& e = next.energy;
   for (std::size_t i = 0; i < after.size(); ++i) {
-    if (!workspace_.energy.moved[i]) continue;
-    const VecD<D>&before = workspace_.before[i], &viscous = workspace_.energy.viscous[i];
-    const VecD<D> mean = 0.5 * (before + workspace_.energy.projected[i]);
+    if (!moved_[i]) continue;
+    const VecD<D>& before = work.before[i];
+    const VecD<D> mean = 0.5 * (before + final_[i]);
     const double mass = after.mass[i];
     double friction = 0;
-    for (const WallContact<D>* c = workspace_.near.contacts.begin(i);
-         c < workspace_.near.contacts.end(i); ++c) {
-      const VecD<D> relative = viscous - c->velocity;
-      friction += dt * mass * workspace_.wall_friction.drag[workspace_.near.contacts.index_of(c)] *
+    for (const WallContact<D>* c = work.near.contacts.begin(i); c < work.near.contacts.end(i);
+         ++c) {
+      const VecD<D> relative = viscous_[i] - c->velocity;
+      friction += dt * mass * work.wall_friction.drag[work.near.contacts.index_of(c)] *
                   (relative - relative.dot(c->normal) * c->normal).dot(mean);
     }
     e.friction += friction;
-    e.plastic -= mass * workspace_.energy.viscous_change[i].dot(mean) + friction;
-    e.transfer -= mass * (workspace_.energy.projected[i] - before - dt * model_.gravity -
-                          workspace_.energy.viscous_change[i])
-                             .dot(mean);
-    if (!after.moves(i)) e.sticking += 0.5 * mass * workspace_.energy.projected[i].squaredNorm();
+    e.plastic -= mass * viscous_change_[i].dot(mean) + friction;
+    e.transfer -= mass * (final_[i] - before - dt * model.gravity - viscous_change_[i]).dot(mean);
+    if (!after.moves(i)) e.sticking += 0.5 * mass * final_[i].squaredNorm();
   }
 }
 
 template EnergyBalance stored_energy(const Model<2>&, const Particles<2>&);
 template EnergyBalance stored_energy(const Model<3>&, const Particles<3>&);
-template void SolverImpl<2>::record_energy(State<2>&, double) const;
-template void SolverImpl<3>::record_energy(State<3>&, double) const;
+template class EnergyRecorder<2>;
+template class EnergyRecorder<3>;
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

@@ -1,7 +1,7 @@
 // Erosion of snow at rest, and deposition of moving snow.
 #include "snowshed/methods/mps/forces.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 namespace {
 
 /// Largest distance, in l0, over which snow is deposited on snow at rest or a wall.
@@ -60,4 +60,4 @@ void erode_and_deposit(const Model<D>& model, Particles<D>& particles, Workspace
 template void erode_and_deposit(const Model<2>&, Particles<2>&, Workspace<2>&);
 template void erode_and_deposit(const Model<3>&, Particles<3>&, Workspace<3>&);
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

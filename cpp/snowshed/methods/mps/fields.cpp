@@ -4,7 +4,7 @@
 #include "snowshed/methods/field_sources.hpp"
 #include "snowshed/methods/mps/solver_impl.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 
 /// Calls visit(info, view) for each field; view() returns its view.
 template <int D>
@@ -32,12 +32,12 @@ void SolverImpl<D>::visit_fields(Visit visit) const {
 }
 
 template <int D>
-std::vector<FieldInfo> SolverImpl<D>::fields() const {
+std::vector<particles::FieldInfo> SolverImpl<D>::fields() const {
   return list_fields([this](const auto& visit) { visit_fields(visit); });
 }
 
 template <int D>
-FieldView SolverImpl<D>::field(const std::string& name) const {
+particles::FieldView SolverImpl<D>::field(const std::string& name) const {
   return find_field(name, [this](const auto& visit) { visit_fields(visit); });
 }
 
@@ -50,7 +50,6 @@ ParticleState SolverImpl<D>::state() const {
     s.velocities.push_back(embed(p.velocity[i]));
     s.masses.push_back(p.mass[i]);
     s.densities.push_back(model_.settings().density);
-    s.pressures.push_back(p.pressure[i]);
     s.ids.push_back(p.id[i]);
     s.events.push_back(p.event[i]);
   }
@@ -86,7 +85,8 @@ std::size_t SolverImpl<D>::bytes() const {
     particles->for_each_array([&](const char*, const auto& array) { total += bytes_of(array); });
   return total +
          bytes_of(near.weight, near.slope, near.isotropic_weight, near.snow_slope, near.moments,
-                  near.correction, near.weight_correction, near.asymmetry, near.slip) +
+                  near.correction, near.weight_correction, near.asymmetry,
+                  near.divergence_velocity) +
          bytes_of(w.rates.pair_rate, w.rates.correction, w.viscosity.coupling, w.viscosity.block,
                   w.viscosity.inverse_block, w.rates.gradient, w.spacing.concentration,
                   w.pressure.sum, w.spacing.impulse_share, w.pressure.base, w.pressure.diagonal,
@@ -96,4 +96,4 @@ std::size_t SolverImpl<D>::bytes() const {
 template class SolverImpl<2>;
 template class SolverImpl<3>;
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

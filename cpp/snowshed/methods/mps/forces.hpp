@@ -5,7 +5,7 @@
 
 #include "snowshed/methods/mps/state.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 
 /// Sorts the particles by cells, and finds neighbours, walls, number densities and the free
 /// surface.
@@ -71,8 +71,8 @@ void apply_pressure(const Model<D>&, double dt, Particles<D>&, Workspace<D>&);
 template <int D>
 void keep_spacing(const Model<D>&, double dt, Particles<D>&, Workspace<D>&);
 
-/// Erodible particles begin to move, and moving ones are deposited, equation (23).
+/// Erodes and deposits particles, equation (23).
 template <int D>
 void erode_and_deposit(const Model<D>&, Particles<D>&, Workspace<D>&);
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

@@ -4,7 +4,7 @@
 
 #include "snowshed/methods/mps/forces.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 namespace {
 
 /// The smallest distance to which particles approach walls, and the largest distance by which
@@ -26,7 +26,7 @@ double least_pressure(const Particles<D>& particles, const Neighbourhood<D>& nea
 /// pressure, so that the corrected gradient of linear pressures is exact. `published`: minus the
 /// least pressure around, as in equation (4). At the surface the missing neighbours have the
 /// opposite pressure, as in the pressure equation, and the rule of `conservative` holds.
-/// (`corrected` would push a particle that rises above others up even more.)
+/// (`corrected` would push a particle that protrudes from the surface further out.)
 template <int D>
 double base_pressure(const Model<D>& model, const Particles<D>& particles,
                      const Neighbourhood<D>& near, std::size_t i) {
@@ -96,14 +96,14 @@ VecD<D> gradient_at_walls(const Model<D>& model, const Particles<D>& particles,
   const double per_velocity = model.settings().density / dt;
   const bool corrected = model.settings().gradient == Gradient::corrected;
   for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
-    const double level = particles.pressure[m->of];
+    const double level = particles.pressure[m->neighbour];
     double pressure = level;
     VecD<D> across = VecD<D>::Zero();  // the part of the separation along the normals
     for (const int k : {0, 1}) {
-      if (m->rise[k] == 0) continue;
+      if (m->mirror_shift[k] == 0) continue;
       const WallContact<D>& wall = near.wall(*m, k);
-      pressure -=
-          m->rise[k] * per_velocity * (particles.velocity[i] - wall.velocity).dot(wall.normal);
+      pressure -= m->mirror_shift[k] * per_velocity *
+                  (particles.velocity[i] - wall.velocity).dot(wall.normal);
       across += m->separation.dot(wall.normal) * wall.normal;
     }
     pressure = std::max(0.0, pressure);
@@ -157,4 +157,4 @@ void apply_pressure(const Model<D>& model, double dt, Particles<D>& particles, W
 template void apply_pressure(const Model<2>&, double, Particles<2>&, Workspace<2>&);
 template void apply_pressure(const Model<3>&, double, Particles<3>&, Workspace<3>&);
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

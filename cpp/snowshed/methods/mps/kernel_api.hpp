@@ -9,7 +9,7 @@
 
 #include "snowshed/particles/neighbour_search.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 
 /// The pairs of all particles, in compressed rows.
 struct PairRows {
@@ -26,7 +26,7 @@ struct RowMoments {
 
 template <int D>
 struct Kernels {
-  NeighbourSearch<D> search;
+  particles::NeighbourSearch<D> search;
   /// Finds the weights r_e/r - 1, the weights over r^2 (`slope`), and the sums of the weights and
   /// of filling_weight of each row. `offset` has one array of separations per axis.
   void (*weigh)(const PairRows&, const float* const* offset, float reach, float* weight,
@@ -38,14 +38,14 @@ struct Kernels {
   void (*isotropic_weights)(const PairRows&, const float* const* offset, const float* weight,
                             const float* correction, float* corrected, std::ptrdiff_t begin,
                             std::ptrdiff_t end);
-  /// q = diagonal p - sum of weight p; a row whose diagonal is zero is left out.
+  /// q = diagonal p - sum of weight p; 0 in rows whose diagonal is zero.
   void (*apply)(const PairRows&, const float* weight, const double* diagonal, const double* p,
                 double* q, std::ptrdiff_t begin, std::ptrdiff_t end);
   /// The same in single precision: r = b - (diagonal x - sum of weight x).
   void (*residual)(const PairRows&, const float* weight, const float* diagonal, const float* x,
                    const float* b, float* r, std::ptrdiff_t begin, std::ptrdiff_t end);
-  /// q = block p - sum of coupling p, with vectors p and matrices by columns; rows whose block
-  /// begins with zero are left out.
+  /// q = block p - sum of coupling p, with vectors p and matrices by columns; 0 in rows whose block
+  /// begins with zero.
   void (*apply_to_velocities)(const PairRows&, const float* coupling, const double* block,
                               const double* p, double* q, std::ptrdiff_t begin, std::ptrdiff_t end);
   /// The sum of slope (u_j - u_i) r^T of each row, matrices by columns, 1/s.
@@ -61,9 +61,9 @@ struct Kernels {
   void (*sum_approaches)(const PairRows&, const float* const* offset, const double* velocity,
                          const double* share, double limit, double* sum, std::ptrdiff_t begin,
                          std::ptrdiff_t end);
-  /// The shear rate (1/s) midway between the particles of each pair whose neighbour has the larger
-  /// index. It follows from the mean of both gradients, in which the difference of the velocities
-  /// replaces the part along the separation.
+  /// The shear rate (1/s) at the midpoint of each pair whose neighbour has the larger index. It
+  /// follows from the mean of both gradients, in which the difference of the velocities replaces
+  /// the part along the separation.
   void (*pair_rates)(const PairRows&, const float* const* offset, const double* velocity,
                      const double* gradient, float* rate, std::ptrdiff_t begin, std::ptrdiff_t end);
 };
@@ -72,4 +72,4 @@ struct Kernels {
 template <int D>
 const Kernels<D>& chosen_kernels();
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

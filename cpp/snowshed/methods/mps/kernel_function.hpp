@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 
 /// Constants of Koshizuka and Oka's operators for a regular lattice, in units of the spacing l0.
 struct KernelConstants {
@@ -66,11 +66,11 @@ inline double second_layer_share(int dimension, const KernelConstants& k) {
 }
 
 /// The part of n0 and of the filling that the second layer of a lattice below a surface lacks.
-struct SurfaceLack {
+struct SurfaceDeficit {
   double number, filling;
 };
-inline SurfaceLack second_layer_lack(int dimension, const KernelConstants& k) {
-  SurfaceLack sum{};
+inline SurfaceDeficit second_layer_deficit(int dimension, const KernelConstants& k) {
+  SurfaceDeficit sum{};
   visit_beyond_second_layer(dimension, k, [&](double w, int) {
     sum.number += w / k.number_density;
     sum.filling += filling_weight(w) / k.filling;
@@ -78,4 +78,4 @@ inline SurfaceLack second_layer_lack(int dimension, const KernelConstants& k) {
   return sum;
 }
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

@@ -2,7 +2,7 @@
 #include "snowshed/core/kernel_variant.hpp"
 #include "snowshed/methods/mps/kernel_api.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 
 namespace baseline {
 extern const Kernels<2> kernel_table_2d;
@@ -52,4 +52,4 @@ const Kernels<D>& chosen_kernels() {
 template const Kernels<2>& chosen_kernels();
 template const Kernels<3>& chosen_kernels();
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

@@ -11,7 +11,7 @@
 #include "snowshed/methods/mps/solver.hpp"
 #include "snowshed/sampling/lattice.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 namespace {
 
 class Descriptor final : public DescriptorBase<Descriptor, Settings> {
@@ -52,7 +52,7 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
       throw InputError("/output/energy",
                        "the balance is kept with /numerics/order \"single_move\" only");
   }
-  ThickSolid thickened(const Shape& shape, int dimension) const override {
+  geometry::ThickSolid thickened(const geometry::Shape& shape, int dimension) const override {
     return thickened_for_particles(shape, settings_.spacing, dimension);
   }
   std::unique_ptr<Method> build(const SceneView& scene,
@@ -66,11 +66,11 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
     return make_solver(std::move(o));
   }
 
-  std::size_t count_particles(const LevelSet& shape, int dimension) const override {
-    return count_lattice(shape, dimension, settings_.spacing);
+  std::size_t count_particles(const geometry::LevelSet& shape, int dimension) const override {
+    return sampling::count_lattice(shape, dimension, settings_.spacing);
   }
-  void fill(const LevelSet& shape, int dimension, const StopRequest& stop, ParticleBatch& batch,
-            std::vector<std::string>& notes) const override {
+  void fill(const geometry::LevelSet& shape, int dimension, const StopRequest& stop,
+            ParticleBatch& batch, std::vector<std::string>& notes) const override {
     seed_on_lattice(settings_, shape, dimension, stop, batch, notes);
   }
 
@@ -90,4 +90,4 @@ const MethodDescriptor& descriptor() {
   return instance;
 }
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

@@ -6,7 +6,7 @@
 #include "snowshed/core/vec.hpp"
 #include "snowshed/methods/mps/kernel_api.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 
 /// The matrix whose upper half is given by rows.
 template <int D>
@@ -27,4 +27,4 @@ std::array<float, RowMoments<D>::half> upper_half(const Eigen::Matrix<double, D,
   return half;
 }
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

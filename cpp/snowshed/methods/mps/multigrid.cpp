@@ -5,7 +5,7 @@
 
 #include "snowshed/core/parallel.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 namespace {
 
 constexpr float jacobi_damping = 0.9f;  // damping of Jacobi sweeps
@@ -45,7 +45,7 @@ int slot_of(const std::array<std::int32_t, D>& from, const std::array<std::int32
 
 /// Makes the first level, with one aggregate for each cell.
 template <int D, int C>
-void Multigrid<D, C>::make_first(const CellOrder<D>& cells, std::int32_t period_cells) {
+void Multigrid<D, C>::make_first(const particles::CellOrder<D>& cells, std::int32_t period_cells) {
   Level& level = levels_.front();
   level.period = period_cells;
   level.coordinates.resize(cells.cells());
@@ -178,9 +178,11 @@ void Multigrid<D, C>::factor_coarsest() {
 }
 
 template <int D, int C>
-void Multigrid<D, C>::update(const NeighbourLists<D>& lists, const AlignedVector<float>& weight,
-                             const AlignedVector<double>& diagonal, const CellOrder<D>& cells,
-                             std::int32_t period_cells, int threads) {
+void Multigrid<D, C>::update(const particles::NeighbourLists<D>& lists,
+                             const AlignedVector<float>& weight,
+                             const AlignedVector<double>& diagonal,
+                             const particles::CellOrder<D>& cells, std::int32_t period_cells,
+                             int threads) {
   lists_ = &lists;
   weight_ = weight.data();
   size_ = lists.size();
@@ -312,4 +314,4 @@ template class Multigrid<3, 3>;
 template void Multigrid<2, 2>::correct(const double*, double*);
 template void Multigrid<3, 3>::correct(const double*, double*);
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

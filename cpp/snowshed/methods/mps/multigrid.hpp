@@ -11,7 +11,7 @@
 #include "snowshed/particles/cell_order.hpp"
 #include "snowshed/particles/neighbour_lists.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 
 /// Aggregation multigrid (Notay 2010; Braess 1995, doi:10.1007/BF02238484): the unknowns of a cell
 /// are one unknown of the next level, and 2^D unknowns of a level are one unknown of the level
@@ -25,8 +25,8 @@ class Multigrid {
   /// The matrix has the given diagonal, and -weight for each pair of neighbours. Unknowns with a
   /// zero diagonal are left out: their values stay zero. `period_cells`: the period along x in
   /// cells, or 0.
-  void update(const NeighbourLists<D>& lists, const AlignedVector<float>& weight,
-              const AlignedVector<double>& diagonal, const CellOrder<D>& cells,
+  void update(const particles::NeighbourLists<D>& lists, const AlignedVector<float>& weight,
+              const AlignedVector<double>& diagonal, const particles::CellOrder<D>& cells,
               std::int32_t period_cells, int threads);
 
   /// z = M^-1 r, for one unknown.
@@ -58,7 +58,7 @@ class Multigrid {
     std::size_t size() const { return coordinates.size(); }
   };
 
-  void make_first(const CellOrder<D>& cells, std::int32_t period_cells);
+  void make_first(const particles::CellOrder<D>& cells, std::int32_t period_cells);
   void make_next();
   template <class Visit>
   void fill(Level& level, const Visit& visit);
@@ -70,7 +70,7 @@ class Multigrid {
   void residual(Level& level);
 
   const Kernels<D>& kernels_ = chosen_kernels<D>();
-  const NeighbourLists<D>* lists_ = nullptr;
+  const particles::NeighbourLists<D>* lists_ = nullptr;
   const float* weight_ = nullptr;
   std::size_t size_ = 0;
   int threads_ = 1;
@@ -81,4 +81,4 @@ class Multigrid {
   Eigen::LLT<Eigen::MatrixXf> coarsest_;
 };
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

@@ -6,7 +6,7 @@
 #include "snowshed/methods/mps/forces.hpp"
 #include "snowshed/methods/mps/moments.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 namespace {
 
 /// Least asymmetry of a particle at the surface: the norm of the sum of w r/|r| over the neighbours
@@ -23,8 +23,8 @@ constexpr double sparse_density = 0.75;
 constexpr double min_determinant = 0.1;
 
 template <int D>
-void sort_particles(const CellOrder<D>& cells, Particles<D>& particles, Particles<D>& spare,
-                    int threads) {
+void sort_particles(const particles::CellOrder<D>& cells, Particles<D>& particles,
+                    Particles<D>& spare, int threads) {
   if (cells.is_sorted()) return;
   const std::size_t n = particles.size();
   spare.resize(n);
@@ -249,4 +249,4 @@ template const float* slope_without(Kind, const Model<3>&, const Particles<3>&, 
 template void find_neighbours(const Model<2>&, Particles<2>&, double, Workspace<2>&);
 template void find_neighbours(const Model<3>&, Particles<3>&, double, Workspace<3>&);
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

@@ -7,9 +7,9 @@
 #include "snowshed/core/aligned_vector.hpp"
 #include "snowshed/core/vec.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 
-/// The kinds of particles of Saito and others. Only moving particles change their places. Dummy
+/// The kinds of particles of Saito and others. Only moving particles change their positions. Dummy
 /// walls fill the space behind a wall, so that it is not taken for a free surface.
 enum class Kind : std::uint8_t { moving, erodible, inner_wall, dummy_wall };
 
@@ -67,4 +67,4 @@ struct Particles {
   }
 };
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

@@ -5,16 +5,18 @@
 #include "snowshed/methods/mps/eigen_solver.hpp"
 #include "snowshed/methods/mps/forces.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 namespace {
 
-/// Inner walls conduct pressure as snow does. In divergences they therefore move as the snow around
-/// them does; the dummies behind them ensure that nothing flows into the wall (ours).
+/// Finds the velocities that count in divergences. Inner walls conduct pressure as snow does, and
+/// therefore move as the snow around them does; the dummies behind them ensure that nothing flows
+/// into the wall (ours).
 template <int D>
-void find_slip(const Model<D>& model, const Particles<D>& particles, Neighbourhood<D>& near) {
-  near.slip.resize(particles.size());
+void find_divergence_velocities(const Model<D>& model, const Particles<D>& particles,
+                                Neighbourhood<D>& near) {
+  near.divergence_velocity.resize(particles.size());
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
-    near.slip[i] = particles.velocity[i];
+    near.divergence_velocity[i] = particles.velocity[i];
     if (particles.kind[i] != Kind::inner_wall) return;
     VecD<D> sum = VecD<D>::Zero();
     double weight = 0;
@@ -24,16 +26,15 @@ void find_slip(const Model<D>& model, const Particles<D>& particles, Neighbourho
       sum += double(near.weight[e]) * particles.velocity[j];
       weight += double(near.weight[e]);
     }
-    if (weight > 0) near.slip[i] = sum / weight;
+    if (weight > 0) near.divergence_velocity[i] = sum / weight;
   });
 }
 
-/// The divergence beside walls of particles, 1/s. Inner walls move with `slip`, and dummies add the
-/// flow into the wall.
+/// The divergence beside walls of particles, 1/s. Dummies add the flow into the wall.
 template <int D>
-double slip_divergence(const Model<D>& model, const Particles<D>& particles,
-                       const Neighbourhood<D>& near, const Eigen::Matrix<double, D, D>& correction,
-                       std::size_t i) {
+double wall_particle_divergence(const Model<D>& model, const Particles<D>& particles,
+                                const Neighbourhood<D>& near,
+                                const Eigen::Matrix<double, D, D>& correction, std::size_t i) {
   double sum = 0, flow = 0;
   for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
     const std::size_t j = near.lists.neighbour(e);
@@ -41,9 +42,11 @@ double slip_divergence(const Model<D>& model, const Particles<D>& particles,
     if (particles.kind[j] == Kind::dummy_wall) {
       const VecD<D>& normal = particles.wall_normal(j);
       flow -= double(near.weight[e]) * separation.dot(normal) *
-              (near.slip[i] - particles.velocity[j]).dot(normal);
+              (near.divergence_velocity[i] - particles.velocity[j]).dot(normal);
     } else {
-      sum += double(near.slope[e]) * (correction * separation).dot(near.slip[j] - near.slip[i]);
+      sum +=
+          double(near.slope[e]) *
+          (correction * separation).dot(near.divergence_velocity[j] - near.divergence_velocity[i]);
     }
   }
   return model.gradient() * sum + model.laplacian() * flow;
@@ -59,12 +62,13 @@ double image_divergence(const Model<D>& model, const Particles<D>& particles,
   const VecD<D>& own_velocity = particles.velocity[i];
   double sum = 0, flow = 0;
   for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
-    VecD<D> along = particles.velocity[m->of] - own_velocity;
+    VecD<D> along = particles.velocity[m->neighbour] - own_velocity;
     for (const int k : {0, 1}) {
-      if (m->rise[k] == 0) continue;
+      if (m->mirror_shift[k] == 0) continue;
       const WallContact<D>& wall = near.wall(*m, k);
       along -= along.dot(wall.normal) * wall.normal;
-      flow += double(m->weight) * m->rise[k] * (own_velocity - wall.velocity).dot(wall.normal);
+      flow +=
+          double(m->weight) * m->mirror_shift[k] * (own_velocity - wall.velocity).dot(wall.normal);
     }
     sum += double(m->slope) * (correction * m->separation).dot(along);
   }
@@ -79,17 +83,18 @@ double divergence(const Model<D>& model, const Particles<D>& particles, const Wo
   const Neighbourhood<D>& near = work.near;
   const bool corrected = model.settings().gradient == Gradient::corrected && !near.surface[i];
   const Matrix correction = corrected ? near.correction[i] : Matrix(Matrix::Identity());
-  if (model.has_wall_particles()) return slip_divergence(model, particles, near, correction, i);
+  if (model.has_wall_particles())
+    return wall_particle_divergence(model, particles, near, correction, i);
   return model.gradient() * correction.cwiseProduct(work.rates.gradient[i]).sum() +
          image_divergence(model, particles, near, correction, i);
 }
 
-/// Sums over the present velocities for `divergence`; the published source needs none.
+/// Computes the sums that `divergence` needs; the published source needs none.
 template <int D>
 void prepare_divergence(const Model<D>& model, const Particles<D>& particles, Workspace<D>& work) {
   if (model.settings().source == Source::published) return;
   if (model.has_wall_particles())
-    find_slip(model, particles, work.near);
+    find_divergence_velocities(model, particles, work.near);
   else
     sum_velocity_gradients(model, particles, work.near.slope.data(), work);
 }
@@ -119,7 +124,7 @@ constexpr double surface_tolerance = 0.002;
 /// Excess of density over that of a lattice, which the compensation (ours) reduces. Inside the snow
 /// it follows from the filled part of the space. Beside wall particles it follows from the number
 /// density, which grows faster near a wall. At the surface only a positive excess counts. Below the
-/// surface a lack of neighbours counts only beyond that of a lattice, so that gaps close.
+/// surface a deficit counts only as far as it exceeds that of a lattice, so that gaps close.
 template <int D>
 double compensated_excess(const Model<D>& model, const Particles<D>& particles,
                           const Neighbourhood<D>& near, std::size_t i) {
@@ -129,8 +134,9 @@ double compensated_excess(const Model<D>& model, const Particles<D>& particles,
       (beside_walls ? near.density[i] / model.kernel.number_density : near.filling[i]) - 1;
   if (near.surface[i]) return std::max(excess, 0.0);
   if (!near.below_surface[i] || excess > 0) return excess;
-  const double lack = beside_walls ? model.surface_lack.number : model.surface_lack.filling;
-  return std::min(0.0, excess + lack + surface_tolerance);
+  const double deficit =
+      beside_walls ? model.surface_deficit.number : model.surface_deficit.filling;
+  return std::min(0.0, excess + deficit + surface_tolerance);
 }
 
 /// The right-hand side of lap p = ..., Pa/m2: equation (18), or after Tanaka and Masunaga (2010,
@@ -279,4 +285,4 @@ template SolveReport solve_pressure(const Model<3>&, double, Particles<3>&, Work
 template void prepare_pressure(const Model<2>&, const Particles<2>&, Workspace<2>&);
 template void prepare_pressure(const Model<3>&, const Particles<3>&, Workspace<3>&);
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

@@ -5,10 +5,10 @@
 #include "snowshed/methods/mps/forces.hpp"
 #include "snowshed/methods/mps/moments.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 namespace {
 
-/// Distance from a wall, in l0, below which the velocity behind it grows no further.
+/// Smallest distance from a wall, in l0, with which the velocity behind the wall is extrapolated.
 constexpr double min_no_slip_distance = 0.25;
 
 /// The velocity difference between a particle and a wall particle, over that between the particle
@@ -38,11 +38,11 @@ void visit_walls(const Model<D>& model, const Particles<D>& particles, const Nei
                     (particles.velocity[j] - particles.velocity[i])));
     }
   for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
-    const bool two = m->rise[1] != 0;
+    const bool two = m->mirror_shift[1] != 0;
     const WallContact<D>& wall = near.wall(*m, 0);
     if (two || !model.is_sticky(wall)) continue;
     visit(m->separation, double(m->slope),
-          VecD<D>(2 * wall.velocity - particles.velocity[m->of] - particles.velocity[i]));
+          VecD<D>(2 * wall.velocity - particles.velocity[m->neighbour] - particles.velocity[i]));
   }
 }
 
@@ -63,8 +63,8 @@ Eigen::Matrix<double, D, D> rate_correction(const Model<D>& model, const Particl
   return model.gradient() * moment.inverse();
 }
 
-/// The pressures of the last step, smoothed over the neighbours with the weight function and cut
-/// off at zero. Behind walls the pressures continue hydrostatically, and above the free surface
+/// The pressures of the last step, smoothed over the neighbours with the weight function and
+/// clipped at zero. Behind walls the pressures continue hydrostatically, and above the free surface
 /// with the opposite sign, so that smoothing does not change a linear pressure.
 template <int D>
 double smooth_pressure(const Model<D>& model, const Particles<D>& particles,
@@ -78,10 +78,10 @@ double smooth_pressure(const Model<D>& model, const Particles<D>& particles,
   }
   const double weight_of_snow = model.settings().density;
   for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
-    double pressure = particles.pressure[m->of];
+    double pressure = particles.pressure[m->neighbour];
     for (const int k : {0, 1})
-      pressure +=
-          m->rise[k] * weight_of_snow * std::max(0.0, -model.gravity.dot(near.wall(*m, k).normal));
+      pressure += m->mirror_shift[k] * weight_of_snow *
+                  std::max(0.0, -model.gravity.dot(near.wall(*m, k).normal));
     sum += double(m->weight) * pressure;
   }
   const double missing = near.surface[i] ? model.kernel.number_density - n : 0.0;
@@ -178,4 +178,4 @@ template void find_rates(const Model<3>&, Particles<3>&, Workspace<3>&);
 template void find_viscosities(const Model<2>&, Particles<2>&, const Workspace<2>&);
 template void find_viscosities(const Model<3>&, Particles<3>&, const Workspace<3>&);
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

@@ -7,7 +7,7 @@
 #include "snowshed/core/angles.hpp"
 #include "snowshed/methods/mps/settings.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 
 /// The shear stress over the shear rate, gdot = sqrt(2 D:D).
 ///
@@ -61,4 +61,4 @@ struct Rheology {
   }
 };
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

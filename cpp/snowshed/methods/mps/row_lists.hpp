@@ -7,7 +7,7 @@
 
 #include "snowshed/core/parallel.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 
 template <class T>
 class RowLists {
@@ -46,4 +46,4 @@ class RowLists {
   std::vector<std::vector<T>> parts_;
 };
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

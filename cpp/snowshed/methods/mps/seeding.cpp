@@ -6,14 +6,15 @@
 #include "snowshed/core/message_format.hpp"
 #include "snowshed/sampling/lattice.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 namespace {
 
 std::string in_millimetres(double metres) { return show_rounded(1000 * metres) + " mm"; }
 
 /// Adds a note on a body that is too small for a lattice of particles of equal mass.
-void note_coarse_lattice(const LevelSet& shape, const Settings& settings, double mass_ratio,
-                         std::size_t particles, std::vector<std::string>& notes) {
+void note_coarse_lattice(const geometry::LevelSet& shape, const Settings& settings,
+                         double mass_ratio, std::size_t particles,
+                         std::vector<std::string>& notes) {
   constexpr double max_unevenness = 0.02;
   const double thickness = 2 * shape.inradius();
   const std::string count =
@@ -31,10 +32,10 @@ void note_coarse_lattice(const LevelSet& shape, const Settings& settings, double
 
 }  // namespace
 
-void seed_on_lattice(const Settings& s, const LevelSet& shape, int dimension,
+void seed_on_lattice(const Settings& s, const geometry::LevelSet& shape, int dimension,
                      const StopRequest& stop, ParticleBatch& batch,
                      std::vector<std::string>& notes) {
-  LatticeFilling filling = fill_lattice(shape, dimension, s.spacing, stop);
+  sampling::LatticeFilling filling = sampling::fill_lattice(shape, dimension, s.spacing, stop);
   const std::size_t count = filling.positions.size();
   batch.positions = std::move(filling.positions);
   batch.mass = s.density * filling.volume / double(count);
@@ -42,4 +43,4 @@ void seed_on_lattice(const Settings& s, const LevelSet& shape, int dimension,
   note_coarse_lattice(shape, s, filling.volume / (cell * double(count)), count, notes);
 }
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

@@ -1,7 +1,7 @@
 // Settings of the moving particle semi-implicit method in a scene.
 #pragma once
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 
 /// Laws of the shear stress, see rheology.hpp.
 enum class ShearLaw { newtonian, bingham, bingham_dilatant };
@@ -46,7 +46,7 @@ struct Settings {
   double stress_growth = 1e4;  // s, m of Papanastasiou
   double dilatant_rate = 100;  // 1/s, above which the dilatant branch holds
   double dilatant_exponent = 1.5;
-  int yield_iterations = 50;  // most iterations for the apparent viscosity, per step
+  int yield_iterations = 50;  // largest number of iterations for the apparent viscosity, per step
 
   bool erosion = false;             // whether snow erodes and is deposited
   double erodible_thickness = 0;    // m, of the erodible snow on obstacles at the beginning
@@ -71,8 +71,8 @@ struct Settings {
   int max_iterations = 1000;
   int threads = 0;  // 0: all
 
-  /// The size of the smallest thing the method resolves, m.
+  /// The smallest length that the method resolves, m.
   double resolution() const { return spacing; }
 };
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

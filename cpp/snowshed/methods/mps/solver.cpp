@@ -8,7 +8,7 @@
 #include "snowshed/methods/mps/anderson.hpp"
 #include "snowshed/methods/mps/solver_impl.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 namespace {
 
 /// If a particle would move farther than this (in l0), the step is repeated with half its length,
@@ -17,29 +17,31 @@ constexpr double max_distance = 0.5;
 constexpr int max_halvings = 20;
 
 /// With conservative gradients pairs repel each other by the sum of their pressures, as springs do.
-/// A disturbance runs through the lattice at about twice the root of p/rho. A step is at most this
-/// number times the spacing over that root (form and number are ours; above 1 columns of water
-/// break up).
+/// A disturbance runs through the lattice at about 2 sqrt(p/rho). A step is at most this number
+/// times l0/sqrt(p/rho) (form and number are ours; above 1 columns of water break up).
 constexpr double pressure_courant = 0.5;
 
 /// The share of the last step's viscous force that the pressure of flowing snow takes into account.
-/// Without this share stiff fluids are compressed more, because viscosity acts last; with 0.9 the
-/// pressure of a column of 1e4 Pa s at rest was 1.4 % too low (ours).
-constexpr double expected_share = 0.5;
+/// Without it stiff fluids are compressed more, because viscosity acts last. With 0.9 the pressure
+/// of a column of 1e4 Pa s at rest was 1.4 % too low (ours).
+constexpr double viscous_share_uncoupled = 0.5;
 
-/// Pressure and viscosity are solved together under three conditions, with the root mean square u
-/// of the speeds. The plastic viscosity eta is at least `min_stiffness` rho l0^2/dt. The fluid
-/// moves: u is more than `min_fall` times rho g l0^2/eta, the speed of a fall that viscosity slows
-/// down within l0. (In a stiff fluid at rest errors of the gradients would cause large pressures,
-/// because pressures hardly move such a fluid.) The fluid creeps: rho u^3/(eta g), the square of
-/// the Reynolds number of a body whose height makes it flow at u, is less than `max_inertia`. Fast
-/// flows lose no volume to viscosity, and are solved without coupling, which is cheaper, for any
-/// l0.
+/// Pressure and viscosity are solved together under three conditions; u is the root mean square of
+/// the speeds.
+/// - The fluid is stiff: its plastic viscosity eta is at least `min_stiffness` rho l0^2/dt.
+/// - The fluid moves: u exceeds `min_fall` times rho g l0^2/eta, the terminal speed of a fall over
+///   one spacing. In a stiff fluid at rest errors of the gradients would cause large pressures,
+///   because pressures hardly move such a fluid.
+/// - The fluid creeps: rho u^3/(eta g), the square of the Reynolds number of a body whose height
+///   makes it flow at u, is less than `max_inertia`. Fast flows lose no volume even without
+///   coupling, so they use the cheaper separate solves at every l0.
 constexpr double min_stiffness = 2, min_fall = 2, max_inertia = 1e-3;
-/// The iteration begins with this share of the last step's viscous force; errors of the pressure
-/// then die out. It ends when the force changes by less than `coupling_tolerance` times gravity, or
-/// after `max_couplings` iterations; even without convergence these are better than a single one.
-constexpr double first_share = 0.9, coupling_tolerance = 3e-3;
+/// The share of the last step's viscous force with which the iteration begins; below 1, errors of
+/// the pressure die out.
+constexpr double viscous_share_first_iteration = 0.9;
+/// The iteration ends when the force per mass changes by less than this share of gravity, or after
+/// `max_couplings` iterations. Even without convergence these are better than a single iteration.
+constexpr double coupling_tolerance = 3e-3;
 constexpr int max_couplings = 20;
 
 void require_converged(const SolveReport& report, const char* what, int max_iterations) {
@@ -50,10 +52,10 @@ void require_converged(const SolveReport& report, const char* what, int max_iter
       " iterations; allowed: " + std::to_string(max_iterations));
 }
 
-/// Adds a solve to the report on several: the iterations are those of all, the rest is that of the
-/// last.
-void add_solve(const SolveReport& solve, SolveReport& all) {
-  all = {all.iterations + solve.iterations, solve.residual, solve.converged};
+/// Adds a solve to a total. Iterations are summed; residual and convergence are those of the last
+/// solve.
+void add_solve(const SolveReport& solve, SolveReport& total) {
+  total = {total.iterations + solve.iterations, solve.residual, solve.converged};
 }
 
 }  // namespace
@@ -80,7 +82,7 @@ Model<D>::Model(Options o)
       gravity(section<D>(options.gravity)),
       kernel(kernel_constants(D, options.settings.radius)),
       second_layer(second_layer_share(D, kernel)),
-      surface_lack(second_layer_lack(D, kernel)),
+      surface_deficit(second_layer_deficit(D, kernel)),
       rheology(Rheology::from(options.settings)),
       threads(threads_to_use(options.settings.threads)) {
   for (Obstacle& o : options.obstacles)
@@ -92,7 +94,7 @@ double SolverImpl<D>::largest_speed(const Particles<D>& particles) const {
   double fastest2 = 0;
   for (const VecD<D>& u : particles.velocity) {
     const double speed2 = u.squaredNorm();
-    if (!(speed2 <= fastest2)) fastest2 = speed2;  // not a number, too
+    if (!(speed2 <= fastest2)) fastest2 = speed2;  // also if NaN
   }
   return std::sqrt(fastest2);
 }
@@ -154,11 +156,7 @@ void SolverImpl<D>::apply_viscosity(double dt, State<D>& next) {
   require_converged(next.solves.viscosity, "viscous", model_.settings().max_iterations);
   for (std::size_t i = 0; i < p.size(); ++i)
     p.viscous_acceleration[i] = (p.velocity[i] - before[i]) / dt;
-  if (!model_.options.energy) return;
-  workspace_.energy.viscous = p.velocity;
-  workspace_.energy.viscous_change.resize(p.size());
-  for (std::size_t i = 0; i < p.size(); ++i)
-    workspace_.energy.viscous_change[i] = p.velocity[i] - before[i];
+  energy_recorder_.after_viscosity(before, p);
 }
 
 /// Whether pressure and viscosity of a step are solved together.
@@ -187,44 +185,45 @@ void SolverImpl<D>::solve_pressure_first(double dt, State<D>& next) {
   const int threads = model_.threads_for(n);
   const bool coupled = is_coupled(dt);
   prepare_pressure(model_, p, workspace_);
-  workspace_.splitting.predicted_velocity = p.velocity;
-  workspace_.splitting.flowing.resize(n);
-  workspace_.splitting.expected_shear.resize(n);
+  SplitForces<D>& split = workspace_.splitting;
+  split.predicted_velocity = p.velocity;
+  split.flowing.resize(n);
+  split.expected_viscous_acceleration.resize(n);
   for_each_particle(n, threads, [&](std::size_t i) {
-    workspace_.splitting.flowing[i] = p.moves(i) && model_.rheology.flows(p.shear_rate[i]);
-    workspace_.splitting.expected_shear[i].setZero();
-    if (workspace_.splitting.flowing[i])
-      workspace_.splitting.expected_shear[i] =
-          (coupled ? first_share : expected_share) * p.viscous_acceleration[i];
+    split.flowing[i] = p.moves(i) && model_.rheology.flows(p.shear_rate[i]);
+    split.expected_viscous_acceleration[i].setZero();
+    if (split.flowing[i])
+      split.expected_viscous_acceleration[i] =
+          (coupled ? viscous_share_first_iteration : viscous_share_uncoupled) *
+          p.viscous_acceleration[i];
   });
   AndersonMixing<D> mixing;
   SolveReport pressure, viscosity;
   for (int k = 0;; ++k) {
     for_each_particle(n, threads, [&](std::size_t i) {
-      p.velocity[i] =
-          workspace_.splitting.predicted_velocity[i] + dt * workspace_.splitting.expected_shear[i];
+      p.velocity[i] = split.predicted_velocity[i] + dt * split.expected_viscous_acceleration[i];
     });
-    solve_with_expected_shear(dt, next);
+    solve_with_expected_force(dt, next);
     add_solve(next.solves.pressure, pressure);
     add_solve(next.solves.viscosity, viscosity);
     if (!coupled || k + 1 == max_couplings) break;
-    workspace_.splitting.shear = p.viscous_acceleration;
+    split.viscous_acceleration = p.viscous_acceleration;
     double square = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      if (!workspace_.splitting.flowing[i]) workspace_.splitting.shear[i].setZero();
+      if (!split.flowing[i]) split.viscous_acceleration[i].setZero();
       square +=
-          (workspace_.splitting.shear[i] - workspace_.splitting.expected_shear[i]).squaredNorm();
+          (split.viscous_acceleration[i] - split.expected_viscous_acceleration[i]).squaredNorm();
     }
     const double limit = coupling_tolerance * model_.gravity.norm();
     if (square <= limit * limit * double(n)) break;
-    mixing.mix(workspace_.splitting.expected_shear, workspace_.splitting.shear);
-    std::swap(workspace_.splitting.expected_shear, workspace_.splitting.shear);
+    mixing.mix(split.expected_viscous_acceleration, split.viscous_acceleration);
+    std::swap(split.expected_viscous_acceleration, split.viscous_acceleration);
   }
   next.solves = {pressure, viscosity};
 }
 
 template <int D>
-void SolverImpl<D>::solve_with_expected_shear(double dt, State<D>& next) {
+void SolverImpl<D>::solve_with_expected_force(double dt, State<D>& next) {
   Particles<D>& p = next.particles;
   next.solves.pressure = solve_pressure(model_, dt, p, workspace_);
   require_converged(next.solves.pressure, "pressure", model_.settings().max_iterations);
@@ -256,6 +255,25 @@ void SolverImpl<D>::solve_viscosity_first(double dt, State<D>& next) {
   }
 }
 
+/// Computes the velocities and pressures after a step, and returns its length.
+template <int D>
+double SolverImpl<D>::solve_step(const State<D>& start, State<D>& next) {
+  double dt = choose_step(start.particles);
+  for (int halvings = 0;; ++halvings) {
+    try_step(dt, next);
+    const double distance = largest_speed(next.particles) * dt;
+    if (distance <= max_distance * model_.settings().spacing &&
+        dt <= 2 * pressure_step(next.particles))
+      return dt;
+    if (halvings == max_halvings || !std::isfinite(distance))
+      throw SimulationError("a particle would move " + show_rounded(distance) +
+                            " m within a step of " + show_rounded(dt) + " s");
+    dt *= 0.5;
+    next = start;
+    ++next.counters.rejected;
+  }
+}
+
 template <int D>
 void SolverImpl<D>::step() {
   if (size() == 0) throw SimulationError("there is no snow");
@@ -265,33 +283,17 @@ void SolverImpl<D>::step() {
     workspace_.walls.append_near(state_.time, model_.options.period, model_.particle_mass(),
                                  next.particles);
   find_neighbours(model_, next.particles, state_.time, workspace_);
-  double dt = choose_step(next.particles);
   start = next;
   workspace_.before = start.particles.velocity;
-  const Settings& s = model_.settings();
-  for (int halvings = 0;; ++halvings) {
-    try_step(dt, next);
-    const double distance = largest_speed(next.particles) * dt;
-    if (distance <= max_distance * s.spacing && dt <= 2 * pressure_step(next.particles)) break;
-    if (halvings == max_halvings || !std::isfinite(distance))
-      throw SimulationError("a particle would move " + show_rounded(distance) +
-                            " m within a step of " + show_rounded(dt) + " s");
-    dt *= 0.5;
-    next = start;
-    ++next.counters.rejected;
-  }
-  if (model_.options.energy) {
-    const std::size_t n = next.particles.size();
-    workspace_.energy.moved.resize(n);
-    for (std::size_t i = 0; i < n; ++i) workspace_.energy.moved[i] = start.particles.moves(i);
-  }
+  energy_recorder_.begin_step(start.particles);
+  const double dt = solve_step(start, next);
   keep_spacing(model_, dt, next.particles, workspace_);
-  if (model_.options.energy) workspace_.energy.projected = next.particles.velocity;
-  if (s.order == Order::single_move) move(dt, next.particles);
+  energy_recorder_.after_forces(next.particles);
+  if (model_.settings().order == Order::single_move) move(dt, next.particles);
   erode_and_deposit(model_, next.particles, workspace_);
   for (std::size_t i = 0; i < next.particles.size(); ++i)
     next.particles.relative_density[i] = workspace_.near.density[i] / model_.kernel.number_density;
-  if (model_.options.energy) record_energy(next, dt);
+  energy_recorder_.end_step(model_, workspace_, dt, next);
   if (model_.has_wall_particles()) remove_walls(next.particles);
   next.time += dt;
   next.dt = dt;
@@ -348,4 +350,4 @@ template struct Model<3>;
 template class SolverImpl<2>;
 template class SolverImpl<3>;
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

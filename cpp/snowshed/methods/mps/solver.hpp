@@ -10,12 +10,12 @@
 #include "snowshed/methods/mps/settings.hpp"
 #include "snowshed/methods/obstacle.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 
 struct Options {
   int dimension = 3;
   Settings settings;
-  Vec3 gravity = Vec3::Zero();  // m/s2
+  Vec3 gravity{0, 0, -9.81};  // m/s2
   std::vector<Obstacle> obstacles;
   bool energy = false;  // whether to keep the energy balance
   double period = 0;    // m, period along x, from x = 0; 0: not periodic
@@ -42,4 +42,4 @@ void check_order(const Settings&);
 /// Throws InputError if the settings do not fit each other.
 std::unique_ptr<Solver> make_solver(Options);
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

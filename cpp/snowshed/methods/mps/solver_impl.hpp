@@ -1,10 +1,11 @@
 // The solver of the MPS method: its data, and the order of its parts.
 #pragma once
 
+#include "snowshed/methods/mps/energy.hpp"
 #include "snowshed/methods/mps/forces.hpp"
 #include "snowshed/methods/particle_method.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 
 /// A step builds the next state beside the present one, and can fail only before it takes the next
 /// one over. A failed step therefore never leaves unsound particles, and the class has no
@@ -12,7 +13,8 @@ namespace snowshed::mps {
 template <int D>
 class SolverImpl final : public Solver {
  public:
-  explicit SolverImpl(Options options) : model_(std::move(options)) {
+  explicit SolverImpl(Options options)
+      : model_(std::move(options)), energy_recorder_(model_.options.energy) {
     if (model_.has_wall_particles())
       workspace_.walls =
           WallParticles<D>(model_.options.obstacles, model_.settings().spacing, model_.reach());
@@ -29,8 +31,8 @@ class SolverImpl final : public Solver {
   double time_step() const override { return state_.dt; }
   const StepCounters& counters() const override { return state_.counters; }
 
-  std::vector<FieldInfo> fields() const override;
-  FieldView field(const std::string&) const override;
+  std::vector<particles::FieldInfo> fields() const override;
+  particles::FieldView field(const std::string&) const override;
   const std::vector<std::uint32_t>& order_by_id() const override {
     return order_.of(state_.particles.id);
   }
@@ -41,9 +43,9 @@ class SolverImpl final : public Solver {
   NamedEnergies energies() const override;
   std::size_t bytes() const override;
 
-  void save(BinaryWriter&) const override;
-  void load(const BinaryReader&) override;
-  void check(const BinaryReader&) const override;
+  void save(io::BinaryWriter&) const override;
+  void load(const io::BinaryReader&) override;
+  void check(const io::BinaryReader&) const override;
 
   Report report() const override;
   ReportsRun::Section run_section() const override;
@@ -51,29 +53,26 @@ class SolverImpl final : public Solver {
  private:
   void append(State<D>&, const ParticleBatch&) const;
   void accept(State<D>);
+  double solve_step(const State<D>& start, State<D>& next);
   void try_step(double dt, State<D>& next);
   void apply_viscosity(double dt, State<D>& next);
   bool is_coupled(double dt) const;
   void solve_pressure_first(double dt, State<D>& next);
-  void solve_with_expected_shear(double dt, State<D>& next);
+  void solve_with_expected_force(double dt, State<D>& next);
   void solve_viscosity_first(double dt, State<D>& next);
   void move(double dt, Particles<D>&) const;
-  void record_energy(State<D>& next, double dt) const;
   double choose_step(const Particles<D>&) const;
   double pressure_step(const Particles<D>&) const;
   double largest_speed(const Particles<D>&) const;
-  State<D> read_state(const BinaryReader&) const;
+  State<D> read_state(const io::BinaryReader&) const;
   template <class Visit>
   void visit_fields(Visit) const;
 
   Model<D> model_;
   State<D> state_;
   Workspace<D> workspace_;
+  EnergyRecorder<D> energy_recorder_;
   IdOrder order_;
 };
 
-/// Kinetic and gravitational energy, J.
-template <int D>
-EnergyBalance stored_energy(const Model<D>&, const Particles<D>&);
-
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

@@ -4,7 +4,7 @@
 
 #include "snowshed/methods/mps/forces.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 namespace {
 
 /// Particles nearer to each other than `distance` (in l0) bounce, and keep the share `restitution`
@@ -75,10 +75,10 @@ VecD<D> inward(const AlignedVector<VecD<D>>& gradients, const Neighbourhood<D>& 
   return sum.stableNormalized();
 }
 
-/// Shifts particles towards lower concentrations. At the surface they are shifted only along it,
-/// and below it not towards it, because the surface would rise. Snow at rest is shifted, too, as if
-/// it moved at the speed of a fall over l0, because the corrected gradient does not keep its
-/// particles apart (ours).
+/// Shifts particles towards lower concentrations. Particles at the surface are shifted only along
+/// it, and those below it not towards it, because the surface would rise. Snow at rest is shifted,
+/// too, as if it moved at the speed of a fall over l0, because the corrected gradient does not keep
+/// its particles apart (ours).
 template <int D>
 void shift(const Model<D>& model, double dt, Particles<D>& particles, Workspace<D>& work) {
   const Neighbourhood<D>& near = work.near;
@@ -123,4 +123,4 @@ void keep_spacing(const Model<D>& model, double dt, Particles<D>& particles, Wor
 template void keep_spacing(const Model<2>&, double, Particles<2>&, Workspace<2>&);
 template void keep_spacing(const Model<3>&, double, Particles<3>&, Workspace<3>&);
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

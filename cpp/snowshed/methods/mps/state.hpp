@@ -20,7 +20,7 @@
 #include "snowshed/methods/mps/wall_particles.hpp"
 #include "snowshed/particles/neighbour_lists.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 
 /// Minimum number of particles per thread: a thread with little work costs more than it saves.
 inline constexpr std::size_t particles_per_thread = 500;
@@ -43,8 +43,8 @@ struct Model {
   Options options;
   VecD<D> gravity;  // m/s2
   KernelConstants kernel;
-  double second_layer;       // see second_layer_share
-  SurfaceLack surface_lack;  // lack of the second layer below a surface, see second_layer_lack
+  double second_layer;             // see second_layer_share
+  SurfaceDeficit surface_deficit;  // see second_layer_deficit
   Rheology rheology;
   const Kernels<D>& kernels = chosen_kernels<D>();
   int threads;
@@ -79,8 +79,8 @@ struct State {
 /// Geometry of the particles at their present positions, found in each step.
 template <int D>
 struct Neighbourhood {
-  CellOrder<D> cells;
-  NeighbourLists<D> lists;
+  particles::CellOrder<D> cells;
+  particles::NeighbourLists<D> lists;
   RowLists<WallContact<D>> contacts;
   WallImages<D> images;
   // One value per pair of particles, in the order of the lists.
@@ -102,10 +102,10 @@ struct Neighbourhood {
   AlignedVector<std::array<float, RowMoments<D>::half>> weight_correction;  // upper half of B
 
   // Classes of particles, and wall velocities.
-  AlignedVector<std::uint8_t> surface;        // at the free surface
-  AlignedVector<std::uint8_t> below_surface;  // at the free surface or next to it
-  AlignedVector<std::uint8_t> dry;            // inner wall that no snow touches
-  AlignedVector<VecD<D>> slip;                // velocity of a wall particle that acts on snow, m/s
+  AlignedVector<std::uint8_t> surface;         // at the free surface
+  AlignedVector<std::uint8_t> below_surface;   // at the free surface or next to it
+  AlignedVector<std::uint8_t> dry;             // inner wall that no snow touches
+  AlignedVector<VecD<D>> divergence_velocity;  // m/s; inner walls move as the snow around them
 
   /// A particle's contact with an obstacle, or null.
   const WallContact<D>* contact_with(std::size_t i, std::uint32_t obstacle) const {
@@ -160,9 +160,10 @@ struct ViscousSolve {
 /// Viscous forces that the pressure of a step takes into account.
 template <int D>
 struct SplitForces {
-  AlignedVector<VecD<D>> predicted_velocity;     // with gravity alone, m/s
-  AlignedVector<VecD<D>> expected_shear, shear;  // viscous force over mass, m/s2
-  AlignedVector<std::uint8_t> flowing;           // whether a viscous force is expected
+  AlignedVector<VecD<D>> predicted_velocity;             // with gravity alone, m/s
+  AlignedVector<VecD<D>> expected_viscous_acceleration;  // m/s2
+  AlignedVector<VecD<D>> viscous_acceleration;           // m/s2, of the last iteration
+  AlignedVector<std::uint8_t> flowing;                   // whether a viscous force is expected
 };
 
 /// Friction of walls on the particles beside them.
@@ -176,14 +177,6 @@ template <int D>
 struct SpacingCorrection {
   AlignedVector<double> impulse_share;   // share of a collision that the other particle takes
   AlignedVector<VecD<D>> concentration;  // gradient of the concentration, 1/m, for shifting
-};
-
-/// Values of a step that the energy balance needs.
-template <int D>
-struct EnergyTerms {
-  AlignedVector<VecD<D>> viscous, projected;  // velocities during the step, m/s
-  AlignedVector<VecD<D>> viscous_change;      // change of velocities by viscosity, m/s
-  AlignedVector<std::uint8_t> moved;          // whether a particle could move in the step
 };
 
 template <int D>
@@ -201,7 +194,6 @@ struct Workspace {
   ShearRates<D> rates;
   WallFriction wall_friction;
   SpacingCorrection<D> spacing;
-  EnergyTerms<D> energy;
   CgWorkspace cg;  // shared by both solves
 };
 
@@ -220,4 +212,4 @@ void for_each_particle(std::size_t count, int threads, F f) {
   });
 }
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

@@ -6,10 +6,10 @@
 #include "snowshed/methods/mps/anderson.hpp"
 #include "snowshed/methods/mps/forces.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 namespace {
 
-/// Distance from a wall, in l0, below which its friction grows no further.
+/// Smallest distance from a wall, in l0, with which its friction is computed.
 constexpr double min_friction_distance = 0.25;
 
 /// The share of the wall's shear stress that acts on a particle at a distance, in l0. The shares of
@@ -89,7 +89,7 @@ template <int D>
 void find_couplings(const Model<D>& model, double factor, const Particles<D>& particles,
                     Workspace<D>& work) {
   const Neighbourhood<D>& near = work.near;
-  const NeighbourLists<D>& lists = near.lists;
+  const particles::NeighbourLists<D>& lists = near.lists;
   const Rheology& law = model.rheology;
   const int threads = model.threads_for(lists.size());
   work.viscosity.coupling.resize(lists.pairs());
@@ -134,7 +134,7 @@ template <int D>
 using Velocities = AlignedVector<VecD<D>>;
 
 /// The iterations for the apparent viscosities of a step end when the velocities change by less
-/// than this share from one to the next.
+/// than this share in an iteration.
 constexpr double yield_tolerance = 1e-3;
 /// The iterations begin at this fraction of the way from the velocities before the step to those
 /// predicted without viscosity.
@@ -352,4 +352,4 @@ template void add_gravity(const Model<3>&, double, Particles<3>&);
 template SolveReport apply_viscosity(const Model<2>&, double, Particles<2>&, Workspace<2>&);
 template SolveReport apply_viscosity(const Model<3>&, double, Particles<3>&, Workspace<3>&);
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

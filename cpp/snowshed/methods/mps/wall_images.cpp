@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 namespace {
 
 constexpr std::size_t particles_with_images = 256;
@@ -31,15 +31,15 @@ struct ImageMaker {
   double height(const WallContact<D>& c) const { return std::max(c.distance, least); }
 
   float make(std::size_t k, const VecD<D>& separation, double r2, const WallContact<D>* a,
-             const WallContact<D>* b, double rise_a, double rise_b) {
+             const WallContact<D>* b, double shift_a, double shift_b) {
     if (r2 >= reach * reach) return 0;
     const float weight = float(reach / std::sqrt(r2) - 1);
     const std::uint32_t first = std::uint32_t(contacts.index_of(a));
     const std::uint32_t second = b ? std::uint32_t(contacts.index_of(b)) : first;
-    VecD<D> to = separation - rise_a * a->normal;
-    if (b) to -= rise_b * b->normal;
+    VecD<D> to = separation - shift_a * a->normal;
+    if (b) to -= shift_b * b->normal;
     list.push_back(
-        {std::uint32_t(k), weight, float(weight / r2), to, {first, second}, {rise_a, rise_b}});
+        {std::uint32_t(k), weight, float(weight / r2), to, {first, second}, {shift_a, shift_b}});
     return weight;
   }
 
@@ -66,9 +66,10 @@ struct ImageMaker {
 }  // namespace
 
 template <int D>
-void WallImages<D>::update(const NeighbourLists<D>& lists, const RowLists<WallContact<D>>& contacts,
-                           double reach, double spacing, int threads,
-                           const AlignedVector<float>& direct, AlignedVector<float>& weight) {
+void WallImages<D>::update(const particles::NeighbourLists<D>& lists,
+                           const RowLists<WallContact<D>>& contacts, double reach, double spacing,
+                           int threads, const AlignedVector<float>& direct,
+                           AlignedVector<float>& weight) {
   weight.resize(lists.pairs());
   images_.update(lists.size(), particles_with_images, threads,
                  [&](std::size_t begin, std::size_t end, std::uint32_t* first,
@@ -97,4 +98,4 @@ void WallImages<D>::clear(std::size_t particles) {
 template class WallImages<2>;
 template class WallImages<3>;
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

@@ -5,19 +5,18 @@
 #include "snowshed/methods/mps/kernel_function.hpp"
 #include "snowshed/particles/neighbour_lists.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 
 /// The image of particle k behind a wall, or behind two at once in a corner, for particle i. Its
-/// distance is r'^2 = r^2 + 4 h_i h_k with the distances h from the wall. This holds for plane
-/// walls. It is used for curved walls, too, because i is then as far from the image of k as k from
-/// that of i.
+/// distance is r'^2 = r^2 + 4 h_i h_k with the distances h from the wall. This is exact for plane
+/// walls. It is also used for curved walls, because it keeps the distance symmetric in i and k.
 template <int D>
 struct WallImage {
-  std::uint32_t of;          // k, which may be i itself
+  std::uint32_t neighbour;   // k, which may be i itself
   float weight, slope;       // w, and w/r'^2 in 1/m2
   VecD<D> separation;        // from i to the image, m
   std::uint32_t contact[2];  // indices of i's contacts; equal if there is one wall
-  double rise[2];            // twice the distance of k from each wall, m; 0 without a second wall
+  double mirror_shift[2];    // twice the distance of k from each wall, m; 0 without a second wall
 };
 
 template <int D>
@@ -25,7 +24,7 @@ class WallImages {
  public:
   /// Makes the images. Sets `weight` of each pair to the sum of the weights of the neighbour and of
   /// its images.
-  void update(const NeighbourLists<D>& lists, const RowLists<WallContact<D>>& contacts,
+  void update(const particles::NeighbourLists<D>& lists, const RowLists<WallContact<D>>& contacts,
               double reach, double spacing, int threads, const AlignedVector<float>& direct,
               AlignedVector<float>& weight);
 
@@ -40,4 +39,4 @@ class WallImages {
   RowLists<WallImage<D>> images_;
 };
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 namespace {
 
 /// Wall particles nearer to each other than this (in l0) push each other apart, in this number of
@@ -25,7 +25,7 @@ Mat3 frame_with(const Vec3& normal, int dimension) {
   return axes;
 }
 
-bool is_bounded(const Bounds& bounds, int dimension) {
+bool is_bounded(const geometry::Bounds& bounds, int dimension) {
   for (const int d : {0, 1, 2})
     if (!(dimension == 2 && d == 1) &&
         !(std::isfinite(bounds.min[d]) && std::isfinite(bounds.max[d])))
@@ -102,7 +102,7 @@ WallParticles<D>::WallParticles(const std::vector<Obstacle>& obstacles, double s
       layers_(int(std::ceil(reach / spacing - 1e-9))) {
   groups_.emplace_back();
   for (std::uint32_t k = 0; k < obstacles.size(); ++k) {
-    const LevelSet& shape = *obstacles[k].shape;
+    const geometry::LevelSet& shape = *obstacles[k].shape;
     Lattice lattice;
     if (const auto box = shape.oriented_box()) {
       Vec3 half = box->half;
@@ -124,7 +124,7 @@ WallParticles<D>::WallParticles(const std::vector<Obstacle>& obstacles, double s
 
 /// Moves points that lie too near to each other along their layers.
 template <int D>
-void WallParticles<D>::push_apart(const LevelSet& shape, std::vector<VecD<D>>& points,
+void WallParticles<D>::push_apart(const geometry::LevelSet& shape, std::vector<VecD<D>>& points,
                                   const std::vector<double>& depth) const {
   const double limit = min_separation * spacing_;
   std::vector<VecD<D>> shift(points.size());
@@ -153,7 +153,7 @@ void WallParticles<D>::push_apart(const LevelSet& shape, std::vector<VecD<D>>& p
 
 /// The new position of a point of a lattice, if it lies in a layer.
 template <int D>
-typename WallParticles<D>::LayerPoint WallParticles<D>::place(const LevelSet& shape,
+typename WallParticles<D>::LayerPoint WallParticles<D>::place(const geometry::LevelSet& shape,
                                                               const Vec3& x) const {
   const double distance = shape.distance(x), thin = shape.half_thickness(x);
   double target = thin;
@@ -173,7 +173,7 @@ typename WallParticles<D>::LayerPoint WallParticles<D>::place(const LevelSet& sh
 /// Makes the particles whose lattice points lie in a cell.
 template <int D>
 void WallParticles<D>::make(std::uint32_t number, const Cell& cell, Points& to) {
-  const LevelSet& shape = *(*obstacles_)[number].shape;
+  const geometry::LevelSet& shape = *(*obstacles_)[number].shape;
   Lattice& lattice = lattices_[number];
   VecD<D> corner;
   for (int d = 0; d < D; ++d) corner[d] = cell[std::size_t(d)] * edge_;
@@ -183,12 +183,12 @@ void WallParticles<D>::make(std::uint32_t number, const Cell& cell, Points& to) 
   const double deepest = layers_ * spacing_;
   const double distance = shape.distance(middle);
   if (distance > around + spacing_ || (distance < -deepest - around)) return;
-  const Vec3 centre = lattice.axes.transpose() * (middle - lattice.origin) / spacing_;
+  const Vec3 center = lattice.axes.transpose() * (middle - lattice.origin) / spacing_;
   const int n = int(std::ceil(around / spacing_)) + 1;
   std::vector<VecD<D>> points;
   std::vector<double> depth;
   std::vector<std::uint8_t> own;
-  for_cells_around(cell_of<D>(section<D>(centre), 1.0), n, [&](const Cell& k) {
+  for_cells_around(cell_of<D>(section<D>(center), 1.0), n, [&](const Cell& k) {
     VecD<D> index;
     for (int d = 0; d < D; ++d) index[d] = k[std::size_t(d)] + 0.5;
     const Vec3 x = lattice.origin + spacing_ * (lattice.axes * embed(index));
@@ -249,10 +249,10 @@ bool WallParticles<D>::is_near_wall(Group& group, const Cell& cell) {
   const auto entry = group.near.find(cell);
   if (entry != group.near.end()) return entry->second;
   bool near = false;
-  VecD<D> centre;
-  for (int d = 0; d < D; ++d) centre[d] = (cell[std::size_t(d)] + 0.5) * edge_;
+  VecD<D> center;
+  for (int d = 0; d < D; ++d) center[d] = (cell[std::size_t(d)] + 0.5) * edge_;
   for (const std::uint32_t k : group.obstacles)
-    near = near || (*obstacles_)[k].shape->distance(embed(centre)) < 4 * edge_;
+    near = near || (*obstacles_)[k].shape->distance(embed(center)) < 4 * edge_;
   if (near) {
     near = false;
     for_cells_around(cell, 2, [&](const Cell& c) { near = near || !points_in(group, c).empty(); });
@@ -262,7 +262,7 @@ bool WallParticles<D>::is_near_wall(Group& group, const Cell& cell) {
 }
 
 template <int D>
-void WallParticles<D>::append_group(Group& group, const RigidPose& pose, double period,
+void WallParticles<D>::append_group(Group& group, const geometry::RigidPose& pose, double period,
                                     const std::vector<Cell>& snow_cells, double mass,
                                     Particles<D>& to) {
   std::vector<Cell> cells;
@@ -301,7 +301,7 @@ void WallParticles<D>::append_near(double time, double period, double mass, Part
   for (Group& group : groups_) {
     if (group.obstacles.empty()) continue;
     const bool moves = &group != &groups_.front();
-    RigidPose pose;
+    geometry::RigidPose pose;
     AlignedVector<VecD<D>> seen;  // positions in the frame of a moving group
     if (moves) {
       pose = (*obstacles_)[group.obstacles.front()].motion->at(time);
@@ -341,4 +341,4 @@ template class WallParticles<3>;
 template void remove_walls(Particles<2>&);
 template void remove_walls(Particles<3>&);
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

@@ -1,4 +1,4 @@
-// Walls as particles that keep their places relative to an obstacle.
+// Walls as particles that are fixed to an obstacle.
 #pragma once
 
 #include <array>
@@ -9,18 +9,18 @@
 #include "snowshed/methods/mps/boundary.hpp"
 #include "snowshed/methods/mps/particles.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 
 /// Wall particles of obstacles, made where snow comes near.
 ///
 /// They lie in layers half a spacing, one and a half, ... below the surface. The first layer
 /// consists of inner walls. The others consist of dummy walls, and are as many as fill the radius
-/// of a particle at the surface [P]. Wall particles are the points of a lattice, moved along the
-/// normal to the middle of their layer; the lattice follows the faces of boxes and planes, so that
-/// these are covered evenly. On other surfaces, particles that are nearer than `min_separation`
-/// push each other apart along the surface (ours). Obstacles thinner than a particle have one
-/// layer, in the middle. Obstacles too thin for dummies between the inner walls of both sides have
-/// dummies only, so that no pressure goes through them (ours).
+/// of a particle at the surface (as published). Wall particles are the points of a lattice, moved
+/// along the normal to the middle of their layer; the lattice follows the faces of boxes and
+/// planes, so that these are covered evenly. On other surfaces, particles that are nearer than
+/// `min_separation` push each other apart along the surface (ours). Obstacles thinner than a
+/// particle have one layer, in the middle. Obstacles too thin for dummies between the inner walls
+/// of both sides have dummies only, so that no pressure goes through them (ours).
 template <int D>
 class WallParticles {
  public:
@@ -68,12 +68,12 @@ class WallParticles {
 
   const Points& points_in(Group&, const Cell&);
   bool is_near_wall(Group&, const Cell&);
-  LayerPoint place(const LevelSet&, const Vec3& lattice_point) const;
+  LayerPoint place(const geometry::LevelSet&, const Vec3& lattice_point) const;
   void make(std::uint32_t obstacle, const Cell&, Points&);
-  void push_apart(const LevelSet&, std::vector<VecD<D>>& points,
+  void push_apart(const geometry::LevelSet&, std::vector<VecD<D>>& points,
                   const std::vector<double>& depth) const;
-  void append_group(Group&, const RigidPose&, double period, const std::vector<Cell>& snow_cells,
-                    double mass, Particles<D>& to);
+  void append_group(Group&, const geometry::RigidPose&, double period,
+                    const std::vector<Cell>& snow_cells, double mass, Particles<D>& to);
 
   const std::vector<Obstacle>* obstacles_ = nullptr;
   double spacing_ = 0, edge_ = 0;
@@ -86,4 +86,4 @@ class WallParticles {
 template <int D>
 void remove_walls(Particles<D>&);
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

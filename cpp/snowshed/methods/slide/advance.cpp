@@ -8,7 +8,7 @@
 
 #include "snowshed/core/angles.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 
 void advance(const Model& model, State& state, Workspace& work) {
   const Particles& p = state.particles;
@@ -100,14 +100,14 @@ void split_heavy(const Model& model, State& state, Workspace& work) {
     const double speed = along.norm();
     along = speed > 0 ? Vec3(along * (distance / speed)) : Vec3(distance, 0, 0);
     const Vec3 x{p.x[i], p.y[i], p.z[i]};
-    const CellPosition behind = model.terrain.place(x.x() - along.x(), x.y() - along.y());
-    const CellPosition ahead = model.terrain.place(x.x() + along.x(), x.y() + along.y());
+    const geometry::CellPosition behind = model.terrain.place(x.x() - along.x(), x.y() - along.y());
+    const geometry::CellPosition ahead = model.terrain.place(x.x() + along.x(), x.y() + along.y());
     if (!behind.inside() || !ahead.inside() || !model.terrain.known(behind) ||
         !model.terrain.known(ahead))
       continue;
     p.for_each_array([i](const char*, auto& array) { array.push_back(array[i]); });
     p.mass[i] = p.mass.back() = 0.5 * p.mass[i];
-    const auto put = [&](std::size_t at, const Vec3& to, const CellPosition& place) {
+    const auto put = [&](std::size_t at, const Vec3& to, const geometry::CellPosition& place) {
       p.x[at] = to.x();
       p.y[at] = to.y();
       p.z[at] = model.compatible() ? to.z() : model.terrain.height(place);
@@ -137,4 +137,4 @@ void sort_by_cell(State& state, Workspace& work) {
                         [&](std::ptrdiff_t b) { (*ends)[b] = work.new_places[(*ends)[b]]; });
 }
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

@@ -3,7 +3,7 @@
 
 #include "snowshed/methods/slide/state.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 
 /// Computes new velocities and positions, and brings the positions back onto the ground. Particles
 /// that leave the terrain are marked in `work.removed`. Updates the kinetic energy and whether the
@@ -20,4 +20,4 @@ void split_heavy(const Model&, State&, Workspace&);
 /// workspace, which must be refreshed afterwards. Changes nothing if it throws.
 void sort_by_cell(State&, Workspace&);
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

@@ -8,16 +8,16 @@
 #include "snowshed/geometry/polygon.hpp"
 #include "snowshed/methods/slide/terrain.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 
 /// Coordinates are given from the south-west node of the terrain, m.
 struct Area {
   std::string name;
-  Polygon polygon;
+  geometry::Polygon polygon;
   double thickness = 0;  // m of snow, normal to the ground; unused for areas of resistance
   /// For releases, in place of `thickness`: a raster with the thickness in the cell around each
   /// node.
-  std::shared_ptr<const HeightField> map;
+  std::shared_ptr<const geometry::HeightField> map;
   double max_thickness = 100;  // m, that the map may give
 };
 
@@ -40,6 +40,6 @@ std::vector<double> thickness_at_nodes(const std::vector<Area>& areas, const Ter
 /// moves to the side that follows from the sense in which most corners are passed, as seen from the
 /// first one. For some outlines with deep bays this sense is wrong, and the result is narrower than
 /// the area.
-Ring widened_as_avaframe(const Ring& outline, double radius);
+geometry::Ring widened_as_avaframe(const geometry::Ring& outline, double radius);
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

@@ -6,7 +6,7 @@
 
 #include "snowshed/particles/point_grid.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
@@ -61,29 +61,30 @@ class MapPoints {
     const double cx = points_[t[2]].x() - o.x(), cy = points_[t[2]].z() - o.z();
     const double d = 2 * (bx * cy - by * cx), b2 = bx * bx + by * by, c2 = cx * cx + cy * cy;
     if (std::abs(d) < 1e-6 * (b2 + c2)) return false;  // almost no area
-    const Vec3 centre{o.x() + (cy * b2 - by * c2) / d, 0.0, o.z() + (bx * c2 - cx * b2) / d};
-    const double radius = (1 - 1e-9) * (centre - o).norm();
+    const Vec3 center{o.x() + (cy * b2 - by * c2) / d, 0.0, o.z() + (bx * c2 - cx * b2) / d};
+    const double radius = (1 - 1e-9) * (center - o).norm();
     // The radius of the circle is within the reach, too, because the triangle is not too flat.
     bool empty = true;
-    grid_.for_each_near(centre, [&](std::uint32_t i, const Vec3& p) {
-      if (i != t[0] && i != t[1] && i != t[2] && (p - centre).norm() < radius) empty = false;
+    grid_.for_each_near(center, [&](std::uint32_t i, const Vec3& p) {
+      if (i != t[0] && i != t[1] && i != t[2] && (p - center).norm() < radius) empty = false;
     });
     return empty;
   }
 
   std::vector<Vec3> points_;
-  PointGrid grid_;
+  particles::PointGrid grid_;
   double reach_;
 };
 
 /// Whether the straight line between two points crosses a ring.
-bool crosses(const Ring& ring, const Point2& a, const Point2& b) {
-  const auto side = [](const Point2& o, const Point2& p, const Point2& q) {
+bool crosses(const geometry::Ring& ring, const geometry::Point2& a, const geometry::Point2& b) {
+  const auto side = [](const geometry::Point2& o, const geometry::Point2& p,
+                       const geometry::Point2& q) {
     return (p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0]);
   };
   for (std::size_t i = 0; i < ring.size(); ++i) {
-    const Point2& c = ring[i];
-    const Point2& d = ring[(i + 1) % ring.size()];
+    const geometry::Point2& c = ring[i];
+    const geometry::Point2& d = ring[(i + 1) % ring.size()];
     if (std::max(c[0], d[0]) < std::min(a[0], b[0]) || std::min(c[0], d[0]) > std::max(a[0], b[0]))
       continue;
     if ((side(a, b, c) > 0) != (side(a, b, d) > 0) && (side(c, d, a) > 0) != (side(c, d, b) > 0))
@@ -92,10 +93,11 @@ bool crosses(const Ring& ring, const Point2& a, const Point2& b) {
   return false;
 }
 
-bool crosses_outline(const std::vector<Area>& areas, const Point2& a, const Point2& b) {
+bool crosses_outline(const std::vector<Area>& areas, const geometry::Point2& a,
+                     const geometry::Point2& b) {
   for (const Area& area : areas) {
     if (crosses(area.polygon.outline, a, b)) return true;
-    for (const Ring& hole : area.polygon.holes)
+    for (const geometry::Ring& hole : area.polygon.holes)
       if (crosses(hole, a, b)) return true;
   }
   return false;
@@ -217,4 +219,4 @@ void BondLists::update(const Bonds& bonds, std::size_t particles) {
   begin_[0] = 0;
 }
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

@@ -9,7 +9,7 @@
 #include "snowshed/methods/slide/particles.hpp"
 #include "snowshed/methods/slide/settings.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 
 /// The bonds that hold, each between two particles, given by their storage indices.
 struct Bonds {
@@ -30,9 +30,9 @@ struct Bonds {
 };
 
 /// Returns bonds along the edges of the Delaunay triangulation of the particles from `begin` on, as
-/// seen from above. Only triangles count whose longest side is at most 1.1 times the shortest of
-/// all the longest sides. With `areas`, bonds that cross the outline of one of them are left out.
-/// Throws Stopped on request.
+/// seen from above. Triangles count if their longest side is at most 1.1 times the smallest
+/// longest side of all triangles. With `areas`, bonds that cross the outline of one of them are
+/// left out. Throws Stopped on request.
 Bonds bonds_between(const Particles& particles, std::size_t begin, double spacing,
                     const std::vector<Area>* areas, const StopRequest& stop = {});
 
@@ -73,4 +73,4 @@ class BondLists {
   std::vector<std::uint32_t> begin_, entry_;
 };
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

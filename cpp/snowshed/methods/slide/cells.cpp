@@ -4,7 +4,7 @@
 
 #include "snowshed/methods/slide/kernel_api.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 
 void CellLists::reserve(std::size_t particles, const Terrain& terrain) {
   begin_.reserve((std::size_t(terrain.columns()) + 2) * (std::size_t(terrain.rows()) + 2) + 2);
@@ -49,4 +49,4 @@ void CellLists::update(const AlignedVector<std::int32_t>& column,
   }
 }
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

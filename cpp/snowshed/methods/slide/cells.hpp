@@ -7,7 +7,7 @@
 #include "snowshed/core/aligned_vector.hpp"
 #include "snowshed/methods/slide/terrain.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 
 /// The particles in the order of their cells, row by row, within the smallest rectangle of cells
 /// that holds them all and a margin of one cell. Within a cell they keep the order of storage.
@@ -43,7 +43,7 @@ class CellLists {
   double* y() { return y_.data(); }
   double* z() { return z_.data(); }
   double* mass() { return mass_.data(); }
-  /// Takes over masses that have changed.
+  /// Copies masses that have changed.
   void copy_masses(const AlignedVector<double>& masses) {
     for (std::size_t e = 0; e < order_.size(); ++e) mass_[e] = masses[order_[e]];
   }
@@ -62,4 +62,4 @@ class CellLists {
   AlignedVector<double> x_, y_, z_, mass_;
 };
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

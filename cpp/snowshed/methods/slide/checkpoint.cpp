@@ -4,7 +4,7 @@
 #include "snowshed/methods/archive.hpp"
 #include "snowshed/methods/slide/solver_impl.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 namespace {
 
 template <class Archive, class State>
@@ -27,13 +27,13 @@ void visit_state(Archive& archive, State& s) {
   archive.numbers("energy", e.coulomb, e.turbulent, e.resistance, e.viscosity, e.entrainment,
                   e.broken, e.left_terrain, e.added);
   auto& c = s.counters;
-  archive.counts("counters", c.steps, c.sorts, c.particle_updates, s.bonds_made, b.particles_left,
+  archive.counts("counters", c.steps, s.sorts, c.particle_updates, s.bonds_made, b.particles_left,
                  s.stopped, s.next_id);
 }
 
 void check_places(const StateReader& archive, const Particles& p, const Terrain& terrain) {
   for (std::size_t i = 0; i < p.size(); ++i) {
-    const CellPosition place = terrain.place(p.x[i], p.y[i]);
+    const geometry::CellPosition place = terrain.place(p.x[i], p.y[i]);
     if (!place.inside() || !terrain.known(place))
       archive.refuse("a particle lies outside of the terrain");
     if (!(p.mass[i] > 0)) archive.refuse("a particle has no mass");
@@ -47,7 +47,7 @@ void check_bonds(const StateReader& archive, const Bonds& bonds, std::size_t par
       archive.refuse("a bond is not sound");
 }
 
-State read_state(const BinaryReader& in, const Model& model) {
+State read_state(const io::BinaryReader& in, const Model& model) {
   const StateReader archive(in);
   State next(model);
   visit_state(archive, next);
@@ -60,15 +60,15 @@ State read_state(const BinaryReader& in, const Model& model) {
 
 }  // namespace
 
-void SolverImpl::save(BinaryWriter& out) const {
+void SolverImpl::save(io::BinaryWriter& out) const {
   soundness_.require();
   StateWriter archive(out);
   visit_state(archive, state_);
 }
 
-void SolverImpl::check(const BinaryReader& in) const { read_state(in, model_); }
+void SolverImpl::check(const io::BinaryReader& in) const { read_state(in, model_); }
 
-void SolverImpl::load(const BinaryReader& in) {
+void SolverImpl::load(const io::BinaryReader& in) {
   State next = read_state(in, model_);
   Workspace work;
   refresh(model_, next, work);
@@ -78,4 +78,4 @@ void SolverImpl::load(const BinaryReader& in) {
   soundness_ = {};
 }
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

@@ -5,15 +5,15 @@
 
 #include "snowshed/methods/slide/friction.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 namespace {
 
 /// Bytes of a particle with three bonds, and of a node of the terrain.
 constexpr double bytes_per_particle = 620, bytes_per_node = 100;
 
-Point2 middle(const Ring& ring) {
-  Point2 sum{0, 0};
-  for (const Point2& p : ring) sum = {sum[0] + p[0], sum[1] + p[1]};
+geometry::Point2 middle(const geometry::Ring& ring) {
+  geometry::Point2 sum{0, 0};
+  for (const geometry::Point2& p : ring) sum = {sum[0] + p[0], sum[1] + p[1]};
   return {sum[0] / double(ring.size()), sum[1] / double(ring.size())};
 }
 
@@ -23,11 +23,11 @@ double block_travel_time(const Terrain& terrain, const Settings& s, const Area& 
                          double gravity, double max_time) {
   const BasalFriction law = BasalFriction::from(s, gravity);
   const double dt = 0.05, drag = law.drag / (s.density * release.thickness);
-  const Point2 start = middle(release.polygon.outline);
+  const geometry::Point2 start = middle(release.polygon.outline);
   Vec3 x(start[0], start[1], 0), u = Vec3::Zero();
   double time = 0;
   for (; time < max_time; time += dt) {
-    const CellPosition place = terrain.place(x.x(), x.y());
+    const geometry::CellPosition place = terrain.place(x.x(), x.y());
     if (!place.inside() || !terrain.known(place)) break;
     const Vec3 n = terrain.normal(place);
     u -= u.dot(n) * n;
@@ -71,4 +71,4 @@ std::vector<Feature> features_of(const Settings& s, const SceneView& scene) {
           {"snapshots during the slide", scene.output.snapshot_interval > 0}};
 }
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

@@ -8,7 +8,7 @@
 #include "snowshed/methods/slide/settings.hpp"
 #include "snowshed/methods/slide/solver.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 
 /// The time until a block of the release's thickness, starting at the middle of the first release
 /// area, has stopped or left the terrain, at most `max_time` (s).
@@ -19,4 +19,4 @@ CostEstimate estimate_cost(const Settings&, const SceneView&, const Area& releas
 
 std::vector<Feature> features_of(const Settings&, const SceneView&);
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

@@ -2,7 +2,7 @@
 
 #include "snowshed/methods/allowed.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 
 void describe(SettingsVisitor& v, Settings& s) {
   v.accuracy({"cell", "time_step", "layer_thickness"});
@@ -21,7 +21,7 @@ void describe(SettingsVisitor& v, Settings& s) {
   v.flag("explicit_friction", s.explicit_friction,
          "Friction from the speed before the step; in the compatible mode only");
   v.number("resistance", s.resistance, "", non_negative.up_to(1e9),
-           "Coefficient within the areas of resistance");
+           "Drag coefficient within resistance areas (forest, buildings)");
   v.number("artificial_viscosity", s.artificial_viscosity, "", non_negative.up_to(1e6),
            "Strength with which particles are drawn to the mean velocity around them");
   v.flag("bonds", s.bonds, "Cohesive bonds; without them a plain depth-averaged avalanche");
@@ -46,4 +46,4 @@ void describe(SettingsVisitor& v, Settings& s) {
   v.integer("threads", s.threads, non_negative.up_to(4096), "Threads; 0: all");
 }
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

@@ -5,7 +5,7 @@
 #include "snowshed/methods/settings_visitor.hpp"
 #include "snowshed/methods/slide/settings.hpp"
 
-namespace snowshed {
+namespace snowshed::methods {
 
 template <>
 struct EnumNames<slide::Mode> {
@@ -19,11 +19,11 @@ struct EnumNames<slide::FrictionLaw> {
                                                        {slide::FrictionLaw::coulomb, "coulomb"}};
 };
 
-}  // namespace snowshed
+}  // namespace snowshed::methods
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 
 /// Shows a visitor each setting in turn: key, unit, range and meaning.
 void describe(SettingsVisitor&, Settings&);
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

@@ -6,7 +6,7 @@
 #include "snowshed/core/angles.hpp"
 #include "snowshed/methods/slide/state.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 namespace {
 
 Vec3 velocity_at(const State& state, std::size_t i) {
@@ -103,7 +103,7 @@ void store_energy(const Model& model, const State& state, const Workspace& work,
   }
 }
 
-void EnergyAudit::begin_step(const State& state) {
+void EnergyRecorder::begin_step(const State& state) {
   const std::size_t n = state.particles.size();
   before_.resize(n);
   for (std::size_t i = 0; i < n; ++i) before_[i] = velocity_at(state, i);
@@ -111,8 +111,8 @@ void EnergyAudit::begin_step(const State& state) {
   heights_.assign(state.particles.z.begin(), state.particles.z.end());
 }
 
-void EnergyAudit::after_ground(const Model& model, const State& state, const Workspace& work,
-                               EnergyBalance& e) {
+void EnergyRecorder::after_ground(const Model& model, const State& state, const Workspace& work,
+                                  EnergyBalance& e) {
   for (std::size_t i = 0; i < before_.size(); ++i) {
     const double mixed = work.loads.speed[i] * work.loads.speed[i];
     const Vec3 u = velocity_at(state, i);
@@ -125,8 +125,8 @@ void EnergyAudit::after_ground(const Model& model, const State& state, const Wor
 }
 
 /// Adds the energy of the bonds that break in this step.
-void EnergyAudit::add_broken(const Model& model, const State& state, const Workspace& work,
-                             EnergyBalance& e) const {
+void EnergyRecorder::add_broken(const Model& model, const State& state, const Workspace& work,
+                                EnergyBalance& e) const {
   const Bonds& bonds = state.bonds;
   for (std::size_t b = 0; b < bonds.size(); ++b) {
     const double* k = &work.predicted[4 * std::size_t(bonds.first[b])];
@@ -140,8 +140,8 @@ void EnergyAudit::add_broken(const Model& model, const State& state, const Works
   }
 }
 
-void EnergyAudit::after_motion(const Model& model, const State& state, const Workspace& work,
-                               EnergyBalance& e) const {
+void EnergyRecorder::after_motion(const Model& model, const State& state, const Workspace& work,
+                                  EnergyBalance& e) const {
   add_broken(model, state, work, e);
   const Loads& l = work.loads;
   for (std::size_t i = 0; i < before_.size(); ++i) {
@@ -166,4 +166,4 @@ void EnergyAudit::after_motion(const Model& model, const State& state, const Wor
   }
 }
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

@@ -6,7 +6,7 @@
 #include "snowshed/core/vec.hpp"
 #include "snowshed/methods/energy_balance.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 
 struct Model;
 struct State;
@@ -39,10 +39,10 @@ NamedEnergies named_energies(const EnergyBalance&);
 /// Sets the stored energies of a balance.
 void store_energy(const Model&, const State&, const Workspace&, EnergyBalance&);
 
-/// Audits the energy of a step: it is called between its parts, reads velocities and loads, and
-/// changes nothing. The work of a force is its product with the particle's displacement. The works
-/// add up to the change of kinetic energy for any length of the step.
-class EnergyAudit {
+/// Records the works of the forces in a step. It is called between the parts of the step, and only
+/// reads velocities and loads. The work of a force is its product with the particle's displacement.
+/// The works add up to the change of kinetic energy for any length of the step.
+class EnergyRecorder {
  public:
   void reserve(std::size_t particles) {
     before_.reserve(particles);
@@ -63,4 +63,4 @@ class EnergyAudit {
   std::vector<double> masses_, heights_;
 };
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

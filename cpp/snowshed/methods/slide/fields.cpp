@@ -5,7 +5,7 @@
 #include "snowshed/methods/field_sources.hpp"
 #include "snowshed/methods/slide/solver_impl.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 
 /// Calls visit(info, view) for each field; view() returns its view.
 template <class Visit>
@@ -15,7 +15,7 @@ void SolverImpl::visit_fields(Visit visit) const {
   const auto component = [&](const char* axis, const auto& array) {
     const Quantity& v = quantity("velocity");
     show.stored({v.name + "_" + axis, v.unit, v.meaning + "; component " + axis, 1,
-                 FieldType::float64, true},
+                 particles::FieldType::float64, true},
                 array);
   };
   show.of_each("position", [&p](std::size_t i) { return Vec3(p.x[i], p.y[i], p.z[i]); });
@@ -29,11 +29,11 @@ void SolverImpl::visit_fields(Visit visit) const {
   show.column("event", p.event);
 }
 
-std::vector<FieldInfo> SolverImpl::fields() const {
+std::vector<particles::FieldInfo> SolverImpl::fields() const {
   return list_fields([this](const auto& visit) { visit_fields(visit); });
 }
 
-FieldView SolverImpl::field(const std::string& name) const {
+particles::FieldView SolverImpl::field(const std::string& name) const {
   return find_field(name, [this](const auto& visit) { visit_fields(visit); });
 }
 
@@ -43,34 +43,35 @@ ParticleState SolverImpl::state() const {
   s.positions.reserve(size());
   s.velocities.reserve(size());
   s.densities.assign(size(), model_.settings.density);
-  for (auto* values : {&s.masses, &s.pressures}) values->reserve(size());
+  s.masses.reserve(size());
   s.ids.reserve(size());
   s.events.reserve(size());
   for (const std::uint32_t i : order_by_id()) {
     s.positions.push_back({p.x[i], p.y[i], p.z[i]});
     s.velocities.push_back({p.ux[i], p.uy[i], p.uz[i]});
     s.masses.push_back(p.mass[i]);
-    // The hydrostatic pressure at the base.
-    s.pressures.push_back(model_.settings.density * model_.gravity * workspace_.places.nz[i] *
-                          workspace_.thickness[i]);
     s.ids.push_back(p.id[i]);
     s.events.push_back(p.event[i]);
   }
   return s;
 }
 
-/// Adds thickness, speed and number of bonds of each particle, and the bonds as lines.
+/// Adds thickness, speed and number of bonds of each particle, and the bonds as lines. The pressure
+/// is the hydrostatic pressure at the base.
 PointCloud SolverImpl::snapshot() const {
   PointCloud cloud = Method::snapshot();
   const std::vector<std::uint32_t>& order = order_by_id();
   const Particles& p = state_.particles;
   std::vector<std::uint32_t> place(order.size());
-  std::vector<float> thickness, speed;
+  std::vector<float> pressure, thickness, speed;
+  pressure.reserve(order.size());
   thickness.reserve(order.size());
   speed.reserve(order.size());
   for (std::uint32_t k = 0; k < order.size(); ++k) {
     const std::uint32_t i = order[k];
     place[i] = k;
+    pressure.push_back(float(model_.settings.density * model_.gravity * workspace_.places.nz[i] *
+                             workspace_.thickness[i]));
     thickness.push_back(float(workspace_.thickness[i]));
     speed.push_back(float(Vec3(p.ux[i], p.uy[i], p.uz[i]).norm()));
   }
@@ -81,6 +82,7 @@ PointCloud SolverImpl::snapshot() const {
     cloud.lines.push_back({place[bonds.first[b]], place[bonds.second[b]]});
     for (const std::uint32_t particle : cloud.lines.back()) ++count[particle];
   }
+  cloud.replace("pressure", std::move(pressure));
   cloud.arrays.push_back({"thickness", 1, std::move(thickness)});
   cloud.arrays.push_back({"speed", 1, std::move(speed)});
   cloud.arrays.push_back({"bonds", 1, std::move(count)});
@@ -128,4 +130,4 @@ std::size_t SolverImpl::bytes() const {
   return total;
 }
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

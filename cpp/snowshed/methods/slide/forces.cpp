@@ -4,13 +4,13 @@
 #include <atomic>
 #include <cmath>
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 namespace {
 
 constexpr double min_speed = 1e-6;  // m/s
 
 /// The node nearest to a place.
-std::size_t nearest_node(const Terrain& terrain, const CellPosition& p) {
+std::size_t nearest_node(const Terrain& terrain, const geometry::CellPosition& p) {
   return terrain.index(p.column + int(p.east >= 0.5), p.row + int(p.north >= 0.5));
 }
 
@@ -118,4 +118,4 @@ void remove_broken(State& state, Workspace& work) {
   work.bond_lists.update(state.bonds, state.particles.size());
 }
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

@@ -3,7 +3,7 @@
 
 #include "snowshed/methods/slide/state.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 
 /// Applies the mixing of velocities, gravity, friction, resistance and entrainment, one particle at
 /// a time. Changes velocities, and masses where snow is entrained.
@@ -18,4 +18,4 @@ void apply_neighbours(const Model&, State&, Workspace&);
 /// Removes the bonds that are marked.
 void remove_broken(State&, Workspace&);
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

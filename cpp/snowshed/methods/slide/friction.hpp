@@ -3,7 +3,7 @@
 
 #include "snowshed/methods/slide/settings.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 
 /// Shear stress at the base: a part that does not depend on the speed and one that grows with its
 /// square. Voellmy (1955): tau = mu sigma + rho g |u|^2 / xi; Coulomb: tau = mu sigma.
@@ -22,4 +22,4 @@ struct BasalFriction {
   }
 };
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 void GridFields::reserve(const Terrain& terrain, bool keeps_sums) {
   const std::size_t max_nodes =
       (std::size_t(terrain.columns()) + 2) * (std::size_t(terrain.rows()) + 2);
@@ -42,4 +42,4 @@ std::vector<double> GridFields::speed_everywhere(const Terrain& terrain) const {
   return values;
 }
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

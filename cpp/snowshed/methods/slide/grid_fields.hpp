@@ -7,7 +7,7 @@
 #include "snowshed/methods/slide/cells.hpp"
 #include "snowshed/methods/slide/terrain.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 
 /// Peaks over time at all nodes of the terrain, row by row from the south.
 struct PeakFields {
@@ -17,13 +17,17 @@ struct PeakFields {
   explicit PeakFields(std::size_t nodes = 0) : thickness(nodes, 0.0), speed(nodes, 0.0) {}
 };
 
-/// Thickness and velocity at the nodes within the cells' rectangle, from the particles' masses and
-/// momenta, bilinearly.
+/// Thickness and velocity at the nodes within the cells' rectangle. The masses and momenta of the
+/// particles are distributed to the nodes bilinearly.
 class GridFields {
  public:
+  struct NodeSums {
+    double mass;        // kg
+    double px, py, pz;  // kg m/s, momentum
+  };
   struct Node {
-    double thickness;   // m; mass (kg) during the sums
-    double vx, vy, vz;  // m/s; momentum (kg m/s) during the sums
+    double thickness;   // m
+    double vx, vy, vz;  // m/s
   };
 
   /// Reserves memory for snow anywhere on the terrain, and for sums if they are kept.
@@ -36,8 +40,8 @@ class GridFields {
   /// The nodes of the rectangle, row by row, and its first column and row on the terrain.
   const Node* nodes() const { return nodes_.data(); }
   Node* nodes() { return nodes_.data(); }
-  /// Memory for mass and momentum on the nodes of the rectangle.
-  Node* sums() {
+  /// Memory for the sums over the particles at the nodes of the rectangle.
+  NodeSums* sums() {
     sums_.resize(nodes_.size());
     return sums_.data();
   }
@@ -49,14 +53,17 @@ class GridFields {
   std::vector<double> thickness_everywhere(const Terrain& terrain) const;
   std::vector<double> speed_everywhere(const Terrain& terrain) const;
 
-  std::size_t bytes() const { return (nodes_.capacity() + sums_.capacity()) * sizeof(Node); }
+  std::size_t bytes() const {
+    return nodes_.capacity() * sizeof(Node) + sums_.capacity() * sizeof(NodeSums);
+  }
 
  private:
   template <class Visit>
   void for_each_covered(const Terrain& terrain, Visit visit) const;
 
   int first_column_ = 0, first_row_ = 0, columns_ = 0, rows_ = 0;
-  AlignedVector<Node> nodes_, sums_;
+  AlignedVector<Node> nodes_;
+  AlignedVector<NodeSums> sums_;
 };
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

@@ -4,21 +4,21 @@
 
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/message_format.hpp"
-#include "snowshed/geometry/cliffs.hpp"
 #include "snowshed/geometry/readers/ascii_grid.hpp"
 #include "snowshed/io/fingerprint.hpp"
+#include "snowshed/methods/slide/cliffs.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 namespace {
 
-Ring relative_to_field(const Ring& ring, const HeightField& field) {
-  Ring local;
-  for (const Point2& p : ring) local.push_back({p[0] - field.west, p[1] - field.south});
+geometry::Ring relative_to_field(const geometry::Ring& ring, const geometry::HeightField& field) {
+  geometry::Ring local;
+  for (const geometry::Point2& p : ring) local.push_back({p[0] - field.west, p[1] - field.south});
   return local;
 }
 
 template <class Spec>
-Area area_of(const Spec& spec, const HeightField& field) {
+Area area_of(const Spec& spec, const geometry::HeightField& field) {
   Area area;
   area.name = spec.name;
   area.polygon.outline = relative_to_field(spec.outline, field);
@@ -27,7 +27,7 @@ Area area_of(const Spec& spec, const HeightField& field) {
   return area;
 }
 
-std::vector<Area> areas_of(const std::vector<AreaSpec>& specs, const HeightField& field) {
+std::vector<Area> areas_of(const std::vector<AreaSpec>& specs, const geometry::HeightField& field) {
   std::vector<Area> areas;
   for (const AreaSpec& spec : specs) {
     areas.push_back(area_of(spec, field));
@@ -43,30 +43,30 @@ void check_cliff(const std::string& where, const std::string& cliff, double max_
                               show(max_slope) + " degrees are accepted (terrain.max_slope)");
 }
 
-HeightField read_terrain(const TerrainSpec& terrain, const Settings& settings,
-                         const std::filesystem::path& base_dir) {
-  HeightField field = read_ascii_grid(base_dir / terrain.file);
+geometry::HeightField read_terrain(const TerrainSpec& terrain, const Settings& settings,
+                                   const std::filesystem::path& base_dir) {
+  geometry::HeightField field = geometry::read_ascii_grid(base_dir / terrain.file);
   check_cliff("/terrain/file", impossible_cliff(field, terrain.max_slope), terrain.max_slope);
   if (settings.mode == Mode::compatible && terrain.single_precision)
     for (double& height : field.heights) height = double(float(height));
   const double cell = settings.cell > 0 ? settings.cell : field.cell;
   try {
-    return resampled(field, cell);
+    return geometry::resampled(field, cell);
   } catch (const InputError& error) {
     throw InputError("/numerics/cell", error.what());
   }
 }
 
 /// The areas, in coordinates from the south-west node of the grid.
-Areas read_areas(const TerrainSpec& terrain, const HeightField& field,
+Areas read_areas(const TerrainSpec& terrain, const geometry::HeightField& field,
                  const std::filesystem::path& base_dir) {
   Areas areas;
   areas.release = areas_of(terrain.release, field);
   if (!terrain.thickness_file.empty()) {
-    HeightField map = read_ascii_grid(base_dir / terrain.thickness_file);
+    geometry::HeightField map = geometry::read_ascii_grid(base_dir / terrain.thickness_file);
     map.west -= field.west;
     map.south -= field.south;
-    const auto shared = std::make_shared<const HeightField>(std::move(map));
+    const auto shared = std::make_shared<const geometry::HeightField>(std::move(map));
     for (Area& area : areas.release) {
       area.map = shared;
       area.max_thickness = terrain.max_thickness;
@@ -81,7 +81,7 @@ Areas read_areas(const TerrainSpec& terrain, const HeightField& field,
   return areas;
 }
 
-void add(const HeightField& f, Fingerprint& print) {
+void add(const geometry::HeightField& f, io::Fingerprint& print) {
   const double place[] = {f.cell, f.west, f.south, double(f.columns), double(f.rows)};
   print.add(place, std::size(place));
   print.add(f.heights.data(), f.heights.size());
@@ -96,12 +96,12 @@ Input::Input(const TerrainSpec& terrain, const Settings& settings,
       terrain_(read_terrain(terrain, settings, base_dir)),
       areas_(read_areas(terrain, terrain_, base_dir)) {}
 
-std::vector<FilePrint> Input::files() const {
-  Fingerprint terrain, thickness;
+std::vector<FileFingerprint> Input::files() const {
+  io::Fingerprint terrain, thickness;
   add(terrain_, terrain);
   if (!areas_.release.empty() && areas_.release.front().map)
     add(*areas_.release.front().map, thickness);
   return {{file_, terrain.value()}, {thickness_file_, thickness.value()}};
 }
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

@@ -9,7 +9,7 @@
 #include "snowshed/methods/slide/settings.hpp"
 #include "snowshed/methods/surroundings.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 
 class Input final : public MethodInput {
  public:
@@ -18,15 +18,15 @@ class Input final : public MethodInput {
   Input(const TerrainSpec&, const Settings&, const std::filesystem::path& base_dir);
 
   const char* section() const override { return "ground"; }
-  std::vector<FilePrint> files() const override;
+  std::vector<FileFingerprint> files() const override;
 
-  const HeightField& terrain() const { return terrain_; }
+  const geometry::HeightField& terrain() const { return terrain_; }
   const Areas& areas() const { return areas_; }
 
  private:
   std::string file_, thickness_file_;
-  HeightField terrain_;
+  geometry::HeightField terrain_;
   Areas areas_;  // from the terrain's south-west node
 };
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

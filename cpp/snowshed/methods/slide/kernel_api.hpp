@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 
 /// Effect of friction within a step.
 enum class FrictionScheme {
@@ -41,10 +41,13 @@ struct View {
   const double* flow;
   int flow_column, flow_row, flow_columns;  // the first node, on the grid of the ground
 
-  // The same records while they are computed, and the peaks that they raise at the nodes of the
-  // terrain, or null.
-  double *nodes, *peak_thickness, *peak_speed;
-  double* sums;        // default mode: mass and momentum on the nodes, kept for mean_speed.hpp
+  // The same records while they are computed in place: first the sums of mass and momentum, then
+  // thickness and velocity.
+  double* nodes;
+  // Default mode: a copy of the sums for mean_speed.hpp; otherwise null.
+  double* sums;
+  // Peaks at the nodes of the terrain that the snow raises, or null.
+  double *peak_thickness, *peak_speed;
   double fading_mass;  // kg, below which the mean speed there fades
 
   // Particles.
@@ -123,4 +126,4 @@ struct Kernels {
 /// Returns the kernels of the instruction set in use.
 const Kernels& chosen_kernels();
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

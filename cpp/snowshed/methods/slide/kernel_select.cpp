@@ -2,7 +2,7 @@
 #include "snowshed/core/kernel_variant.hpp"
 #include "snowshed/methods/slide/kernel_api.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 
 namespace baseline {
 extern const Kernels kernel_table;
@@ -33,4 +33,4 @@ const Kernels& chosen_kernels() {
   }
 }
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

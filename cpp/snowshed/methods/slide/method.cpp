@@ -9,7 +9,7 @@
 #include "snowshed/methods/slide/input.hpp"
 #include "snowshed/methods/slide/solver.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 namespace {
 
 class Descriptor final : public DescriptorBase<Descriptor, Settings> {
@@ -30,7 +30,7 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
   void validate(const SceneView& scene) const override {
     if (!scene.terrain) throw InputError("/", "a slide needs a /terrain");
     if (scene.dimension != 3)
-      throw InputError("/dimension", "a slide moves over ground in space; allowed: 3");
+      throw InputError("/dimension", "a slide needs three dimensions; allowed: 3");
     if (scene.events.count != 1)
       throw InputError("/events/count", show(scene.events.count) + " events; a slide has 1");
     if (!scene.terrain->thickness_file.empty() && settings_.mode == Mode::compatible)
@@ -72,4 +72,4 @@ const MethodDescriptor& descriptor() {
   return instance;
 }
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

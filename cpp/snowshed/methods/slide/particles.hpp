@@ -6,7 +6,7 @@
 
 #include "snowshed/core/aligned_vector.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 
 /// One array for each quantity, all of one length. Positions are given from the south-west node of
 /// the terrain.
@@ -48,4 +48,4 @@ struct Particles {
   }
 };
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

@@ -8,7 +8,7 @@
 
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 namespace {
 
 /// Distance of rows in a triangular lattice of side 1.
@@ -24,7 +24,7 @@ double lattice_side(double area, double points) { return std::sqrt(area / points
 
 void place_on_ground(const Terrain& terrain, double x, double y, double mass,
                      ParticleBatch& batch) {
-  const CellPosition place = terrain.place(x, y);
+  const geometry::CellPosition place = terrain.place(x, y);
   batch.positions.push_back({x, y, terrain.height(place)});
   batch.masses.push_back(mass);
 }
@@ -67,7 +67,7 @@ std::vector<ParticleBatch> seed_as_avaframe(const Settings& s, const Terrain& te
   const double cell = terrain.cell();
   const std::vector<double> thickness = thickness_at_nodes(areas, terrain, Reach::one_cell);
   const double share = projected_share(terrain, thickness);
-  std::vector<Ring> outlines;
+  std::vector<geometry::Ring> outlines;
   for (const Area& area : areas)
     outlines.push_back(widened_as_avaframe(area.polygon.outline, 1e-3));
 
@@ -76,21 +76,21 @@ std::vector<ParticleBatch> seed_as_avaframe(const Settings& s, const Terrain& te
     for (int column = 0; column < terrain.columns(); ++column) {
       const double h = thickness[terrain.index(column, row)];
       if (h == 0) continue;
-      const double wanted = h * (cell * cell / share) * s.density / mass_per_particle(s, cell);
+      const double wanted = h * (cell * cell / share) * s.density / nominal_particle_mass(s, cell);
       const double points = std::floor(wanted);
       if (points < 1)
         refuse_area(0, areas[0].name,
                     "is too thin: " + std::to_string(h) + " m make no particle of " +
-                        std::to_string(mass_per_particle(s, cell)) +
+                        std::to_string(nominal_particle_mass(s, cell)) +
                         " kg; allowed in compatible mode: at least " + std::to_string(h / wanted) +
                         " m");
       const double mass = terrain.node(column, row).area * h * s.density / points;
       for_lattice_points_near(
           column, row, cell, lattice_side(cell * cell, points), [&](double x, double y) {
             give_up();
-            const bool is_inside =
-                std::any_of(outlines.begin(), outlines.end(),
-                            [&](const Ring& ring) { return contains(ring, {x, y}); });
+            const bool is_inside = std::any_of(
+                outlines.begin(), outlines.end(),
+                [&](const geometry::Ring& ring) { return geometry::contains(ring, {x, y}); });
             if (is_inside) place_on_ground(terrain, x, y, mass, batch);
           });
     }
@@ -104,9 +104,9 @@ struct Bounds {
   double low[2], high[2];
 };
 
-Bounds bounds_of(const Ring& ring) {
+Bounds bounds_of(const geometry::Ring& ring) {
   Bounds b{{ring[0][0], ring[0][1]}, {ring[0][0], ring[0][1]}};
-  for (const Point2& p : ring)
+  for (const geometry::Point2& p : ring)
     for (const int axis : {0, 1}) {
       b.low[axis] = std::min(b.low[axis], p[axis]);
       b.high[axis] = std::max(b.high[axis], p[axis]);
@@ -114,9 +114,10 @@ Bounds bounds_of(const Ring& ring) {
   return b;
 }
 
-double map_area(const Polygon& polygon) {
-  double area = std::abs(twice_signed_area(polygon.outline));
-  for (const Ring& hole : polygon.holes) area -= std::abs(twice_signed_area(hole));
+double map_area(const geometry::Polygon& polygon) {
+  double area = std::abs(geometry::twice_signed_area(polygon.outline));
+  for (const geometry::Ring& hole : polygon.holes)
+    area -= std::abs(geometry::twice_signed_area(hole));
   return area / 2;
 }
 
@@ -127,7 +128,7 @@ int node_of(double x, double first, double cell) {
 
 double thickness_at(const Area& area, double x, double y) {
   if (!area.map) return area.thickness;
-  const HeightField& m = *area.map;
+  const geometry::HeightField& m = *area.map;
   const int column = std::clamp(node_of(x, m.west, m.cell), 0, m.columns - 1);
   const int row = std::clamp(node_of(y, m.south, m.cell), 0, m.rows - 1);
   return m.height(column, row);
@@ -138,7 +139,7 @@ struct SnowOfMap {
   double thickest = 0, volume = 0;
 };
 
-SnowOfMap snow_of(const HeightField& map) {
+SnowOfMap snow_of(const geometry::HeightField& map) {
   SnowOfMap snow;
   for (const double h : map.heights)
     if (h > 0) {
@@ -152,7 +153,7 @@ SnowOfMap snow_of(const HeightField& map) {
 /// it.
 double mean_thickness(const Area& area, const Terrain& terrain, std::size_t index) {
   if (!area.map) return area.thickness;
-  const HeightField& m = *area.map;
+  const geometry::HeightField& m = *area.map;
   const Bounds b = bounds_of(area.polygon.outline);
   const double half = m.cell / 2, rounding = 1e-6 * m.cell;
   const int west = node_of(b.low[0] + rounding, m.west, m.cell);
@@ -165,7 +166,8 @@ double mean_thickness(const Area& area, const Terrain& terrain, std::size_t inde
   for (int row = south; row <= north; ++row)
     for (int column = west; column <= east; ++column) {
       const double x = m.west + column * m.cell, y = m.south + row * m.cell;
-      const double part = area_within(area.polygon, {x - half, y - half}, {x + half, y + half});
+      const double part =
+          geometry::area_within(area.polygon, {x - half, y - half}, {x + half, y + half});
       if (part <= rounding * m.cell) continue;
       const double h = m.height(column, row);
       if (!(h > 0 && h <= area.max_thickness))
@@ -181,11 +183,11 @@ double mean_thickness(const Area& area, const Terrain& terrain, std::size_t inde
   return volume / covered;
 }
 
-Point2 centroid(const Ring& ring) {
+geometry::Point2 centroid(const geometry::Ring& ring) {
   double x = 0, y = 0, sum = 0;
-  const Point2& o = ring[0];
+  const geometry::Point2& o = ring[0];
   for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
-    const Point2 &a = ring[i], &b = ring[i + 1];
+    const geometry::Point2 &a = ring[i], &b = ring[i + 1];
     const double w = (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
     x += w * (a[0] + b[0] - 2 * o[0]) / 3;
     y += w * (a[1] + b[1] - 2 * o[1]) / 3;
@@ -201,13 +203,13 @@ struct Ground {
   std::size_t points = 0;
 };
 
-Ground ground_under(const Terrain& terrain, const Polygon& polygon) {
+Ground ground_under(const Terrain& terrain, const geometry::Polygon& polygon) {
   Ground g;
   double fall[2] = {0, 0};
   const Bounds b = bounds_of(polygon.outline);
   const double step = terrain.cell() / 2;
   const auto look_at = [&](double x, double y) {
-    const CellPosition p = terrain.place(x, y);
+    const geometry::CellPosition p = terrain.place(x, y);
     if (!p.inside()) return;
     const Vec3 n = terrain.normal(p);
     g.stretch += 1 / n.z();
@@ -217,10 +219,10 @@ Ground ground_under(const Terrain& terrain, const Polygon& polygon) {
   };
   for (double y = b.low[1] + step / 2; y < b.high[1]; y += step)
     for (double x = b.low[0] + step / 2; x < b.high[0]; x += step)
-      if (contains(polygon, {x, y})) look_at(x, y);
+      if (geometry::contains(polygon, {x, y})) look_at(x, y);
   // Areas narrower than the distance of the points may contain none.
   if (g.points == 0)
-    for (const Point2& corner : polygon.outline) look_at(corner[0], corner[1]);
+    for (const geometry::Point2& corner : polygon.outline) look_at(corner[0], corner[1]);
   if (g.points == 0) return Ground{1.0, 1.0, 0.0, 0};
   g.stretch /= double(g.points);
   const double length = std::hypot(fall[0], fall[1]);
@@ -234,10 +236,10 @@ Ground ground_under(const Terrain& terrain, const Polygon& polygon) {
 /// Calls visit(x, y) for the points of a lattice within a ring's bounds, row by row. The lattice
 /// begins at `origin`, and its rows run along the fall line.
 template <class Visit>
-void for_lattice_points(const Ring& ring, const Point2& origin, const Ground& along, double side,
-                        Visit visit) {
+void for_lattice_points(const geometry::Ring& ring, const geometry::Point2& origin,
+                        const Ground& along, double side, Visit visit) {
   double reach = 0;
-  for (const Point2& p : ring)
+  for (const geometry::Point2& p : ring)
     reach = std::max(reach, std::hypot(p[0] - origin[0], p[1] - origin[1]));
   const double height = side * row_distance;
   const int rows = int(std::ceil(reach / height)), columns = int(std::ceil(reach / side)) + 1;
@@ -254,9 +256,11 @@ void for_lattice_points(const Ring& ring, const Point2& origin, const Ground& al
 void refuse_overlap(const Terrain& terrain, const std::vector<Area>& areas, std::size_t index,
                     const ParticleBatch& batch) {
   const double margin = 1e-6 * terrain.cell();
-  const auto well_within = [&](const Polygon& polygon, double x, double y) {
-    return contains(polygon, {x - margin, y}) && contains(polygon, {x + margin, y}) &&
-           contains(polygon, {x, y - margin}) && contains(polygon, {x, y + margin});
+  const auto well_within = [&](const geometry::Polygon& polygon, double x, double y) {
+    return geometry::contains(polygon, {x - margin, y}) &&
+           geometry::contains(polygon, {x + margin, y}) &&
+           geometry::contains(polygon, {x, y - margin}) &&
+           geometry::contains(polygon, {x, y + margin});
   };
   for (std::size_t other = 0; other < index; ++other) {
     const Bounds b = bounds_of(areas[other].polygon.outline);
@@ -282,14 +286,14 @@ ParticleBatch seed_area(const Settings& s, const Terrain& terrain, const Area& a
   const double thickness = mean_thickness(area, terrain, index);
   const double mass = thickness * ground.stretch * map_area(area.polygon) * s.density;
   const double cell_mass = thickness * ground.stretch * cell * cell * s.density;
-  const double points = std::max(1.0, std::floor(cell_mass / mass_per_particle(s, cell)));
+  const double points = std::max(1.0, std::floor(cell_mass / nominal_particle_mass(s, cell)));
   ParticleBatch batch;
   double seeded = 0;
   for_lattice_points(area.polygon.outline, centroid(area.polygon.outline), ground,
                      lattice_side(cell * cell, points), [&](double x, double y) {
                        give_up();
-                       const CellPosition p = terrain.place(x, y);
-                       if (!p.inside() || !contains(area.polygon, {x, y})) return;
+                       const geometry::CellPosition p = terrain.place(x, y);
+                       if (!p.inside() || !geometry::contains(area.polygon, {x, y})) return;
                        const double share = thickness_at(area, x, y) / terrain.normal(p).z();
                        place_on_ground(terrain, x, y, share, batch);
                        seeded += share;
@@ -302,7 +306,7 @@ ParticleBatch seed_area(const Settings& s, const Terrain& terrain, const Area& a
 
 }  // namespace
 
-double mass_per_particle(const Settings& s, double cell) {
+double nominal_particle_mass(const Settings& s, double cell) {
   return s.density * cell * cell * s.layer_thickness;
 }
 
@@ -311,7 +315,7 @@ void check_effort(const Settings& s, const Terrain& terrain, const std::vector<A
   constexpr double max_comparisons = 3e9;  // comparisons of a particle with a corner: some seconds
   const double cell = terrain.cell();
   double particles = 0, corners = 0;
-  const HeightField* map = nullptr;  // all areas share one
+  const geometry::HeightField* map = nullptr;  // all areas share one
   SnowOfMap snow;
   for (const Area& area : areas) {
     const double on_map = map_area(area.polygon);
@@ -323,7 +327,7 @@ void check_effort(const Settings& s, const Terrain& terrain, const std::vector<A
     }
     particles += std::max(on_map, volume / s.layer_thickness) / (cell * cell);
     corners += double(area.polygon.outline.size());
-    for (const Ring& hole : area.polygon.holes) corners += double(hole.size());
+    for (const geometry::Ring& hole : area.polygon.holes) corners += double(hole.size());
   }
   std::ostringstream text;
   if (particles > max_particles) {
@@ -373,4 +377,4 @@ std::vector<ParticleBatch> seed_release(const Settings& settings, const Terrain&
   return batches;
 }
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

@@ -8,11 +8,11 @@
 #include "snowshed/methods/slide/areas.hpp"
 #include "snowshed/methods/slide/settings.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 
-/// Returns the largest mass of a fresh particle, kg: the mass of a layer of `layer_thickness` over
-/// one cell.
-double mass_per_particle(const Settings& settings, double cell);
+/// Returns the nominal mass of a fresh particle, kg: the mass of a layer of `layer_thickness` over
+/// one cell. A cell gets as many particles as its mass contains whole nominal masses.
+double nominal_particle_mass(const Settings& settings, double cell);
 
 /// Returns the distance on the map between neighbouring particles of a batch, m: the median over a
 /// sample. 0 for a single particle.
@@ -38,4 +38,4 @@ std::vector<ParticleBatch> seed_release(const Settings& settings, const Terrain&
                                         const std::vector<Area>& areas,
                                         const StopRequest& stop = {});
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

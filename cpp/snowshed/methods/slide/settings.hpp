@@ -1,7 +1,7 @@
 // Settings of the snow slide in a scene.
 #pragma once
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 
 /// `improved` mends the known faults of com5SnowSlide; `compatible` follows AvaFrame 2.1.
 enum class Mode { improved, compatible };
@@ -22,7 +22,7 @@ struct Settings {
   double friction = 0.325;         // Coulomb coefficient mu
   double turbulence = 58;          // m/s2, Voellmy's xi
   bool explicit_friction = false;  // compatible mode only
-  double resistance = 30000;       // coefficient within the resistance areas
+  double resistance = 30000;       // drag coefficient within the resistance areas
   double artificial_viscosity = 100;
 
   bool bonds = true;
@@ -34,13 +34,13 @@ struct Settings {
   double erosion_energy = 5000;    // J/kg; 0: all snow below the slide is entrained
   double entrainment_shear = 0;    // N/m2, resistance of the entrained snow against shear
   double entrainment_work = 0;     // J/kg, to break it up
-  double split_ratio = 1.5;        // mass over that of a fresh particle above which it splits
+  double split_ratio = 1.5;        // multiple of its fresh mass above which a particle splits
 
   double stop_ratio = 0.01;  // kinetic energy over its peak at which the slide has stopped
   int threads = 0;           // 0: all
 
-  /// The size of the smallest thing the method resolves, m; 0 if the terrain decides.
+  /// The smallest length that the method resolves, m; 0 if the terrain determines it.
   double resolution() const { return cell; }
 };
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

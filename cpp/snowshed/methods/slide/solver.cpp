@@ -12,7 +12,7 @@
 #include "snowshed/methods/slide/forces.hpp"
 #include "snowshed/methods/slide/solver_impl.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 namespace {
 
 /// Steps between two sorts of the particles by their cells.
@@ -27,9 +27,10 @@ std::string on_map(const Terrain& terrain, int column, int row) {
 }
 
 /// Throws if a cell under an area lacks a height at one of its nodes.
-void check_no_hole(const Terrain& terrain, const Polygon& area, const std::string& where) {
+void check_no_hole(const Terrain& terrain, const geometry::Polygon& area,
+                   const std::string& where) {
   double low[2] = {area.outline[0][0], area.outline[0][1]}, high[2] = {low[0], low[1]};
-  for (const Point2& p : area.outline)
+  for (const geometry::Point2& p : area.outline)
     for (const int axis : {0, 1}) {
       low[axis] = std::min(low[axis], p[axis]);
       high[axis] = std::max(high[axis], p[axis]);
@@ -41,7 +42,7 @@ void check_no_hole(const Terrain& terrain, const Polygon& area, const std::strin
     for (int column = std::max(0, int(low[0] / c)); column <= last_column; ++column) {
       const double x = column * c, y = row * c;
       if (std::isnan(terrain.node(column, row).height) &&
-          area_within(area, {x - c, y - c}, {x + c, y + c}) > 0)
+          geometry::area_within(area, {x - c, y - c}, {x + c, y + c}) > 0)
         throw InputError(where, "the terrain has a hole there: no elevation at (" +
                                     on_map(terrain, column, row) + ")");
     }
@@ -54,7 +55,7 @@ void check_on_terrain(const Terrain& terrain, const std::vector<Area>& areas,
                       const std::string& kind) {
   for (std::size_t i = 0; i < areas.size(); ++i) {
     const std::string where = "/terrain/" + kind + "/" + std::to_string(i);
-    for (const Point2& p : areas[i].polygon.outline) {
+    for (const geometry::Point2& p : areas[i].polygon.outline) {
       if (!terrain.place(p[0], p[1]).inside())
         throw InputError(
             where, "reaches beyond the terrain, which extends from (" + on_map(terrain, 0, 0) +
@@ -82,11 +83,11 @@ void SolverImpl::append(State& state, const ParticleBatch& batch, const StopRequ
   check_batch(batch, 1);
   Particles& p = state.particles;
   const std::size_t old = p.size();
-  const double fresh_mass = mass_per_particle(model_.settings, model_.terrain.cell());
+  const double fresh_mass = nominal_particle_mass(model_.settings, model_.terrain.cell());
   p.resize(old + batch.positions.size());
   for (std::size_t k = 0; k < batch.positions.size(); ++k) {
     const Vec3& x = batch.positions[k];
-    const CellPosition place = model_.terrain.place(x.x(), x.y());
+    const geometry::CellPosition place = model_.terrain.place(x.x(), x.y());
     if (!place.inside() || std::isnan(model_.terrain.height(place)))
       throw SimulationError("a particle at (" + std::to_string(x.x()) + ", " +
                             std::to_string(x.y()) + ") m lies outside of the terrain");
@@ -166,6 +167,7 @@ void SolverImpl::replace(const std::vector<ParticleBatch>& batches) {
   State next(model_);
   next.time = state_.time;
   next.counters = state_.counters;
+  next.sorts = state_.sorts;
   next.next_id = state_.next_id;
   next.peaks = state_.peaks;
   next.erodible = state_.erodible;
@@ -198,7 +200,7 @@ void SolverImpl::sort_if_due() {
   sort_by_cell(state_, workspace_);
   refresh(model_, state_, workspace_);
   order_.forget();
-  ++state_.counters.sorts;
+  ++state_.sorts;
 }
 
 void SolverImpl::choose_threads() {
@@ -214,14 +216,14 @@ void SolverImpl::step() {
   sort_if_due();
   choose_threads();
   // Nothing from here on allocates.
-  const bool audited = model_.keeps_energy;
-  EnergyAudit& audit = workspace_.audit;
-  if (audited) audit.begin_step(state_);
+  const bool keeps_energy = model_.keeps_energy;
+  EnergyRecorder& recorder = workspace_.energy_recorder;
+  if (keeps_energy) recorder.begin_step(state_);
   apply_ground(model_, state_, workspace_);
-  if (audited) audit.after_ground(model_, state_, workspace_, state_.energy);
+  if (keeps_energy) recorder.after_ground(model_, state_, workspace_, state_.energy);
   apply_neighbours(model_, state_, workspace_);
   advance(model_, state_, workspace_);
-  if (audited) audit.after_motion(model_, state_, workspace_, state_.energy);
+  if (keeps_energy) recorder.after_motion(model_, state_, workspace_, state_.energy);
   remove_broken(state_, workspace_);
   remove_marked(state_, workspace_);
   split_heavy(model_, state_, workspace_);
@@ -240,4 +242,4 @@ void SolverImpl::step() {
   }
 }
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

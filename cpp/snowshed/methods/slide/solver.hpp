@@ -11,14 +11,14 @@
 #include "snowshed/methods/slide/settings.hpp"
 #include "snowshed/methods/slide/state.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 
 struct Options {
   Settings settings;
-  double gravity = 9.81;  // m/s2, along -z
-  HeightField terrain;    // on the computing grid
-  Areas areas;            // from the terrain's south-west node
-  bool energy = false;    // whether to keep the energy balance
+  double gravity = 9.81;          // m/s2, along -z
+  geometry::HeightField terrain;  // on the computing grid
+  Areas areas;                    // from the terrain's south-west node
+  bool energy = false;            // whether to keep the energy balance
 };
 
 /// A slide as a method, with its own additions. `seed` returns the particles of the release areas
@@ -39,4 +39,4 @@ class Solver : public Method, public SeedsItself, public KeepsEnergy, public Rep
 /// too many particles.
 std::unique_ptr<Solver> make_solver(Options);
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

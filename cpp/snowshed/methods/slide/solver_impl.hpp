@@ -5,7 +5,7 @@
 #include "snowshed/methods/slide/release.hpp"
 #include "snowshed/methods/slide/solver.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 
 class SolverImpl final : public Solver {
  public:
@@ -23,8 +23,8 @@ class SolverImpl final : public Solver {
   double time_step() const override { return state_.dt; }
   const StepCounters& counters() const override { return state_.counters; }
 
-  std::vector<FieldInfo> fields() const override;
-  FieldView field(const std::string&) const override;
+  std::vector<particles::FieldInfo> fields() const override;
+  particles::FieldView field(const std::string&) const override;
   const std::vector<std::uint32_t>& order_by_id() const override {
     return order_.of(state_.particles.id);
   }
@@ -37,9 +37,9 @@ class SolverImpl final : public Solver {
   Section run_section() const override;
   std::size_t bytes() const override;
 
-  void save(BinaryWriter&) const override;
-  void load(const BinaryReader&) override;
-  void check(const BinaryReader&) const override;
+  void save(io::BinaryWriter&) const override;
+  void load(const io::BinaryReader&) override;
+  void check(const io::BinaryReader&) const override;
 
   using SeedsItself::seed;
   std::vector<ParticleBatch> seed(const StopRequest& stop) const override {
@@ -74,4 +74,4 @@ class SolverImpl final : public Solver {
   IdOrder order_;
 };
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

@@ -1,6 +1,6 @@
 #include "snowshed/methods/slide/state.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 namespace {
 
 BorderSlope border_slope(const Settings& s) {
@@ -32,7 +32,7 @@ std::vector<double> erodible_at_nodes(const Model& model) {
 
 }  // namespace
 
-Model::Model(const Settings& s, double g, const HeightField& field, Areas a, bool keeps)
+Model::Model(const Settings& s, double g, const geometry::HeightField& field, Areas a, bool keeps)
     : settings(s),
       gravity(g),
       terrain(field, border_slope(s)),
@@ -71,7 +71,7 @@ void Workspace::reserve_memory(const Model& model, State& state) {
               sorted_pressure_factor.end(), 0.0);
   }
   fields.reserve(model.terrain, !model.compatible());
-  if (model.keeps_energy) audit.reserve(now);
+  if (model.keeps_energy) energy_recorder.reserve(now);
 }
 
 namespace {
@@ -113,7 +113,9 @@ void view_places(const Model& model, Workspace& work, View& v) {
   v.ny = p.ny.data();
   v.nz = p.nz.data();
   v.thickness = work.thickness.data();
-  static_assert(sizeof(GridFields::Node) == 4 * sizeof(double), "kernels read records of four");
+  static_assert(sizeof(GridFields::Node) == 4 * sizeof(double) &&
+                    sizeof(GridFields::NodeSums) == 4 * sizeof(double),
+                "kernels read records of four");
   GridFields::Node* nodes = work.fields.nodes();  // none before the first step
   v.nodes = nodes ? &nodes->thickness : nullptr;
   v.flow = v.nodes;
@@ -226,7 +228,7 @@ void refresh_fields(const Model& model, const State& state, Workspace& work, Pea
   if (raised) {
     view.peak_thickness = raised->thickness.data();
     view.peak_speed = raised->speed.data();
-    if (!model.compatible()) view.sums = &work.fields.sums()->thickness;
+    if (!model.compatible()) view.sums = &work.fields.sums()->mass;
   }
   // Two neighbouring rows of cells add to the same row of nodes. First the even rows run, and then
   // the odd ones, so that no two threads add to the same node and the sums do not depend on the
@@ -248,4 +250,4 @@ void refresh_fields(const Model& model, const State& state, Workspace& work, Pea
   });
 }
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

@@ -21,7 +21,7 @@
 #include "snowshed/methods/slide/settings.hpp"
 #include "snowshed/methods/slide/terrain.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 
 /// Minimum number of particles per thread.
 inline constexpr std::size_t particles_per_thread = 400;
@@ -29,7 +29,7 @@ inline constexpr std::size_t particles_per_thread = 400;
 inline constexpr std::size_t particles_for_threads = 20000;
 
 struct Model {
-  Model(const Settings&, double gravity, const HeightField&, Areas, bool keeps_energy);
+  Model(const Settings&, double gravity, const geometry::HeightField&, Areas, bool keeps_energy);
 
   bool compatible() const { return settings.mode == Mode::compatible; }
   /// Maximum number of threads for a step of this number of particles.
@@ -68,7 +68,8 @@ struct State {
   bool stopped = false;
   std::uint32_t next_id = 0;
   StepCounters counters;
-  EnergyBalance energy;  // sums over steps; stored energies are computed on request
+  std::int64_t sorts = 0;  // by cells
+  EnergyBalance energy;    // sums over steps; stored energies are computed on request
 };
 
 /// Places of the particles in the grid, and the normals of the ground there.
@@ -78,7 +79,7 @@ struct Places {
   AlignedVector<double> nx, ny, nz;
 
   std::size_t size() const { return column.size(); }
-  CellPosition at(std::size_t i) const { return {column[i], row[i], east[i], north[i]}; }
+  geometry::CellPosition at(std::size_t i) const { return {column[i], row[i], east[i], north[i]}; }
   Vec3 normal(std::size_t i) const { return {nx[i], ny[i], nz[i]}; }
 
   template <class Self, class Visit>
@@ -123,7 +124,7 @@ struct Workspace {
   std::vector<std::uint32_t> new_places;
   std::vector<double> piece_sums;
   bool no_particle_splits = false;  // no particle is too heavy, and none becomes heavier
-  EnergyAudit audit;
+  EnergyRecorder energy_recorder;
   int threads = 1;  // threads that share the loops
   ThreadChoice thread_choice;
 
@@ -151,4 +152,4 @@ void refresh_places(const Model&, const State&, Workspace&, std::size_t begin, s
 /// Does the rest of `refresh` if bonds and the particles' places are up to date.
 void refresh_fields(const Model&, const State&, Workspace&, PeakFields* raised);
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

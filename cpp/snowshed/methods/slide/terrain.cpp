@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 namespace {
 
 struct Slope {
@@ -11,14 +11,14 @@ struct Slope {
 
 /// The slope of the bilinear surface in the middle of a cell: half the sum of its diagonals' rises
 /// (AvaFrame's normal by the cross product of the diagonals).
-Slope cell_slope(const HeightField& f, int column, int row) {
+Slope cell_slope(const geometry::HeightField& f, int column, int row) {
   const double z00 = f.height(column, row), z10 = f.height(column + 1, row),
                z01 = f.height(column, row + 1), z11 = f.height(column + 1, row + 1);
   return {-(z10 - z01 + (z11 - z00)) / (2 * f.cell), -(z11 - z00 - (z10 - z01)) / (2 * f.cell)};
 }
 
 /// The mean slope of the four cells around a node. At the border the last cells count twice.
-Slope node_slope(const HeightField& f, int column, int row) {
+Slope node_slope(const geometry::HeightField& f, int column, int row) {
   const auto clamped = [](int i, int cells) { return std::clamp(i, 0, cells - 1); };
   Slope sum{0, 0};
   for (const int j : {row - 1, row})
@@ -32,7 +32,7 @@ Slope node_slope(const HeightField& f, int column, int row) {
 
 }  // namespace
 
-Terrain::Terrain(const HeightField& f, BorderSlope border)
+Terrain::Terrain(const geometry::HeightField& f, BorderSlope border)
     : columns_(f.columns),
       rows_(f.rows),
       cell_(f.cell),
@@ -51,4 +51,4 @@ Terrain::Terrain(const HeightField& f, BorderSlope border)
     }
 }
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

@@ -8,7 +8,7 @@
 #include "snowshed/core/vec.hpp"
 #include "snowshed/geometry/height_field.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 
 /// Slopes at the first row and column of the grid. AvaFrame 2.1 takes these nodes as level.
 enum class BorderSlope { one_sided, level_in_the_south_west };
@@ -23,7 +23,7 @@ class Terrain {
     double area;              // m2, of the ground within half a cell of the node
   };
 
-  explicit Terrain(const HeightField& field, BorderSlope border = BorderSlope::one_sided);
+  explicit Terrain(const geometry::HeightField& field, BorderSlope border = BorderSlope::one_sided);
 
   int columns() const { return columns_; }
   int rows() const { return rows_; }
@@ -37,14 +37,16 @@ class Terrain {
   const Node* nodes() const { return nodes_.data(); }
 
   /// The position of a point in the grid; outside if it lies beyond the last nodes.
-  CellPosition place(double x, double y) const {
-    return find_cell(x * per_cell_, y * per_cell_, columns_, rows_);
+  geometry::CellPosition place(double x, double y) const {
+    return geometry::find_cell(x * per_cell_, y * per_cell_, columns_, rows_);
   }
 
   /// Whether the south-west node of a cell is known.
-  bool known(const CellPosition& p) const { return !std::isnan(node(p.column, p.row).height); }
+  bool known(const geometry::CellPosition& p) const {
+    return !std::isnan(node(p.column, p.row).height);
+  }
 
-  double height(const CellPosition& p) const {
+  double height(const geometry::CellPosition& p) const {
     const Node* a = &nodes_[index(p.column, p.row)];
     const Node* b = a + columns_;
     const double w0 = (1 - p.east) * (1 - p.north), w1 = p.east * (1 - p.north),
@@ -53,7 +55,7 @@ class Terrain {
   }
 
   /// The upward unit normal.
-  Vec3 normal(const CellPosition& p) const {
+  Vec3 normal(const geometry::CellPosition& p) const {
     const Node* a = &nodes_[index(p.column, p.row)];
     const Node* b = a + columns_;
     const double w0 = (1 - p.east) * (1 - p.north), w1 = p.east * (1 - p.north),
@@ -75,4 +77,4 @@ class Terrain {
   std::vector<Node> nodes_;
 };
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

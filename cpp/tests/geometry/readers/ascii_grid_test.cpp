@@ -7,14 +7,14 @@
 #include "io/temporary_folder.hpp"
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 const std::string good =
     "NCOLS 3\nnrows 2\nxllcorner 1000\nyllcorner 2000\ncellsize 10\nnodata_value -9\n"
     "1 2 3\n4 5 -9\n";
 
-class AsciiGrid : public TemporaryFolder {
+class AsciiGrid : public io::TemporaryFolder {
  protected:
   HeightField read(const std::string& text) {
     write_plainly(path("a.asc"), text);
@@ -26,7 +26,7 @@ std::string replaced(std::string text, const std::string& old, const std::string
   return text.replace(text.find(old), old.size(), by);
 }
 
-TEST_F(AsciiGrid, NodesAreTheMiddlesOfCellsAndTheFirstRowIsTheSouthernOne) {
+TEST_F(AsciiGrid, NodesAreCellCentersAndTheFirstRowIsTheSouthernmost) {
   const HeightField f = read(good);
   EXPECT_EQ(f.columns, 3);
   EXPECT_EQ(f.rows, 2);
@@ -38,7 +38,7 @@ TEST_F(AsciiGrid, NodesAreTheMiddlesOfCellsAndTheFirstRowIsTheSouthernOne) {
   EXPECT_DOUBLE_EQ(read(replaced(good, "xllcorner", "xllcenter")).west, 1000);
 }
 
-TEST_F(AsciiGrid, WhatIsNotANumberIsMissingWhateverTheHeaderSays) {
+TEST_F(AsciiGrid, NanIsMissingWhateverTheHeaderSays) {
   const HeightField f = read(replaced(replaced(good, "value -9", "value nan"), "5 -9", "NaN -9"));
   EXPECT_TRUE(std::isnan(f.height(1, 0)));
   EXPECT_DOUBLE_EQ(f.height(2, 0), -9);
@@ -60,11 +60,11 @@ TEST_F(AsciiGrid, MissingValuesAreComparedInSinglePrecisionAsGdalDoes) {
   }
 }
 
-TEST_F(AsciiGrid, SquareCellsMayBeGivenAlongBothAxes) {
+TEST_F(AsciiGrid, CellSizesMayBeGivenPerAxis) {
   EXPECT_DOUBLE_EQ(read(replaced(good, "cellsize 10", "dx 10\nDY 10.0")).cell, 10);
 }
 
-TEST_F(AsciiGrid, TellsWhatItAssumed) {
+TEST_F(AsciiGrid, CountsItsAssumptions) {
   write_plainly(path("a.asc"),
                 "ncols 2\nnrows 2\nxllcorner 0,5\nyllcorner 0\ncellsize 1\n"
                 "1,25 2\n3 -9999\n");
@@ -80,7 +80,7 @@ TEST_F(AsciiGrid, LinesMayBreakAnywhere) {
   EXPECT_EQ(read(replaced(good, "1 2 3\n4", "1\n2 3 4")).heights.size(), 6u);
 }
 
-TEST_F(AsciiGrid, RefusesWhatIsNoGrid) {
+TEST_F(AsciiGrid, RefusesInvalidGrids) {
   for (const auto& [old, by] : std::vector<std::pair<std::string, std::string>>{
            {"NCOLS 3", "ncols 1"},
            {"NCOLS 3", "ncols 1e300"},
@@ -104,4 +104,4 @@ TEST_F(AsciiGrid, RefusesWhatIsNoGrid) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::geometry

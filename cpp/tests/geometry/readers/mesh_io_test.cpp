@@ -7,7 +7,7 @@
 
 #include "geometry/mesh_testing.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 using namespace geometry_testing;
@@ -136,8 +136,8 @@ TEST_F(MeshIo, QuadsBecomeTwoTriangles) {
 }
 
 // A trough whose ends are polygons of eight corners, and a plate with a hole that a cut joins to
-// its outline, as OBJ and as PLY. The polygons begin at any of their corners.
-TEST_F(MeshIo, ConcavePolygonsAreWhatTheyLookLike) {
+// its outline, as OBJ and as PLY. Each polygon is tried from each of its corners.
+TEST_F(MeshIo, ConcavePolygonsAreTriangulated) {
   struct Case {
     std::vector<std::array<double, 2>> outline;
     double area;
@@ -189,7 +189,7 @@ TEST_F(MeshIo, ConcavePolygonsAreWhatTheyLookLike) {
     }
 }
 
-TEST_F(MeshIo, RefusesFilesThatAreNotThereOrNotMeshes) {
+TEST_F(MeshIo, RefusesMissingFilesAndOtherTypes) {
   expect_input_error([&] { read_mesh(dir.path() / "none.stl"); }, "no such file");
   std::filesystem::create_directories(dir.path() / "folder.stl");
   expect_input_error([&] { read_mesh(dir.path() / "folder.stl"); }, "regular file");
@@ -275,4 +275,4 @@ TEST_F(MeshIo, SurvivesDamage) {
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::geometry

@@ -3,7 +3,7 @@
 #include "geometry/geometry_testing.hpp"
 #include "geometry/readers/npy_testing.hpp"
 
-namespace snowshed {
+namespace snowshed::geometry {
 namespace {
 
 using namespace geometry_testing;
@@ -15,14 +15,14 @@ class NpyIo : public ::testing::Test {
     expect_input_error([&] { read(content); }, expected);
     expect_input_error([&] { read(content); }, "a.npy");
   }
-  const std::vector<double> six = {0, 1, 2, 3, 4, -5.5};
+  const std::vector<double> numbers = {0, 1, 2, 3, 4, -5.5};
   TempDir dir;
 };
 
 TEST_F(NpyIo, ReadsEveryVersionAndType) {
-  const std::vector<float> expected(six.begin(), six.end());
+  const std::vector<float> expected(numbers.begin(), numbers.end());
   for (int major = 1; major <= 3; ++major) {
-    const NpyArray wide = read(npy_file(major, npy_header("<f8", "(2, 3)"), npy_data(six)));
+    const NpyArray wide = read(npy_file(major, npy_header("<f8", "(2, 3)"), npy_data(numbers)));
     EXPECT_EQ(wide.shape, (std::vector<std::size_t>{2, 3}));
     EXPECT_EQ(wide.values, expected);
     const NpyArray narrow =
@@ -33,7 +33,7 @@ TEST_F(NpyIo, ReadsEveryVersionAndType) {
 }
 
 TEST_F(NpyIo, RefusesOtherArrays) {
-  const std::string data = npy_data(six);
+  const std::string data = npy_data(numbers);
   expect_refused(npy_file(1, npy_header(">f8", "(2, 3)"), data), "descr");
   expect_refused(npy_file(1, npy_header("<i8", "(2, 3)"), data), "descr");
   expect_refused(npy_file(1, npy_header("|O", "(2, 3)"), data), "descr");
@@ -46,15 +46,16 @@ TEST_F(NpyIo, RefusesOtherArrays) {
 }
 
 TEST_F(NpyIo, RefusesDamagedFiles) {
-  const std::string good = npy_file(1, npy_header("<f8", "(2, 3)"), npy_data(six));
+  const std::string good = npy_file(1, npy_header("<f8", "(2, 3)"), npy_data(numbers));
   expect_refused("", "not a .npy");
   expect_refused("\x93NUMPY", "byte");
   expect_refused(good.substr(0, 30), "header");
   expect_refused(good.substr(0, good.size() - 1), "there are 47");
   expect_refused(good + "x", "there are 49");
-  expect_refused(npy_file(1, npy_header("<f8", "(999999999, 999999999, 999999999)"), npy_data(six)),
-                 "the shape asks for");
-  expect_refused(npy_file(1, npy_header("<f8", "(99999999999999999999, 3)"), npy_data(six)),
+  expect_refused(
+      npy_file(1, npy_header("<f8", "(999999999, 999999999, 999999999)"), npy_data(numbers)),
+      "the shape asks for");
+  expect_refused(npy_file(1, npy_header("<f8", "(99999999999999999999, 3)"), npy_data(numbers)),
                  "shape");
   expect_refused(npy_file(1, npy_header("<f8", "(1, 2)"), npy_data<double>({1, std::nan("")})),
                  "finite");
@@ -64,7 +65,7 @@ TEST_F(NpyIo, RefusesDamagedFiles) {
 }
 
 TEST_F(NpyIo, SurvivesDamage) {
-  const std::string good = npy_file(1, npy_header("<f8", "(2, 3)"), npy_data(six));
+  const std::string good = npy_file(1, npy_header("<f8", "(2, 3)"), npy_data(numbers));
   Random random(16);
   int refused = 0;
   for (int n = 0; n < 500; ++n) {
@@ -80,7 +81,7 @@ TEST_F(NpyIo, SurvivesDamage) {
   EXPECT_GT(refused, 50);
 }
 
-/// Labels of every type come out the same.
+/// Every integer type gives the same labels.
 template <class Integer>
 void expect_labels(const TempDir& dir, const std::string& type) {
   const std::vector<Integer> values = {0, 1, 2, 127, 0, 3};
@@ -101,24 +102,24 @@ TEST_F(NpyIo, ReadsLabelsOfEveryType) {
   expect_labels<std::uint64_t>(dir, "<u8");
 }
 
-TEST_F(NpyIo, RefusesWhatAreNoLabels) {
+TEST_F(NpyIo, RefusesInvalidLabels) {
   const auto expect_no_labels = [&](const std::string& content, const std::string& expected) {
     expect_input_error([&] { read_npy_labels(dir.write("a.npy", content)); }, expected);
   };
-  const std::vector<std::int64_t> two = {1, 2};
-  const auto of = [&](const std::string& type, const std::string& shape, std::int64_t last) {
+  const std::vector<std::int64_t> labels = {1, 2};
+  const auto file_of = [&](const std::string& type, const std::string& shape, std::int64_t last) {
     return npy_file(1, npy_header(type, shape), npy_data<std::int64_t>({1, last}));
   };
-  expect_no_labels(of("<f8", "(1, 1, 2)", 2), "allowed: integers of 1 to 8 bytes");
-  expect_no_labels(of(">i8", "(1, 1, 2)", 2), "descr");
-  expect_no_labels(of("<i8", "(1, 2)", 2), "three counts");
-  expect_no_labels(of("<i8", "(1, 1, 2)", -1), "negative or above");
-  expect_no_labels(of("<i8", "(1, 1, 2)", std::int64_t(1) << 31), "negative or above");
-  expect_no_labels(of("<u8", "(1, 1, 2)", -1), "negative or above");  // 2^64 - 1
-  expect_no_labels(of("<i8", "(999999999, 999999999, 999999999)", 1), "the shape asks for");
-  expect_no_labels(of("<i8", "(1, 1, 3)", 1), "the shape asks for");
-  expect_no_labels(npy_file(2, std::string(100000, ' '), npy_data(two)), "a header of");
+  expect_no_labels(file_of("<f8", "(1, 1, 2)", 2), "allowed: integers of 1 to 8 bytes");
+  expect_no_labels(file_of(">i8", "(1, 1, 2)", 2), "descr");
+  expect_no_labels(file_of("<i8", "(1, 2)", 2), "three counts");
+  expect_no_labels(file_of("<i8", "(1, 1, 2)", -1), "negative or above");
+  expect_no_labels(file_of("<i8", "(1, 1, 2)", std::int64_t(1) << 31), "negative or above");
+  expect_no_labels(file_of("<u8", "(1, 1, 2)", -1), "negative or above");  // 2^64 - 1
+  expect_no_labels(file_of("<i8", "(999999999, 999999999, 999999999)", 1), "the shape asks for");
+  expect_no_labels(file_of("<i8", "(1, 1, 3)", 1), "the shape asks for");
+  expect_no_labels(npy_file(2, std::string(100000, ' '), npy_data(labels)), "a header of");
 }
 
 }  // namespace
-}  // namespace snowshed
+}  // namespace snowshed::geometry

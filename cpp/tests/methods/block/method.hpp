@@ -6,7 +6,7 @@
 #include "methods/block/solver.hpp"
 #include "snowshed/methods/descriptor.hpp"
 
-namespace snowshed::block {
+namespace snowshed::methods::block {
 
 class Descriptor final : public DescriptorBase<Descriptor, Settings> {
  public:
@@ -17,7 +17,8 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
   }
   std::string step_setting() const override { return "time_step"; }
   void validate(const SceneView& scene) const override {
-    if (scene.dimension != 3) throw InputError("/dimension", "a block slides in space; allowed: 3");
+    if (scene.dimension != 3)
+      throw InputError("/dimension", "a block needs three dimensions; allowed: 3");
   }
   std::unique_ptr<Method> build(const SceneView& scene, const Surroundings&) const override {
     return std::make_unique<Solver>(Model{settings_, scene.gravity});
@@ -37,4 +38,4 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
   }
 };
 
-}  // namespace snowshed::block
+}  // namespace snowshed::methods::block

@@ -4,7 +4,7 @@
 #include "snowshed/methods/allowed.hpp"
 #include "snowshed/methods/settings_visitor.hpp"
 
-namespace snowshed::block {
+namespace snowshed::methods::block {
 
 struct Settings {
   double tilt = 30;         // degrees, of the plane; it falls along x
@@ -24,4 +24,4 @@ inline void describe(SettingsVisitor& v, Settings& s) {
   v.integer("threads", s.threads, non_negative.up_to(4096), "Threads; 0: all");
 }
 
-}  // namespace snowshed::block
+}  // namespace snowshed::methods::block

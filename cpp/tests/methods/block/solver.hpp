@@ -11,7 +11,7 @@
 #include "snowshed/methods/field_sources.hpp"
 #include "snowshed/methods/particle_method.hpp"
 
-namespace snowshed::block {
+namespace snowshed::methods::block {
 
 struct Model {
   Settings settings;
@@ -95,10 +95,10 @@ class Solver final : public Method, public SeedsItself, public KeepsEnergy {
   double time_step() const override { return model_.settings.time_step; }
   const StepCounters& counters() const override { return state_.counters; }
 
-  std::vector<FieldInfo> fields() const override {
+  std::vector<particles::FieldInfo> fields() const override {
     return list_fields([this](const auto& visit) { visit_fields(visit); });
   }
-  FieldView field(const std::string& name) const override {
+  particles::FieldView field(const std::string& name) const override {
     return find_field(name, [this](const auto& visit) { visit_fields(visit); });
   }
   const std::vector<std::uint32_t>& order_by_id() const override { return order_.of(state_.id); }
@@ -111,7 +111,6 @@ class Solver final : public Method, public SeedsItself, public KeepsEnergy {
       s.velocities.push_back(state_.velocity[i]);
       s.masses.push_back(state_.mass[i]);
       s.densities.push_back(0);
-      s.pressures.push_back(0);
       s.ids.push_back(state_.id[i]);
       s.events.push_back(state_.event[i]);
     }
@@ -137,12 +136,12 @@ class Solver final : public Method, public SeedsItself, public KeepsEnergy {
     return bytes_of(state_.position, state_.velocity, state_.mass, state_.id, state_.event);
   }
 
-  void save(BinaryWriter& out) const override {
+  void save(io::BinaryWriter& out) const override {
     StateWriter archive(out);
     visit_state(archive, state_);
   }
-  void load(const BinaryReader& in) override { accept(read_state(in)); }
-  void check(const BinaryReader& in) const override { read_state(in); }
+  void load(const io::BinaryReader& in) override { accept(read_state(in)); }
+  void check(const io::BinaryReader& in) const override { read_state(in); }
 
  private:
   template <class Archive, class SomeState>
@@ -154,7 +153,7 @@ class Solver final : public Method, public SeedsItself, public KeepsEnergy {
     archive.numbers("clock", s.time, s.heat);
     archive.counts("counters", s.counters.steps, s.counters.particle_updates, s.next_id);
   }
-  static State read_state(const BinaryReader& in) {
+  static State read_state(const io::BinaryReader& in) {
     const StateReader archive(in);
     State next;
     visit_state(archive, next);
@@ -179,7 +178,8 @@ class Solver final : public Method, public SeedsItself, public KeepsEnergy {
   template <class Visit>
   void visit_fields(Visit visit) const {
     const auto of_each = [&](const char* name, const auto& array) {
-      const FieldInfo info = field_of(quantity(name), FieldType::float64, false);
+      const particles::FieldInfo info =
+          field_of(quantity(name), particles::FieldType::float64, false);
       visit(info, [&] {
         return computed_view(info,
                              values_of_each(size(), 1, [&](std::size_t i) { return array[i]; }));
@@ -188,12 +188,12 @@ class Solver final : public Method, public SeedsItself, public KeepsEnergy {
     of_each("position", state_.position);
     of_each("velocity", state_.velocity);
     of_each("mass", state_.mass);
-    const auto stored = [&](const char* name, const auto& array, FieldType type) {
-      const FieldInfo info = field_of(quantity(name), type, true);
+    const auto stored = [&](const char* name, const auto& array, particles::FieldType type) {
+      const particles::FieldInfo info = field_of(quantity(name), type, true);
       visit(info, [&] { return stored_view(info, array); });
     };
-    stored("id", state_.id, FieldType::uint32);
-    stored("event", state_.event, FieldType::uint16);
+    stored("id", state_.id, particles::FieldType::uint32);
+    stored("event", state_.event, particles::FieldType::uint16);
   }
 
   Model model_;
@@ -201,4 +201,4 @@ class Solver final : public Method, public SeedsItself, public KeepsEnergy {
   IdOrder order_;
 };
 
-}  // namespace snowshed::block
+}  // namespace snowshed::methods::block

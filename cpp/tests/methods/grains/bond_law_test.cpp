@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 namespace {
 
 const BondLaw law{200, 50, 3, 2, 0.5};  // N/m, N/m, N, N, 1
@@ -12,7 +12,7 @@ ContactMotion<double> motion(double gap, double gap_growth, SimdVec<double> shea
   return {gap, gap_growth, {0, 0, 1}, shear, twist};
 }
 
-TEST(BondLaw, LosesWithABondWhatItStoredAndTheWorkSince) {
+TEST(BondLaw, ABrokenBondLosesItsStoredEnergyAndTheLastWork) {
   SimdVec<double> u{0.01, 0, 0};
   bool bonded = true;
   // The gap grows from 0.01 to 0.02, where the bond pulls with 4 N and breaks.
@@ -26,7 +26,7 @@ TEST(BondLaw, LosesWithABondWhatItStoredAndTheWorkSince) {
   EXPECT_EQ(f.heat, 0);
 }
 
-TEST(BondLaw, SlidesWithAFrictionThatWarms) {
+TEST(BondLaw, SlidingFrictionProducesHeat) {
   SimdVec<double> u{0, 0, 0};
   bool bonded = false;
   double heat = 0;
@@ -41,7 +41,7 @@ TEST(BondLaw, SlidesWithAFrictionThatWarms) {
   EXPECT_NEAR(heat, 1 * (0.1 - 0.02), 1e-12);
 }
 
-TEST(BondLaw, LetsGoOfShearWhereSpheresPart) {
+TEST(BondLaw, SeparatedSpheresLoseTheirShear) {
   SimdVec<double> u{0.01, 0, 0};
   bool bonded = false;
   const auto f = law(motion(0.001, 0.002, {0, 0, 0}), u, bonded);
@@ -51,7 +51,7 @@ TEST(BondLaw, LetsGoOfShearWhereSpheresPart) {
   EXPECT_NEAR(f.heat, 0.5 * 50 * 1e-4, 1e-15);
 }
 
-TEST(BondLaw, TurnsShearWithTheContact) {
+TEST(BondLaw, ShearTurnsWithTheContact) {
   SimdVec<double> u{0.01, 0, 0};
   bool bonded = true;
   law(motion(0, 0, {0, 0, 0}, 0.1), u, bonded);
@@ -66,7 +66,7 @@ TEST(BondLaw, TurnsShearWithTheContact) {
   EXPECT_NEAR(u.z, -0.01 * std::sin(0.2), 1e-15);
 }
 
-TEST(BondLaw, WithoutStrengthBearsNoTension) {
+TEST(BondLaw, ABondWithoutStrengthBearsNoTension) {
   BondLaw weak = law;
   weak.tension_limit = weak.shear_limit = 0;
   SimdVec<double> u{0, 0, 0};
@@ -76,4 +76,4 @@ TEST(BondLaw, WithoutStrengthBearsNoTension) {
 }
 
 }  // namespace
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -5,20 +5,20 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/io/binary_archive.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 namespace {
 
-class GrainsCheckpoint : public TemporaryFolder {
+class GrainsCheckpoint : public io::TemporaryFolder {
  protected:
   void save(const Solver& grains) const {
-    BinaryWriter out;
+    io::BinaryWriter out;
     grains.save(out);
     out.save(path("c.bin"));
   }
-  BinaryReader saved() const { return BinaryReader::load(path("c.bin")); }
+  io::BinaryReader saved() const { return io::BinaryReader::load(path("c.bin")); }
 };
 
-Options story(Sides sides) {
+Options three_stage_options(Sides sides) {
   Options o = grains_of(random_snow(15, 5));
   o.settings.density_scaling = 1e3;
   o.settings.damping = 0.2;
@@ -34,60 +34,58 @@ Options story(Sides sides) {
 TEST_F(GrainsCheckpoint, ResumesToTheSameBits) {
   for (const Sides sides : {Sides::walls, Sides::periodic})
     for (const double strength : {1e6, 3e8}) {
-      Options o = story(sides);
-      o.settings.tensile_strength = o.settings.shear_strength = strength;  // also far bonds
-      const auto whole = filled_solver(o);
+      Options o = three_stage_options(sides);
+      o.settings.tensile_strength = o.settings.shear_strength =
+          strength;  // also bonds of distant spheres
+      const auto reference = filled_solver(o);
       for (int part = 0; part < 4; ++part) {
-        take_steps(*whole, 57);
-        save(*whole);
+        take_steps(*reference, 57);
+        save(*reference);
         const auto resumed = make_solver(o);
         resumed->load(saved());
-        EXPECT_EQ(resumed->measures().contacts, whole->measures().contacts);
+        EXPECT_EQ(resumed->measures().contacts, reference->measures().contacts);
         take_steps(*resumed, 120);
-        const auto same = make_solver(o);
-        same->load(saved());
-        take_steps(*same, 120);
-        take_steps(*whole, 120);
-        ASSERT_EQ(whole->time(), resumed->time());
-        ASSERT_EQ(whole->state().positions, resumed->state().positions);
-        ASSERT_EQ(whole->state().velocities, resumed->state().velocities);
-        ASSERT_EQ(whole->energies(), resumed->energies());
-        ASSERT_EQ(whole->measures().bonds, resumed->measures().bonds);
-        ASSERT_EQ(whole->measures().stage, resumed->measures().stage);
-        ASSERT_EQ(whole->measures().top_stress, resumed->measures().top_stress);
+        take_steps(*reference, 120);
+        ASSERT_EQ(reference->time(), resumed->time());
+        ASSERT_EQ(reference->state().positions, resumed->state().positions);
+        ASSERT_EQ(reference->state().velocities, resumed->state().velocities);
+        ASSERT_EQ(reference->energies(), resumed->energies());
+        ASSERT_EQ(reference->measures().bonds, resumed->measures().bonds);
+        ASSERT_EQ(reference->measures().stage, resumed->measures().stage);
+        ASSERT_EQ(reference->measures().top_stress, resumed->measures().top_stress);
       }
     }
 }
 
 TEST_F(GrainsCheckpoint, ResumesToTheSameBitsInEveryKindOfStage) {
-  Options o = story_of_all_kinds();
+  Options o = all_stages_options();
   for (const Sides sides : {Sides::walls, Sides::periodic}) {
     o.settings.sides = sides;
-    const auto whole = filled_solver(o);
-    std::vector<bool> seen(o.loading.size());
-    while (!*whole->at_rest()) {
-      take_steps(*whole, 3);
-      if (*whole->at_rest()) break;
-      const int stage = whole->stage();
-      seen[std::size_t(stage)] = true;
-      save(*whole);
+    const auto reference = filled_solver(o);
+    std::vector<bool> covered(o.loading.size());
+    while (!*reference->at_rest()) {
+      take_steps(*reference, 3);
+      if (*reference->at_rest()) break;
+      const int stage = reference->stage();
+      covered[std::size_t(stage)] = true;
+      save(*reference);
       const auto resumed = make_solver(o);
       resumed->load(saved());
-      for (int i = 0; i < 2000 && whole->stage() == stage; ++i) whole->step();
+      for (int i = 0; i < 2000 && reference->stage() == stage; ++i) reference->step();
       for (int i = 0; i < 2000 && resumed->stage() == stage; ++i) resumed->step();
-      ASSERT_GT(whole->stage(), stage);
-      ASSERT_EQ(whole->time(), resumed->time()) << "stage " << stage;
-      ASSERT_EQ(whole->sphere_positions(), resumed->sphere_positions()) << "stage " << stage;
-      ASSERT_EQ(whole->state().velocities, resumed->state().velocities) << "stage " << stage;
-      ASSERT_EQ(whole->energies(), resumed->energies()) << "stage " << stage;
-      ASSERT_EQ(whole->measures().bonds, resumed->measures().bonds) << "stage " << stage;
+      ASSERT_GT(reference->stage(), stage);
+      ASSERT_EQ(reference->time(), resumed->time()) << "stage " << stage;
+      ASSERT_EQ(reference->sphere_positions(), resumed->sphere_positions()) << "stage " << stage;
+      ASSERT_EQ(reference->state().velocities, resumed->state().velocities) << "stage " << stage;
+      ASSERT_EQ(reference->energies(), resumed->energies()) << "stage " << stage;
+      ASSERT_EQ(reference->measures().bonds, resumed->measures().bonds) << "stage " << stage;
     }
-    for (std::size_t i = 0; i < seen.size(); ++i) EXPECT_TRUE(seen[i]) << "stage " << i;
+    for (std::size_t i = 0; i < covered.size(); ++i) EXPECT_TRUE(covered[i]) << "stage " << i;
   }
 }
 
-TEST_F(GrainsCheckpoint, WithoutGrainsIsRestored) {
-  const Options o = story(Sides::walls);
+TEST_F(GrainsCheckpoint, RestoresASolverWithoutGrains) {
+  const Options o = three_stage_options(Sides::walls);
   save(*make_solver(o));
   const auto other = filled_solver(o);
   other->load(saved());
@@ -96,9 +94,9 @@ TEST_F(GrainsCheckpoint, WithoutGrainsIsRestored) {
   take_steps(*other, 3);
 }
 
-TEST_F(GrainsCheckpoint, OfAnotherSampleIsRefusedAndChangesNothing) {
-  save(*filled_solver(story(Sides::walls)));
-  Options o = story(Sides::walls);
+TEST_F(GrainsCheckpoint, AnotherSampleIsRefusedWithoutChanges) {
+  save(*filled_solver(three_stage_options(Sides::walls)));
+  Options o = three_stage_options(Sides::walls);
   o.sample = make_sample(random_snow(12, 4));
   const auto other = filled_solver(o);
   const ParticleState before = other->state();
@@ -107,11 +105,11 @@ TEST_F(GrainsCheckpoint, OfAnotherSampleIsRefusedAndChangesNothing) {
   take_steps(*other, 3);
 }
 
-/// Copies an archive with one number of a section changed.
+/// Copies an archive with a changed number in a section.
 template <class T>
-void forge(const BinaryReader& in, const std::string& section, std::size_t at, T value,
+void forge(const io::BinaryReader& in, const std::string& section, std::size_t at, T value,
            const std::filesystem::path& to) {
-  BinaryWriter out;
+  io::BinaryWriter out;
   const auto copy = [&](const char* name, auto zero) {
     auto values = in.get<decltype(zero)>(name);
     if constexpr (std::is_same_v<decltype(zero), T>)
@@ -129,17 +127,17 @@ void forge(const BinaryReader& in, const std::string& section, std::size_t at, T
   out.save(to);
 }
 
-TEST_F(GrainsCheckpoint, ThatIsForgedIsRefused) {
-  const Options o = story(Sides::walls);
+TEST_F(GrainsCheckpoint, ForgedFilesAreRefused) {
+  const Options o = three_stage_options(Sides::walls);
   const auto grains = filled_solver(o);
   take_steps(*grains, 50);
   save(*grains);
-  const BinaryReader sound = saved();
+  const io::BinaryReader intact = saved();
   const double nan = std::nan("");
   const auto refused = [&](const std::string& section, std::size_t at, auto value) {
-    forge(sound, section, at, value, path("forged.bin"));
+    forge(intact, section, at, value, path("forged.bin"));
     const auto other = make_solver(o);
-    EXPECT_THROW(other->load(BinaryReader::load(path("forged.bin"))), InputError)
+    EXPECT_THROW(other->load(io::BinaryReader::load(path("forged.bin"))), InputError)
         << section << " " << at;
     EXPECT_EQ(other->size(), 0u);
   };
@@ -163,4 +161,4 @@ TEST_F(GrainsCheckpoint, ThatIsForgedIsRefused) {
 }
 
 }  // namespace
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -5,7 +5,7 @@
 #include "methods/grains/grains_testing.hpp"
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 namespace {
 
 /// Two blocks of n^3 voxels, one on top of the other, with air around.
@@ -17,7 +17,7 @@ LabelImage two_blocks(std::size_t n) {
   });
 }
 
-TEST(GrainClumps, AreTheShellsOfBlocksWithTheMassOfAllVoxels) {
+TEST(Clumps, BlocksBecomeShellsWithTheMassOfAllVoxels) {
   for (const std::size_t n : {1, 2, 3, 6}) {
     const Sample sample = make_sample(two_blocks(n));
     ASSERT_EQ(sample.clumps.size(), 2u);
@@ -31,14 +31,14 @@ TEST(GrainClumps, AreTheShellsOfBlocksWithTheMassOfAllVoxels) {
     }
     EXPECT_EQ(sample.bonds.size(), n * n);
     // Clumps are in the order of labels: the block 7, which is on top, is the first.
-    EXPECT_NEAR(sample.clumps[0].centre.z() - sample.clumps[1].centre.z(), side, 1e-15);
+    EXPECT_NEAR(sample.clumps[0].center.z() - sample.clumps[1].center.z(), side, 1e-15);
     for (const BondedPair& bond : sample.bonds)
       EXPECT_NEAR((sample.spheres[bond.first] - sample.spheres[bond.second]).norm(),
                   2 * sample.radius, 1e-15);
   }
 }
 
-TEST(GrainClumps, OfARodHaveTheInertiaOfABox) {
+TEST(Clumps, ARodHasTheInertiaOfABox) {
   const Sample sample =
       make_sample(image_of(8, 2, 3, [](std::size_t, std::size_t, std::size_t) { return 1; }));
   const double a = 8 * test_voxel, b = 2 * test_voxel, c = 3 * test_voxel, m = a * b * c;
@@ -49,7 +49,7 @@ TEST(GrainClumps, OfARodHaveTheInertiaOfABox) {
   EXPECT_EQ(sample.box, Vec3(a, b, c));
 }
 
-TEST(GrainClumps, AreMeasuredBeforeTheyAreMade) {
+TEST(Clumps, TheMeasuredSizeMatchesTheSample) {
   const LabelImage image = random_snow(16, 5);
   const Sample sample = make_sample(image);
   const SampleSize size = measure_sample(image);
@@ -59,7 +59,7 @@ TEST(GrainClumps, AreMeasuredBeforeTheyAreMade) {
   EXPECT_GE(size.bytes, filled_solver(grains_of(image))->bytes());
 }
 
-TEST(GrainClumps, RefuseImagesThatAreNotSound) {
+TEST(Clumps, InvalidImagesAreRefused) {
   const auto uniform = [](int label) {
     return image_of(2, 2, 2, [label](std::size_t, std::size_t, std::size_t) { return label; });
   };
@@ -76,4 +76,4 @@ TEST(GrainClumps, RefuseImagesThatAreNotSound) {
 }
 
 }  // namespace
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

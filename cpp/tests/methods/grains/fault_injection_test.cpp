@@ -1,11 +1,11 @@
 // Lack of memory with grains: every allocation fails once in a run in which bonds break and pairs
-// are searched again. Each failed call must leave the grains as they were, and the run must end
+// are searched again. Each failed call must leave the grains unchanged, and the run must end
 // with the same bits.
 #include "io/temporary_folder.hpp"
-#include "methods/fault_story.hpp"
+#include "methods/call_sequence.hpp"
 #include "methods/grains/grains_testing.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 namespace {
 
 std::unique_ptr<Solver> weak_grains() {
@@ -18,8 +18,8 @@ std::unique_ptr<Solver> weak_grains() {
   return make_solver(o);
 }
 
-struct GrainsStory : FaultStory<Solver> {
-  explicit GrainsStory(std::filesystem::path file) : FaultStory(weak_grains(), std::move(file)) {
+struct GrainsCalls : CallSequence<Solver> {
+  explicit GrainsCalls(std::filesystem::path file) : CallSequence(weak_grains(), std::move(file)) {
     call([](Solver& m) { m.add(m.seed()); });
     take_steps(30);
     save();
@@ -32,33 +32,33 @@ struct GrainsStory : FaultStory<Solver> {
   }
 };
 
-void expect_same_grains(const Solver& now, const Solver& wanted) {
-  const ParticleState a = now.state(), b = wanted.state();
+void expect_same_grains(const Solver& actual, const Solver& expected) {
+  const ParticleState a = actual.state(), b = expected.state();
   ASSERT_EQ(a.ids, b.ids);
   EXPECT_TRUE(a.positions == b.positions);
   EXPECT_TRUE(a.velocities == b.velocities);
-  EXPECT_EQ(now.time(), wanted.time());
-  EXPECT_EQ(now.counters().steps, wanted.counters().steps);
-  EXPECT_EQ(now.counters().sorts, wanted.counters().sorts);
-  EXPECT_EQ(now.energies(), wanted.energies());
-  EXPECT_EQ(now.measures().bonds, wanted.measures().bonds);
-  EXPECT_EQ(now.measures().stage, wanted.measures().stage);
+  EXPECT_EQ(actual.time(), expected.time());
+  EXPECT_EQ(actual.counters().steps, expected.counters().steps);
+  EXPECT_EQ(actual.pair_searches(), expected.pair_searches());
+  EXPECT_EQ(actual.energies(), expected.energies());
+  EXPECT_EQ(actual.measures().bonds, expected.measures().bonds);
+  EXPECT_EQ(actual.measures().stage, expected.measures().stage);
 }
 
-class GrainsFaults : public TemporaryFolder {};
+class GrainsFaultInjection : public io::TemporaryFolder {};
 
-TEST_F(GrainsFaults, LeaveNoTrace) {
-  GrainsStory whole(path("whole")), faulty(path("faulty"));
+TEST_F(GrainsFaultInjection, FailedAllocationsLeaveTheStateUnchanged) {
+  GrainsCalls reference(path("reference")), faulty(path("faulty"));
   std::int64_t max_broken = 0;
-  const int faults = fail_every_allocation(whole, faulty, expect_same_grains, [&](const Solver& m) {
-    max_broken = std::max(max_broken, m.measures().broken_in_tension);
-  });
+  const int faults = fail_every_allocation(
+      reference, faulty, expect_same_grains,
+      [&](const Solver& m) { max_broken = std::max(max_broken, m.measures().broken_in_tension); });
   if (HasFailure()) return;
   EXPECT_GT(max_broken, 0);
-  EXPECT_GT(whole.method->counters().sorts, 0);
+  EXPECT_GT(reference.method->pair_searches(), 0);
   RecordProperty("faults", faults);
   EXPECT_GE(faults, 200);
 }
 
 }  // namespace
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -5,7 +5,7 @@
 
 #include "methods/grains/grains_testing.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 namespace {
 
 constexpr double diameter = test_voxel, face = diameter * diameter;
@@ -20,7 +20,7 @@ Options bonded_blocks(std::size_t n) {
 
 double normal_stiffness(const Options& o) { return o.settings.elastic_modulus * 0.5 * diameter; }
 
-TEST(GrainForces, OfAStretchedBondBreakAtTheStrengthTimesItsArea) {
+TEST(Forces, AStretchedBondBreaksAtStrengthTimesArea) {
   for (const std::size_t n : {1, 3, 5}) {
     const Options o = bonded_blocks(n);
     const double limit = o.settings.tensile_strength * face / normal_stiffness(o);
@@ -38,11 +38,11 @@ TEST(GrainForces, OfAStretchedBondBreakAtTheStrengthTimesItsArea) {
     EXPECT_EQ(grains.state.bodies[0].force, Vec3::Zero());
     grains.state.bodies[1].position.z() -= 0.5 * limit;
     grains.evaluate();
-    EXPECT_EQ(grains.state.bodies[0].force, Vec3::Zero()) << "it is lost for good";
+    EXPECT_EQ(grains.state.bodies[0].force, Vec3::Zero()) << "a broken bond stays broken";
   }
 }
 
-TEST(GrainForces, OfACompressedContactGrowWithTheOverlap) {
+TEST(Forces, ACompressedContactPushesInProportionToItsOverlap) {
   const Options o = bonded_blocks(3);
   PosedGrains grains(o);
   grains.state.bodies[1].position.z() -= 0.01 * diameter;
@@ -51,7 +51,7 @@ TEST(GrainForces, OfACompressedContactGrowWithTheOverlap) {
               1e-10);
 }
 
-/// A bond of n x n pairs that is bent by an angle about an axis in its middle. The spheres of a
+/// A bond of n x n pairs bent by an angle about an axis through its middle. The spheres of a
 /// pair at y from the axis are 2 (r cos(angle / 2) + y sin(angle / 2)) apart along the bisector of
 /// the two bodies. They touch at y cos(angle / 2) - r sin(angle / 2) from the axis. Both are exact
 /// for any angle.
@@ -59,7 +59,7 @@ struct BentBond {
   std::size_t n;
   double stiffness, half;  // N/m, half the angle
 
-  double place(std::size_t i) const { return (double(i) - 0.5 * double(n - 1)) * diameter; }
+  double offset(std::size_t i) const { return (double(i) - 0.5 * double(n - 1)) * diameter; }
   double gap(double y) const {
     const double lost = std::sin(0.5 * half);
     return 2 * y * std::sin(half) - 2 * diameter * lost * lost;
@@ -67,19 +67,19 @@ struct BentBond {
   double moment() const {
     double sum = 0;
     for (std::size_t i = 0; i < n; ++i)
-      sum += gap(place(i)) * (place(i) * std::cos(half) - 0.5 * diameter * std::sin(half));
+      sum += gap(offset(i)) * (offset(i) * std::cos(half) - 0.5 * diameter * std::sin(half));
     return double(n) * stiffness * sum;
   }
   /// Half the angle at which the outer pairs have this gap, rad.
   static double half_angle(std::size_t n, double gap) {
     BentBond bond{n, 0, gap / (double(n - 1) * diameter)};
     for (int k = 0; k < 20; ++k)
-      bond.half += (gap - bond.gap(bond.place(n - 1))) / (double(n - 1) * diameter);
+      bond.half += (gap - bond.gap(bond.offset(n - 1))) / (double(n - 1) * diameter);
     return bond.half;
   }
 };
 
-TEST(GrainForces, OfABentBondBeginToBreakAtTheMomentOfItsOuterPairs) {
+TEST(Forces, ABentBondBreaksFirstAtItsOuterPairs) {
   for (const std::size_t n : {2, 4, 7})
     for (const double strength : {1e6, 1e3}) {
       Options o = bonded_blocks(n);
@@ -88,7 +88,7 @@ TEST(GrainForces, OfABentBondBeginToBreakAtTheMomentOfItsOuterPairs) {
       for (const double share : {1 - 1e-7, 1 + 1e-7}) {
         PosedGrains grains(o);
         GrainBody& upper = grains.state.bodies[1];
-        const Vec3 hinge = upper.position - Vec3(0, 0, diameter);  // the middle of the bond
+        const Vec3 hinge = upper.position - Vec3(0, 0, diameter);  // middle of the bond
         const BentBond bond{n, normal_stiffness(o), BentBond::half_angle(n, share * limit)};
         const Orientation turn(Eigen::AngleAxisd(2 * bond.half, Vec3::UnitX()));
         upper.position = hinge + turn * Vec3(upper.position - hinge);
@@ -111,7 +111,7 @@ TEST(GrainForces, OfABentBondBeginToBreakAtTheMomentOfItsOuterPairs) {
     }
 }
 
-TEST(GrainForces, OfAShearedBondBreakAtTheStrengthTimesItsArea) {
+TEST(Forces, AShearedBondBreaksAtStrengthTimesArea) {
   for (const std::size_t n : {1, 4}) {
     Options o = bonded_blocks(n);
     o.settings.shear_strength = 3e5;
@@ -131,7 +131,7 @@ TEST(GrainForces, OfAShearedBondBreakAtTheStrengthTimesItsArea) {
   }
 }
 
-TEST(GrainForces, OfShearUnderPressureAreRaisedByFrictionAndFallToIt) {
+TEST(Forces, PressureRaisesTheShearLimitAndFrictionRemains) {
   Options o = bonded_blocks(3);
   o.settings.friction = 0.4;
   const double overlap = 1e-3 * diameter, push = normal_stiffness(o) * overlap;
@@ -149,7 +149,7 @@ TEST(GrainForces, OfShearUnderPressureAreRaisedByFrictionAndFallToIt) {
   EXPECT_NEAR(grains.state.bodies[0].force.x() / (9 * 0.4 * push), 1, 1e-10);
 }
 
-TEST(GrainForces, ObeyNewtonsThirdLawAndBalanceTheirMoments) {
+TEST(Forces, ActionEqualsReactionInForceAndMoment) {
   PosedGrains grains(bonded_blocks(3));
   GrainBody &a = grains.state.bodies[0], &b = grains.state.bodies[1];
   b.position += Vec3(2e-8, -3e-8, 1e-8);
@@ -162,7 +162,7 @@ TEST(GrainForces, ObeyNewtonsThirdLawAndBalanceTheirMoments) {
   EXPECT_LT(moment.norm(), 1e-12 * a.torque.norm());
 }
 
-TEST(GrainForces, OfShearTurnWithThePair) {
+TEST(Forces, ShearTurnsWithThePair) {
   const Options o = bonded_blocks(2);
   PosedGrains grains(o);
   grains.state.bodies[1].velocity.x() = 1e-9;
@@ -186,7 +186,7 @@ TEST(GrainForces, OfShearTurnWithThePair) {
   EXPECT_NEAR(grains.state.bodies[0].force.x() / before, 0, 1e-3);
 }
 
-TEST(GrainForces, OfPlatesAndWallsAreThoseOfSpheresOfTheSameSize) {
+TEST(Forces, PlatesAndWallsPushLikeSpheresOfTheSameSize) {
   Options o = grains_of(image_of(3, 3, 3, [](auto, auto, auto) { return 1; }));
   PosedGrains grains(o);
   grains.evaluate();
@@ -202,4 +202,4 @@ TEST(GrainForces, OfPlatesAndWallsAreThoseOfSpheresOfTheSameSize) {
 }
 
 }  // namespace
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

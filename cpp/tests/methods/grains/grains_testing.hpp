@@ -11,7 +11,7 @@
 #include "snowshed/methods/grains/listing.hpp"
 #include "snowshed/methods/grains/state.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 
 inline constexpr double test_voxel = 5e-5;  // m
 
@@ -60,6 +60,7 @@ inline LabelImage random_snow(std::size_t n, double grain, double pores = 0.35) 
 
 inline Options grains_of(const LabelImage& image) {
   Options o;
+  o.gravity = 0;
   o.sample = make_sample(image);
   o.settings.threads = 1;
   o.settings.damping = 0;
@@ -67,7 +68,7 @@ inline Options grains_of(const LabelImage& image) {
 }
 
 /// A loading with one stage of each kind, each tens of steps long.
-inline Options story_of_all_kinds() {
+inline Options all_stages_options() {
   Options o = grains_of(random_snow(26, 6));
   o.settings.density_scaling = 1e3;
   o.settings.damping = 0.2;
@@ -97,10 +98,10 @@ inline void load_all(Method& method, int max_steps) {
 }
 
 inline std::map<std::string, double> energies_of(const Method& method) {
-  std::map<std::string, double> found;
+  std::map<std::string, double> energies;
   for (const auto& [name, joules] : capability<KeepsEnergy>(method)->energies())
-    found[name] = joules;
-  return found;
+    energies[name] = joules;
+  return energies;
 }
 
 /// Grains at rest. A test sets poses and velocities, and then evaluates the forces.
@@ -117,7 +118,7 @@ struct PosedGrains {
     state.bonds = std::int64_t(bonds.size());
     Listing listing = listing_of(model, std::move(poses), state.boundary, bonds);
     state.pairs = std::move(listing.pairs);
-    work.groups_of = std::move(listing.groups_of);
+    work.groups_by_body = std::move(listing.groups_by_body);
     work.results = std::move(listing.results);
     work.frames.resize(state.bodies.size() + 2);
   }
@@ -128,4 +129,4 @@ struct PosedGrains {
   Workspace work;
 };
 
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

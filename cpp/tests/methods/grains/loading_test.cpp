@@ -4,7 +4,7 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/methods/scene_parts.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 namespace {
 
 /// A bar, n x n voxels wide, that fills the box and consists of two grains bonded in the middle.
@@ -17,7 +17,7 @@ Options bar(std::size_t n, std::size_t height) {
   return o;
 }
 
-TEST(GrainLoading, ABarBreaksInTensionAtItsStrength) {
+TEST(Loading, ABarBreaksInTensionAtItsStrength) {
   Options o = bar(4, 6);
   o.loading = {{LoadingKind::stretch, 0.005, 0.01, 0}};
   const auto grains = filled_solver(o);
@@ -31,7 +31,7 @@ TEST(GrainLoading, ABarBreaksInTensionAtItsStrength) {
   EXPECT_NEAR(grains->measures().top_stress, 0, 0.05 * peak);
 }
 
-TEST(GrainLoading, ALayerBreaksInShearAtItsStrength) {
+TEST(Loading, ALayerBreaksInShearAtItsStrength) {
   Options o = bar(6, 2);
   o.settings.tensile_strength = 1e9;
   o.settings.friction = 0;
@@ -48,7 +48,7 @@ TEST(GrainLoading, ALayerBreaksInShearAtItsStrength) {
   EXPECT_EQ(grains->measures().broken_in_tension, 0);
 }
 
-TEST(GrainLoading, SnowComesBackAsLongAsNoBondBreaks) {
+TEST(Loading, SnowRecoversIfNoBondBreaks) {
   Options o = grains_of(random_snow(18, 5));
   o.settings.damping = 0.2;
   o.energy = true;
@@ -74,7 +74,7 @@ TEST(GrainLoading, SnowComesBackAsLongAsNoBondBreaks) {
   EXPECT_LT(e.at("friction_j") + e.at("damping_j"), 1e-7);
 }
 
-TEST(GrainLoading, SnowBreaksInCompressionAndItsEnergyCloses) {
+TEST(Loading, SnowBreaksInCompressionAndItsEnergyCloses) {
   Options o = grains_of(random_snow(18, 5));
   o.settings.density_scaling = 100;
   o.settings.damping = 0.2;
@@ -95,7 +95,7 @@ TEST(GrainLoading, SnowBreaksInCompressionAndItsEnergyCloses) {
   EXPECT_LT(std::abs(e.at("residual_j")) / e.at("boundary_work_j"), 0.01);
 }
 
-TEST(GrainLoading, AStressEndsAStage) {
+TEST(Loading, AStressEndsAStage) {
   Options o = grains_of(random_snow(15, 5));
   o.settings.damping = 0.2;
   o.loading = {{LoadingKind::compress, 0.05, 0.2, 5e4}, {LoadingKind::unload, 0.05, 0.2, 2e4}};
@@ -106,7 +106,7 @@ TEST(GrainLoading, AStressEndsAStage) {
   EXPECT_NEAR(grains->measures().top_stress, 2e4, 1e4);
 }
 
-TEST(GrainLoading, ShearKeepsTheNormalStressThatIsAskedFor) {
+TEST(Loading, ShearKeepsTheRequestedNormalStress) {
   Options o = grains_of(random_snow(15, 5, 0.0));
   o.settings.sides = Sides::periodic;
   o.settings.damping = 0.4;
@@ -129,7 +129,7 @@ TEST(GrainLoading, ShearKeepsTheNormalStressThatIsAskedFor) {
   EXPECT_LT(std::abs(e.at("residual_j")) / std::abs(e.at("boundary_work_j")), 0.01);
 }
 
-TEST(GrainLoading, APeriodThatShrinksPressesLikeWalls) {
+TEST(Loading, ShrinkingPeriodicSidesPressLikeWalls) {
   for (const Sides sides : {Sides::walls, Sides::periodic}) {
     // A full block of grains: an elastic solid.
     Options o = grains_of(image_of(
@@ -154,7 +154,7 @@ TEST(GrainLoading, APeriodThatShrinksPressesLikeWalls) {
   }
 }
 
-TEST(GrainLoading, AConeMeetsResistance) {
+TEST(Loading, AConeMeetsResistance) {
   Options o = grains_of(random_snow(18, 5, 0.0));
   o.settings.density_scaling = 100;
   o.settings.damping = 0.2;
@@ -174,7 +174,7 @@ TEST(GrainLoading, AConeMeetsResistance) {
   EXPECT_LT(std::abs(e.at("residual_j")) / e.at("boundary_work_j"), 0.01);
 }
 
-TEST(GrainLoading, StagesThatCannotBeAreRefused) {
+TEST(Loading, ImpossibleStagesAreRefused) {
   Options o = grains_of(random_snow(12, 5));
   const auto refused = [&](std::vector<LoadingStage> stages) {
     o.loading = std::move(stages);
@@ -188,4 +188,4 @@ TEST(GrainLoading, StagesThatCannotBeAreRefused) {
 }
 
 }  // namespace
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

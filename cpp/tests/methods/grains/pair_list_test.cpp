@@ -5,7 +5,7 @@
 #include "methods/grains/grains_testing.hpp"
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 namespace {
 
 /// A sample whose grains are scattered and turned, some beyond the box.
@@ -37,10 +37,10 @@ struct ScatteredGrains {
             model.periodic(), model.cone,
             1000000,          threads};
   }
-  /// All near pairs of grains' spheres, found by comparing each sphere with all others in all near
-  /// images.
+  /// Returns all near pairs of spheres, from a comparison of each sphere with all periodic images
+  /// of the others.
   std::vector<PairKey> by_brute_force() const {
-    std::vector<PairKey> found;
+    std::vector<PairKey> pairs;
     std::vector<Vec3> x;
     const auto& spheres = model.spheres;
     for (std::size_t s = 0; s < spheres.offsets.size(); ++s)
@@ -51,14 +51,15 @@ struct ScatteredGrains {
       for (std::uint32_t b = 0; b < x.size(); ++b)
         for (int i = -images; i <= images; ++i)
           for (int j = -images; j <= images; ++j) {
-            const std::uint32_t of_a = spheres.grain[a], of_b = spheres.grain[b];
-            if (of_a > of_b || (of_a == of_b && (i < 0 || (i == 0 && j <= 0)))) continue;
+            const std::uint32_t grain_a = spheres.grain[a], grain_b = spheres.grain[b];
+            if (grain_a > grain_b || (grain_a == grain_b && (i < 0 || (i == 0 && j <= 0))))
+              continue;
             const Vec3 shift(i * model.box.x(), j * model.box.y(), 0);
             if ((x[b] + shift - x[a]).norm() < 2.4 * model.radius)
-              found.push_back({of_a, of_b, {i, j}, a, b});
+              pairs.push_back({grain_a, grain_b, {i, j}, a, b});
           }
-    std::sort(found.begin(), found.end());
-    return found;
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
   }
 
   Model model;
@@ -66,24 +67,24 @@ struct ScatteredGrains {
   Boundary boundary;
 };
 
-TEST(GrainPairs, AreAllThatAreNear) {
+TEST(PairList, ListsAllNearSpheres) {
   for (const bool periodic : {false, true}) {
     const ScatteredGrains scattered(periodic);
-    std::vector<PairKey> found =
+    std::vector<PairKey> pairs =
         find_pairs(scattered.search(), scattered.poses, scattered.boundary);
-    EXPECT_EQ(found, find_pairs(scattered.search(3), scattered.poses, scattered.boundary));
-    EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
-    found.erase(std::remove_if(found.begin(), found.end(),
+    EXPECT_EQ(pairs, find_pairs(scattered.search(3), scattered.poses, scattered.boundary));
+    EXPECT_TRUE(std::is_sorted(pairs.begin(), pairs.end()));
+    pairs.erase(std::remove_if(pairs.begin(), pairs.end(),
                                [&](const PairKey& key) {
                                  return key.second >= scattered.model.grains.size();
                                }),
-                found.end());
-    EXPECT_GT(found.size(), 50u);
-    EXPECT_TRUE(found == scattered.by_brute_force());
+                pairs.end());
+    EXPECT_GT(pairs.size(), 50u);
+    EXPECT_TRUE(pairs == scattered.by_brute_force());
   }
 }
 
-TEST(GrainPairs, WithPlatesAndWallsAreAllThatAreNear) {
+TEST(PairList, ListsAllNearPlatesAndWalls) {
   const ScatteredGrains scattered(false);
   std::size_t expected = 0;
   const double r = scattered.model.radius;
@@ -100,50 +101,50 @@ TEST(GrainPairs, WithPlatesAndWallsAreAllThatAreNear) {
         for (int j = -20; j < 40; ++j)
           expected += (plate + Vec3((2 * i + 1) * r, (2 * j + 1) * r, 0) - x).norm() < 2.4 * r;
   }
-  const auto found = find_pairs(scattered.search(), scattered.poses, scattered.boundary);
+  const auto pairs = find_pairs(scattered.search(), scattered.poses, scattered.boundary);
   EXPECT_EQ(std::size_t(std::count_if(
-                found.begin(), found.end(),
+                pairs.begin(), pairs.end(),
                 [&](const PairKey& key) { return key.second >= scattered.model.grains.size(); })),
             expected);
 }
 
-TEST(GrainPairs, KeepTheirPastAndTheirBondsFromListToList) {
+TEST(PairList, KeepsHistoriesAndBonds) {
   const ScatteredGrains scattered(true);
-  const auto found = find_pairs(scattered.search(), scattered.poses, scattered.boundary);
+  const auto pairs = find_pairs(scattered.search(), scattered.poses, scattered.boundary);
   std::vector<PairHistory> past;
-  for (std::size_t i = 0; i < found.size(); i += 7)
-    past.push_back({found[i], Vec3(double(i), 1, 2), i % 2 == 0, i % 2 == 0});
+  for (std::size_t i = 0; i < pairs.size(); i += 7)
+    past.push_back({pairs[i], Vec3(double(i), 1, 2), i % 2 == 0, i % 2 == 0});
   // A bonded pair whose spheres have moved apart is kept.
   PairKey far{0, 1, {9, 9}, 0, scattered.model.grains[1].first_sphere};
   past.push_back({far, Vec3(5, 5, 5), true, true});
   std::sort(past.begin(), past.end(),
             [](const PairHistory& x, const PairHistory& y) { return x.key < y.key; });
-  const PairList list = make_list(scattered.search(), found, past);
+  const PairList list = make_list(scattered.search(), pairs, past);
   EXPECT_EQ(list.size() % pairs_at_once, 0u);
-  EXPECT_EQ(list.all().size(), found.size() + 1);
-  const std::vector<PairHistory> kept = list.histories();
-  ASSERT_EQ(kept.size(), past.size());
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    EXPECT_EQ(kept[i].key, past[i].key);
-    EXPECT_EQ(kept[i].shear, past[i].shear);
-    EXPECT_EQ(kept[i].bonded, past[i].bonded);
+  EXPECT_EQ(list.all().size(), pairs.size() + 1);
+  const std::vector<PairHistory> histories = list.histories();
+  ASSERT_EQ(histories.size(), past.size());
+  for (std::size_t i = 0; i < histories.size(); ++i) {
+    EXPECT_EQ(histories[i].key, past[i].key);
+    EXPECT_EQ(histories[i].shear, past[i].shear);
+    EXPECT_EQ(histories[i].bonded, past[i].bonded);
   }
-  // A bond that breaks while its spheres are far apart leaves a pair that is listed as before.
+  // A bond that breaks while its spheres are far apart leaves its pair in the list.
   PairList broken = list;
   std::fill(broken.bonded.begin(), broken.bonded.end(), std::uint8_t(0));
-  EXPECT_EQ(make_list(scattered.search(), found, broken.all()).a, list.a);
+  EXPECT_EQ(make_list(scattered.search(), pairs, broken.all()).a, list.a);
   for (PairHistory& h : past) h.always_listed = h.bonded = false;
-  EXPECT_EQ(make_list(scattered.search(), found, past).all().size(), found.size());
+  EXPECT_EQ(make_list(scattered.search(), pairs, past).all().size(), pairs.size());
 }
 
-TEST(GrainPairs, ThatAreTooManyAreAnError) {
+TEST(PairList, TooManyPairsAreAnError) {
   const ScatteredGrains scattered(false);
   PairSearch search = scattered.search();
   search.max_pairs = 10;
   EXPECT_THROW(find_pairs(search, scattered.poses, scattered.boundary), SimulationError);
 }
 
-TEST(GrainPairs, OfAPeriodAsShortAsASphereAreAnError) {
+TEST(PairList, PeriodsAsShortAsASphereAreAnError) {
   ScatteredGrains scattered(true);
   scattered.boundary.side[1] = 4 * scattered.model.radius;
   EXPECT_THROW(find_pairs(scattered.search(), scattered.poses, scattered.boundary),
@@ -151,4 +152,4 @@ TEST(GrainPairs, OfAPeriodAsShortAsASphereAreAnError) {
 }
 
 }  // namespace
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 namespace {
 
 const Vec3 moments(1.0, 2.3, 3.1);
@@ -22,12 +22,12 @@ Orientation rotate_steps(double dt, int steps) {
 TEST(Rotor, KeepsTheEnergyOfAnAsymmetricBodyOver1e5Steps) {
   Orientation q = rotate_steps(0, 1);
   const double before = energy_of(q);
-  double worst = 0;
+  double max_error = 0;
   for (int i = 0; i < 100000; ++i) {
     rotate_freely(q, momentum, moments, 1e-3);
-    worst = std::max(worst, std::abs(energy_of(q) / before - 1));
+    max_error = std::max(max_error, std::abs(energy_of(q) / before - 1));
   }
-  EXPECT_LT(worst, 1e-6);
+  EXPECT_LT(max_error, 1e-6);
   EXPECT_NEAR(q.norm(), 1, 1e-14);
 }
 
@@ -38,13 +38,13 @@ TEST(Rotor, IsOfSecondOrder) {
   EXPECT_NEAR(std::log2(coarse / fine), 2, 0.05);
 }
 
-TEST(Rotor, GoesBackTheWayItCame) {
+TEST(Rotor, IsTimeReversible) {
   Orientation q = rotate_steps(0.05, 100);
   for (int i = 0; i < 100; ++i) rotate_freely(q, momentum, moments, -0.05);
   EXPECT_LT(q.angularDistance(rotate_steps(0, 1)), 1e-13);
 }
 
-TEST(Rotor, OfABallTurnsAboutItsMomentum) {
+TEST(Rotor, ABallTurnsAboutItsMomentum) {
   Orientation q(1, 0, 0, 0);
   // Turning about one axis after the other is exact if the momentum lies along an axis.
   for (int i = 0; i < 10; ++i) rotate_freely(q, Vec3(0, 0, 2), Vec3(4, 4, 4), 0.1);
@@ -52,4 +52,4 @@ TEST(Rotor, OfABallTurnsAboutItsMomentum) {
 }
 
 }  // namespace
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -5,7 +5,7 @@
 #include "methods/grains/grains_testing.hpp"
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 namespace {
 
 /// One voxel, or a block, in the middle of a wide box.
@@ -17,7 +17,7 @@ LabelImage single_block(std::size_t nx, std::size_t ny, std::size_t nz, std::siz
   });
 }
 
-TEST(Grains, FlyFreelyWithConstantEnergyAndVelocity) {
+TEST(GrainsSolver, FreeGrainsKeepEnergyAndVelocity) {
   Options o = grains_of(single_block(5, 2, 3));
   o.energy = true;
   PosedGrains model(o);
@@ -26,11 +26,11 @@ TEST(Grains, FlyFreelyWithConstantEnergyAndVelocity) {
   const double before = energies_of(*grains).at("kinetic_j");
   take_steps(*grains, 20000);
   EXPECT_NEAR(energies_of(*grains).at("kinetic_j") / before, 1, 1e-12);
-  const Vec3 way = grains->state().positions[0] - model.state.bodies[0].position;
-  EXPECT_TRUE(way.isApprox(grains->time() * Vec3(1e-3, 2e-3, -1e-3), 1e-7));
+  const Vec3 displacement = grains->state().positions[0] - model.state.bodies[0].position;
+  EXPECT_TRUE(displacement.isApprox(grains->time() * Vec3(1e-3, 2e-3, -1e-3), 1e-7));
 }
 
-TEST(Grains, FallAsNewtonSays) {
+TEST(GrainsSolver, FreeFallFollowsNewton) {
   Options o = grains_of(single_block(2, 2, 2));
   o.gravity = 9.81;
   // The scaling multiplies the inertia, so that the weight accelerates the grain 10000 times less.
@@ -45,7 +45,16 @@ TEST(Grains, FallAsNewtonSays) {
   EXPECT_NEAR(damped->state().velocities[0].z() / (-0.7 * 9.81 * damped->time()), 1, 2e-3);
 }
 
-TEST(Grains, ThatCollideKeepMomentumAndEnergy) {
+TEST(GrainsSolver, GrainsFallByDefault) {
+  Options o;
+  o.sample = make_sample(single_block(2, 2, 2));
+  o.settings.damping = 0;
+  const auto grains = filled_solver(o);
+  take_steps(*grains, 500);
+  EXPECT_NEAR(grains->state().velocities[0].z() / (-9.81 * grains->time()), 1, 1e-9);
+}
+
+TEST(GrainsSolver, CollisionsKeepMomentumAndEnergy) {
   Options o = grains_of(image_of(24, 24, 24, [](auto i, auto j, auto k) {
     const bool first = i >= 6 && i < 9 && j >= 8 && j < 11 && k >= 8 && k < 12;
     const bool second = i >= 11 && i < 14 && j >= 10 && j < 14 && k >= 9 && k < 11;
@@ -78,21 +87,21 @@ TEST(Grains, ThatCollideKeepMomentumAndEnergy) {
 Vec3 spin_momentum_of(const Solver& grains, const Options& o, std::size_t grain) {
   const std::vector<Vec3> now = grains.sphere_positions();
   const Clump& clump = o.sample.clumps[grain];
-  const Vec3 centre = grains.state().positions[grain];
+  const Vec3 center = grains.state().positions[grain];
   Mat3 turned = Mat3::Zero(), before = Mat3::Zero();
   for (std::uint32_t s = clump.first_sphere; s < clump.first_sphere + clump.spheres; ++s) {
-    const Vec3 offset = o.sample.spheres[s] - clump.centre;
-    turned += (now[s] - centre) * offset.transpose();
+    const Vec3 offset = o.sample.spheres[s] - clump.center;
+    turned += (now[s] - center) * offset.transpose();
     before += offset * offset.transpose();
   }
   const Mat3 rotation = turned * before.inverse();
-  const FieldView spin = grains.field("angular_velocity");
+  const particles::FieldView spin = grains.field("angular_velocity");
   const double* w = spin.at<double>(grain);
   return o.settings.density *
          (rotation * (clump.inertia * (rotation.transpose() * Vec3(w[0], w[1], w[2]))));
 }
 
-TEST(Grains, ThatSpinKeepEnergyAndAngularMomentumOver1e5Steps) {
+TEST(GrainsSolver, SpinningGrainsKeepEnergyAndAngularMomentumOver1e5Steps) {
   Options o = grains_of(image_of(60, 60, 60, [](auto i, auto j, auto k) {
     const bool first = i >= 24 && i < 28 && j >= 28 && j < 31 && k >= 27 && k < 29;
     const bool second = i >= 29 && i < 31 && j >= 30 && j < 35 && k >= 28 && k < 31;
@@ -111,13 +120,13 @@ TEST(Grains, ThatSpinKeepEnergyAndAngularMomentumOver1e5Steps) {
   const double kinetic = energies_of(*grains).at("kinetic_j");
   const Vec3 spins[2] = {spin_momentum_of(*grains, o, 0), spin_momentum_of(*grains, o, 1)};
   const std::vector<Vec3> start = grains->sphere_positions();
-  double worst = 0;
+  double max_error = 0;
   for (int i = 0; i < 100; ++i) {
     take_steps(*grains, 1000);
-    worst = std::max(worst, std::abs(energies_of(*grains).at("kinetic_j") / kinetic - 1));
+    max_error = std::max(max_error, std::abs(energies_of(*grains).at("kinetic_j") / kinetic - 1));
     ASSERT_EQ(grains->measures().contacts, 0) << "free flight";
   }
-  EXPECT_LT(worst, 1e-6);
+  EXPECT_LT(max_error, 1e-6);
   for (std::size_t g = 0; g < 2; ++g) {
     EXPECT_GT(spins[g].norm(), 0);
     EXPECT_LT((spin_momentum_of(*grains, o, g) - spins[g]).norm(), 1e-9 * spins[g].norm());
@@ -126,7 +135,7 @@ TEST(Grains, ThatSpinKeepEnergyAndAngularMomentumOver1e5Steps) {
   EXPECT_GT(((end[0] - end[1]) - (start[0] - start[1])).norm(), test_voxel) << "it has turned";
 }
 
-/// A block of voxels whose weight, which acts upward, presses it against a flat punch (a cone of 90
+/// A block of voxels. Gravity acts upward and presses it against a flat punch (a cone of 90
 /// degrees).
 struct Slider {
   Slider(std::size_t nx, std::size_t ny, std::size_t nz, double friction, double speed)
@@ -152,7 +161,7 @@ void expect_coulomb(const Slider& s) {
   EXPECT_NEAR((s.v0 - s.velocity().x()) / lost, 1, 1e-3);
 }
 
-TEST(Grains, SlideOnAPlaneAsCoulombSays) {
+TEST(GrainsSolver, SlidingFollowsCoulomb) {
   Slider voxel(1, 1, 1, 0.2, 0.1), block(6, 4, 2, 0.2, 0.1);
   const double until_it_rolls = voxel.v0 / (2.5 * voxel.mu * voxel.g);
   while (voxel.grains->time() < 0.8 * until_it_rolls) voxel.grains->step();
@@ -162,7 +171,7 @@ TEST(Grains, SlideOnAPlaneAsCoulombSays) {
   expect_coulomb(block);
 }
 
-TEST(Grains, RollOnAfterSlidingWithThreeFifthsOfTheirSpeed) {
+TEST(GrainsSolver, SlidingVoxelsEndUpRollingAtThreeFifthsOfTheirSpeed) {
   // Voxels in a row along y, with I = m (2 r)^2 / 6 about the row: the momentum about the line of
   // contact gives v = v0 / (1 + 2/3).
   for (const std::size_t length : {1, 4}) {
@@ -177,9 +186,9 @@ TEST(Grains, RollOnAfterSlidingWithThreeFifthsOfTheirSpeed) {
   }
 }
 
-TEST(Grains, DoTheSameOnAnyNumberOfThreadsWhateverTheStage) {
+TEST(GrainsSolver, ThreadsDoNotChangeTheBitsInAnyStage) {
   for (const Sides sides : {Sides::walls, Sides::periodic}) {
-    Options o = story_of_all_kinds();
+    Options o = all_stages_options();
     o.settings.sides = sides;
     std::vector<std::unique_ptr<Solver>> all;
     for (const int threads : {1, 2, 3}) {
@@ -189,13 +198,13 @@ TEST(Grains, DoTheSameOnAnyNumberOfThreadsWhateverTheStage) {
     int stages = 0;
     while (!*all[0]->at_rest()) {
       const int stage = all[0]->stage();
-      for (const auto& one : all)
-        for (int i = 0; i < 2000 && one->stage() == stage; ++i) one->step();
+      for (const auto& solver : all)
+        for (int i = 0; i < 2000 && solver->stage() == stage; ++i) solver->step();
       ASSERT_GT(all[0]->stage(), stage);
-      for (const auto& one : all) {
-        ASSERT_EQ(one->time(), all[0]->time()) << "stage " << stage;
-        ASSERT_EQ(one->sphere_positions(), all[0]->sphere_positions()) << "stage " << stage;
-        ASSERT_EQ(one->energies(), all[0]->energies()) << "stage " << stage;
+      for (const auto& solver : all) {
+        ASSERT_EQ(solver->time(), all[0]->time()) << "stage " << stage;
+        ASSERT_EQ(solver->sphere_positions(), all[0]->sphere_positions()) << "stage " << stage;
+        ASSERT_EQ(solver->energies(), all[0]->energies()) << "stage " << stage;
       }
       ++stages;
     }
@@ -203,28 +212,29 @@ TEST(Grains, DoTheSameOnAnyNumberOfThreadsWhateverTheStage) {
   }
 }
 
-TEST(Grains, DoTheSameOnAnyNumberOfThreads) {
+TEST(GrainsSolver, ThreadsDoNotChangeTheBits) {
   Options o = grains_of(random_snow(26, 6));
   o.settings.density_scaling = 1e3;
   o.loading = {{LoadingKind::compress, 2, 0.1, 0}};
   o.energy = true;
-  const auto one = filled_solver(o);
-  take_steps(*one, 300);
-  EXPECT_GT(one->measures().contacts, 3 * std::int64_t(pairs_per_thread)) << "or one works alone";
-  EXPECT_GT(one->measures().broken_in_shear, 0);
+  const auto single = filled_solver(o);
+  take_steps(*single, 300);
+  EXPECT_GT(single->measures().contacts, 3 * std::int64_t(pairs_per_thread))
+      << "too few for several threads";
+  EXPECT_GT(single->measures().broken_in_shear, 0);
   for (const int threads : {2, 3}) {
     o.settings.threads = threads;
-    const auto more = filled_solver(o);
-    take_steps(*more, 300);
-    EXPECT_EQ(one->state().positions, more->state().positions);
-    EXPECT_EQ(one->state().velocities, more->state().velocities);
-    EXPECT_EQ(one->sphere_positions(), more->sphere_positions());
-    EXPECT_EQ(one->energies(), more->energies());
-    EXPECT_EQ(one->measures().top_stress, more->measures().top_stress);
+    const auto several = filled_solver(o);
+    take_steps(*several, 300);
+    EXPECT_EQ(single->state().positions, several->state().positions);
+    EXPECT_EQ(single->state().velocities, several->state().velocities);
+    EXPECT_EQ(single->sphere_positions(), several->sphere_positions());
+    EXPECT_EQ(single->energies(), several->energies());
+    EXPECT_EQ(single->measures().top_stress, several->measures().top_stress);
   }
 }
 
-TEST(Grains, AreThoseOfTheSampleAndNoOthers) {
+TEST(GrainsSolver, AcceptsOnlyTheGrainsOfItsSample) {
   const Options o = grains_of(random_snow(12, 5));
   const auto grains = make_solver(o);
   EXPECT_THROW(grains->step(), SimulationError);
@@ -242,7 +252,7 @@ TEST(Grains, AreThoseOfTheSampleAndNoOthers) {
   EXPECT_THROW(grains->add_velocity({}), InputError);
 }
 
-TEST(Grains, ThatAreReplacedBeginAnewWithOtherNumbers) {
+TEST(GrainsSolver, ReplacedGrainsRestartWithNewIds) {
   Options o = grains_of(random_snow(12, 5));
   o.settings.density_scaling = 1e3;
   o.loading = {{LoadingKind::compress, 2, 0.1, 0}};
@@ -258,17 +268,18 @@ TEST(Grains, ThatAreReplacedBeginAnewWithOtherNumbers) {
   EXPECT_EQ(grains->measures().axial_strain, 0);
 }
 
-TEST(Grains, ShowTheirFields) {
+TEST(GrainsSolver, FieldsHaveOneValuePerGrain) {
   const auto grains = filled_solver(grains_of(random_snow(12, 5)));
-  for (const FieldInfo& info : grains->fields())
+  for (const particles::FieldInfo& info : grains->fields())
     EXPECT_EQ(grains->field(info.name).count, grains->size()) << info.name;
-  const FieldView radius = grains->field("equivalent_radius"), mass = grains->field("mass");
+  const particles::FieldView radius = grains->field("equivalent_radius"),
+                             mass = grains->field("mass");
   const double r = *radius.at<double>(0);
   EXPECT_NEAR(917 * 4.18879020478639 * r * r * r / *mass.at<double>(0), 1, 1e-12);
   EXPECT_THROW(grains->field("thickness"), InputError);
 }
 
-TEST(Grains, StayFiniteWhateverTheSettings) {
+TEST(GrainsSolver, StaysFiniteWithExtremeSettings) {
   const LabelImage snow = random_snow(12, 4);
   const LabelImage voxel = single_block(1, 1, 1, 4);
   const double infinite = std::numeric_limits<double>::infinity();
@@ -298,4 +309,4 @@ TEST(Grains, StayFiniteWhateverTheSettings) {
 }
 
 }  // namespace
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

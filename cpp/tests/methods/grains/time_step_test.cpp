@@ -4,10 +4,10 @@
 
 #include "methods/grains/grains_testing.hpp"
 
-namespace snowshed::grains {
+namespace snowshed::methods::grains {
 namespace {
 
-TEST(GrainTimeStep, IsThatOfTheRotationOfAVoxelOnABlock) {
+TEST(GrainsTimeStep, FollowsFromTheRotationOfAVoxelOnABlock) {
   Options o = grains_of(image_of(12, 12, 12, [](auto i, auto j, auto k) {
     const auto middle = [](auto x) { return x >= 4 && x < 7; };
     if (i == 5 && j == 5 && k == 7) return 2;
@@ -21,7 +21,7 @@ TEST(GrainTimeStep, IsThatOfTheRotationOfAVoxelOnABlock) {
   EXPECT_NEAR(filled_solver(o)->time_step() / (3 * std::sqrt(mass / (1.5 * k))), 1, 1e-9);
 }
 
-TEST(GrainTimeStep, IsStableWithTheLargestFactor) {
+TEST(GrainsTimeStep, IsStableWithTheLargestFactor) {
   Options o = grains_of(random_snow(15, 5, 0.0));
   o.settings.courant_factor = 1;
   o.settings.tensile_strength = o.settings.shear_strength = 1e12;
@@ -41,4 +41,4 @@ TEST(GrainTimeStep, IsStableWithTheLargestFactor) {
 }
 
 }  // namespace
-}  // namespace snowshed::grains
+}  // namespace snowshed::methods::grains

@@ -7,13 +7,13 @@
 
 #include "snowshed/core/random.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
 TEST(BlockKey, OrdersAndRestoresCoordinates) {
-  const BlockCoord<3> some[] = {
+  const BlockCoord<3> coordinates[] = {
       {0, 0, 0}, {-1, 2, -3}, {block_coord_limit(0), -block_coord_limit(0), 7}};
-  for (const auto& c : some) EXPECT_EQ(block_coord<3>(block_key<3>(c)), c);
+  for (const auto& c : coordinates) EXPECT_EQ(block_coord<3>(block_key<3>(c)), c);
   const BlockCoord<2> flat{-block_coord_limit(0), block_coord_limit(0)};
   EXPECT_EQ(block_coord<2>(block_key<2>(flat)), flat);
   EXPECT_LT(block_key<3>({-1, 5, 5}), block_key<3>({0, -5, -5}));  // lexicographic
@@ -21,9 +21,9 @@ TEST(BlockKey, OrdersAndRestoresCoordinates) {
 }
 
 template <class Dimension>
-class Layout : public testing::Test {};
+class BlockLayoutTest : public testing::Test {};
 using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
-TYPED_TEST_SUITE(Layout, Dimensions);
+TYPED_TEST_SUITE(BlockLayoutTest, Dimensions);
 
 /// Expects that the layout has the right neighbours for all blocks.
 template <int D>
@@ -44,15 +44,15 @@ void expect_connected(const BlockLayout<D>& layout, const std::set<BlockKey>& ke
   for (std::size_t i = 0; i < layout.grid_blocks.size(); ++i)
     for (int n = 0; n < neighbour_count<D>; ++n) {
       const BlockKey key = around(layout.grid_blocks[i], n);
-      const std::int32_t found = layout.around_nodes[i][n];
+      const std::int32_t neighbour = layout.around_nodes[i][n];
       if (keys.count(key))
-        EXPECT_EQ(blocks[found], key);
+        EXPECT_EQ(blocks[neighbour], key);
       else
-        EXPECT_EQ(found, -1);
+        EXPECT_EQ(neighbour, -1);
     }
 }
 
-TYPED_TEST(Layout, ConnectsEveryBlockWithAllAroundIt) {
+TYPED_TEST(BlockLayoutTest, ConnectsEveryBlockWithItsNeighbours) {
   constexpr int D = TypeParam::value;
   Random random(1);
   std::set<BlockKey> keys;
@@ -65,9 +65,9 @@ TYPED_TEST(Layout, ConnectsEveryBlockWithAllAroundIt) {
   std::vector<BlockKey> blocks(keys.begin(), keys.end());
   std::vector<std::int32_t> starts(blocks.size() + 1);
   for (std::size_t i = 0; i < starts.size(); ++i) starts[i] = int(3 * i);
-  const auto one = BlockLayout<D>::of({blocks[0]}, {0, 1}, 1);
-  for (const BlockLayout<D>& before : {BlockLayout<D>::of(blocks, starts, 1), one}) {
-    SCOPED_TRACE(before.first.size());  // the same blocks, or others
+  const auto single = BlockLayout<D>::of({blocks[0]}, {0, 1}, 1);
+  for (const BlockLayout<D>& before : {BlockLayout<D>::of(blocks, starts, 1), single}) {
+    SCOPED_TRACE(before.first.size());  // the same blocks, or a single block
     const BlockLayout<D> layout = before.rearranged(blocks, starts, 2);
     EXPECT_EQ(layout.particle_blocks, blocks);
     EXPECT_EQ(layout.first, starts);
@@ -76,4 +76,4 @@ TYPED_TEST(Layout, ConnectsEveryBlockWithAllAroundIt) {
 }
 
 }  // namespace
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -6,7 +6,7 @@
 #include "snowshed/geometry/bounds.hpp"
 #include "snowshed/geometry/combine.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
 // --- Coulomb friction -------------------------------------------------------------------------
@@ -21,11 +21,11 @@ struct Slide {
   Transfer transfer = Transfer::flip;
 };
 
-/// A slab 5 cm thick that is released on a ramp of 40 degrees.
+/// A slab, 5 cm thick, released on a ramp of 40 degrees.
 std::unique_ptr<Solver> slab_on_ramp(const Slide& slide) {
   const Options o = options_for({2, Precision::float32, slide.transfer});
   auto solver = make_solver(
-      o, {fixed(make_plane(Vec3::Zero(), ramp_normal), slide.condition, slide.friction)});
+      o, {fixed(geometry::make_plane(Vec3::Zero(), ramp_normal), slide.condition, slide.friction)});
   ParticleBatch batch = filled_box(2, Vec3::Zero(), Vec3(slide.length, 0, 0.05), 0.005);
   for (Vec3& x : batch.positions) x = x.x() * ramp_slope + x.z() * ramp_normal;
   solver->add(batch);
@@ -49,21 +49,21 @@ double by_coulomb(double friction) { return 9.81 * (std::sin(tilt) - friction * 
 class LongSlab : public testing::TestWithParam<double> {};
 INSTANTIATE_TEST_SUITE_P(Friction, LongSlab, testing::Values(0.0, 0.3, 0.6, 0.8));
 
-TEST_P(LongSlab, SlidesAsCoulombSays) {
+TEST_P(LongSlab, FollowsCoulombWithSeparate) {
   const double friction = GetParam();
   EXPECT_NEAR(acceleration({2.0, friction}, 0.1, 0.5), by_coulomb(friction),
               0.01 * by_coulomb(friction));
 }
 
-// With slip an obstacle also holds snow against pulls. The pulls must reduce the friction, which
-// they do not by the usual rule.
-TEST_P(LongSlab, SlidesAsCoulombSaysWithSlipToo) {
+// With slip an obstacle also holds snow against pulls. The pulls must reduce the friction; with the
+// usual rule they do not.
+TEST_P(LongSlab, FollowsCoulombWithSlip) {
   const double friction = GetParam();
   EXPECT_NEAR(acceleration({2.0, friction, Condition::slip}, 0.1, 0.3), by_coulomb(friction),
               0.02 * by_coulomb(friction));
 }
 
-TEST(Friction, ActsOnShortAndApicSlabsAlike) {
+TEST(Friction, ShortSlabsFollowCoulombAlsoWithSlipAndApic) {
   for (const Slide& slide :
        {Slide{0.25, 0.6, Condition::slip}, Slide{0.25, 0.3, Condition::separate},
         Slide{0.25, 0.6, Condition::separate, Transfer::apic}})
@@ -71,7 +71,7 @@ TEST(Friction, ActsOnShortAndApicSlabsAlike) {
                 0.01 * by_coulomb(slide.friction));
 }
 
-TEST(Friction, HoldsBeyondTheAngleOfRepose) {
+TEST(Friction, HoldsSlabsBelowTheAngleOfFriction) {
   for (Condition condition : {Condition::slip, Condition::separate})
     for (double friction : {0.9, 1.2}) {
       const auto solver = slab_on_ramp({0.25, friction, condition});
@@ -88,9 +88,9 @@ TEST(Friction, HoldsBeyondTheAngleOfRepose) {
 TEST(Friction, StopsASlidingSlab) {
   // On level ground the slab stops within the time v/(mu g) and the distance v^2/(2 mu g), once
   // contact has set in.
-  const auto solver =
-      make_solver(options_for({2, Precision::float32}),
-                  {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::separate, 0.5)});
+  const auto solver = make_solver(
+      options_for({2, Precision::float32}),
+      {fixed(geometry::make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::separate, 0.5)});
   ParticleBatch batch = filled_box(2, Vec3::Zero(), Vec3(0.2, 0, 0.03), 0.005);
   batch.velocity.x() = 1;
   solver->add(batch);
@@ -111,10 +111,9 @@ struct Chunk {
   double cells, speed, tilt, friction;  // edge; m/s; degrees
 };
 
-/// Expects that a chunk of snow, at most five cells high, slides down a ramp with Coulomb's
-/// friction, and that friction takes the energy that it should. The delay of friction, half a cell
-/// of sliding, matters most for a chunk of two cells: it covers a node only while it slides four
-/// cells.
+/// Expects Coulomb's friction and its energy for a chunk of snow, at most five cells high, that
+/// slides down a ramp. Friction sets in after half a cell of sliding. This delay matters most for a
+/// chunk of two cells, because it covers a node only while it slides four cells.
 void expect_coulomb(const Chunk& c, double tolerance) {
   SCOPED_TRACE(testing::Message() << c.cells << " cells, " << c.speed << " m/s, " << c.tilt);
   constexpr double dx = 0.01;
@@ -122,8 +121,8 @@ void expect_coulomb(const Chunk& c, double tolerance) {
   const Vec3 normal(std::sin(a), 0, std::cos(a)), slope(std::cos(a), 0, -std::sin(a));
   Options o = options_for({2, Precision::float32}, dx);
   o.energy = true;
-  const auto solver =
-      make_solver(o, {fixed(make_plane(Vec3::Zero(), normal), Condition::separate, c.friction)});
+  const auto solver = make_solver(
+      o, {fixed(geometry::make_plane(Vec3::Zero(), normal), Condition::separate, c.friction)});
   ParticleBatch chunk =
       filled_box(2, Vec3::Zero(), Vec3(c.cells, 0, std::min(c.cells, 5.0)) * dx, dx / 2);
   for (Vec3& x : chunk.positions) x = x.x() * slope + x.z() * normal;
@@ -136,7 +135,7 @@ void expect_coulomb(const Chunk& c, double tolerance) {
   const auto sample = [&] {
     const ParticleState s = solver->state();
     return Sample{solver->time(), weighted_mean(s, s.positions).dot(slope),
-                  weighted_mean(s, s.velocities).dot(slope), solver->energy().friction};
+                  weighted_mean(s, s.velocities).dot(slope), energy_of(*solver).friction};
   };
   const Sample from = sample();
   run_until(*solver, 0.12);
@@ -149,7 +148,7 @@ void expect_coulomb(const Chunk& c, double tolerance) {
   EXPECT_NEAR(to.friction_energy - from.friction_energy, work, tolerance * work);
 }
 
-TEST(Friction, OfFastChunksIsAsCoulombSays) {
+TEST(Friction, FastChunksFollowCoulomb) {
   for (const double speed : {5.0, 10.0, 15.0})
     for (const double cells : {2.0, 4.0, 8.0}) {
       expect_coulomb({cells, speed, 40, 0.3}, 0.03);
@@ -157,7 +156,7 @@ TEST(Friction, OfFastChunksIsAsCoulombSays) {
     }
 }
 
-TEST(Friction, OfFastSlabsIsAsCoulombSays) {
+TEST(Friction, FastSlabsFollowCoulomb) {
   for (const double speed : {5.0, 10.0, 15.0}) {
     expect_coulomb({30, speed, 40, 0.3}, 0.01);
     expect_coulomb({30, speed, 0, 0.8}, 0.01);
@@ -166,11 +165,11 @@ TEST(Friction, OfFastSlabsIsAsCoulombSays) {
 
 // --- thin obstacles ---------------------------------------------------------------------------
 
-TEST(ThickEnough, LeavesThickBodiesAloneAndPadsThinOnes) {
-  const Shape thick = make_box(Vec3::Zero(), Vec3(1, 1, 0.02));
+TEST(ThickenedForGrid, PadsOnlyThinBodies) {
+  const geometry::Shape thick = geometry::make_box(Vec3::Zero(), Vec3(1, 1, 0.02));
   EXPECT_EQ(thickened_for_grid(thick, 0.01, 3).shape, thick);
-  const Shape thin = make_plate(Vec3::Zero(), Vec3::UnitZ(), 1, 1, 0.002);
-  const Shape padded = thickened_for_grid(thin, 0.01, 3).shape;
+  const geometry::Shape thin = geometry::make_plate(Vec3::Zero(), Vec3::UnitZ(), 1, 1, 0.002);
+  const geometry::Shape padded = thickened_for_grid(thin, 0.01, 3).shape;
   EXPECT_NEAR(padded->inradius(), 0.01, 1e-12);
   EXPECT_NEAR(padded->distance(Vec3(0, 0, 0.009)), 0.0, 1e-12);
   EXPECT_NEAR(padded->distance(Vec3(0, 0, -0.011)), 0.0, 1e-12);
@@ -183,17 +182,18 @@ struct Throw {
   double turn;  // turn of the panel, degrees
 };
 
-TEST(ThinPanel, LetsNoSnowThrough) {
+TEST(ThinPanel, StopsAllSnow) {
   for (const Throw& t : {Throw{2, Precision::float32, 0}, Throw{2, Precision::float64, 30},
                          Throw{3, Precision::float32, 20}})
     for (Condition condition : {Condition::slip, Condition::separate, Condition::sticky}) {
       if (t.dimension == 3 && condition != Condition::separate) continue;
       const double a = radians(t.turn);
       const Vec3 normal(std::sin(a), 0, std::cos(a)), along(std::cos(a), 0, -std::sin(a));
-      const auto solver = make_solver(options_for({t.dimension, t.precision}),
-                                      {fixed(make_plate(Vec3(0.0031, 0, 0.0017), normal, 2,
-                                                        t.dimension == 2 ? infinity : 2, 0.002),
-                                             condition, 0.3)});
+      const auto solver =
+          make_solver(options_for({t.dimension, t.precision}),
+                      {fixed(geometry::make_plate(Vec3(0.0031, 0, 0.0017), normal, 2,
+                                                  t.dimension == 2 ? geometry::infinity : 2, 0.002),
+                             condition, 0.3)});
       const double size = t.dimension == 2 ? 0.1 : 0.05;
       ParticleBatch batch =
           filled_box(t.dimension, Vec3(0, 0, 0.06), Vec3(size, size, 0.06 + size), 0.005);
@@ -207,14 +207,15 @@ TEST(ThinPanel, LetsNoSnowThrough) {
     }
 }
 
-TEST(ThinPanel, SnowThrownAgainstItsUndersideFallsOffAgain) {
+TEST(ThinPanel, SnowThrownAtTheUndersideFallsOff) {
   for (double degrees : {0.0, 40.0}) {
     const double a = radians(degrees);
     const Vec3 normal(std::sin(a), 0, std::cos(a));
-    const auto solver = make_solver(
-        options_for({2, Precision::float32}),
-        {fixed(make_plate(Vec3::Zero(), normal, 2, std::numeric_limits<double>::infinity(), 0.002),
-               Condition::separate, 0.6)});
+    const auto solver =
+        make_solver(options_for({2, Precision::float32}),
+                    {fixed(geometry::make_plate(Vec3::Zero(), normal, 2,
+                                                std::numeric_limits<double>::infinity(), 0.002),
+                           Condition::separate, 0.6)});
     ParticleBatch batch = filled_box(2, Vec3(-0.05, 0, -0.15), Vec3(0.05, 0, -0.05), 0.005);
     batch.velocity.z() = 3;
     solver->add(batch);
@@ -228,14 +229,16 @@ TEST(ThinPanel, SnowThrownAgainstItsUndersideFallsOffAgain) {
   }
 }
 
-// A combined solid can have walls as thin as a plate, however thick it is as a whole.
-TEST(ThinPanel, OfACombinedSolidLetsNoSnowThrough) {
+// The inradius of a combined solid says nothing about its walls, which may be as thin as a plate.
+TEST(ThinPanel, ThinWallsOfCombinedSolidsStopAllSnow) {
   const double wall = 0.003;
-  const Shape bin = subtract(make_box(Vec3(0, 0, 0.1), Vec3(0.3, 10, 0.2)),
-                             {make_box(Vec3(0, 0, 0.1 + wall), Vec3(0.3 - 2 * wall, 11, 0.2))});
-  const Shape shelf = unite({make_box(Vec3(0.1, 0, 0), Vec3(0.1, 10, 0.4)),
-                             make_box(Vec3(-0.05, 0, 0.0017), Vec3(0.3, 10, wall))});
-  for (const Shape& shape : {bin, shelf}) {
+  const geometry::Shape bin = geometry::subtract(
+      geometry::make_box(Vec3(0, 0, 0.1), Vec3(0.3, 10, 0.2)),
+      {geometry::make_box(Vec3(0, 0, 0.1 + wall), Vec3(0.3 - 2 * wall, 11, 0.2))});
+  const geometry::Shape shelf =
+      geometry::unite({geometry::make_box(Vec3(0.1, 0, 0), Vec3(0.1, 10, 0.4)),
+                       geometry::make_box(Vec3(-0.05, 0, 0.0017), Vec3(0.3, 10, wall))});
+  for (const geometry::Shape& shape : {bin, shelf}) {
     const auto solver =
         make_solver(options_for({2, Precision::float32}), {fixed(shape, Condition::separate, 0.3)});
     ParticleBatch batch = filled_box(2, Vec3(-0.115, 0, 0.04), Vec3(-0.085, 0, 0.14), 0.005);
@@ -252,10 +255,11 @@ TEST(ThinPanel, OfACombinedSolidLetsNoSnowThrough) {
 // --- bodies -----------------------------------------------------------------------------------
 
 TEST(Contact, SnowSinksLessThanACellIntoBodies) {
-  const Shape shapes[] = {make_sphere(Vec3::Zero(), 0.06),
-                          make_box(Vec3::Zero(), Vec3(0.1, 0.1, 0.06)),
-                          make_capsule(Vec3(-0.05, 0, -0.02), Vec3(0.05, 0, 0.02), 0.03)};
-  for (const Shape& shape : shapes)
+  const geometry::Shape shapes[] = {
+      geometry::make_sphere(Vec3::Zero(), 0.06),
+      geometry::make_box(Vec3::Zero(), Vec3(0.1, 0.1, 0.06)),
+      geometry::make_capsule(Vec3(-0.05, 0, -0.02), Vec3(0.05, 0, 0.02), 0.03)};
+  for (const geometry::Shape& shape : shapes)
     for (Condition condition : {Condition::slip, Condition::separate, Condition::sticky}) {
       const auto solver =
           make_solver(options_for({2, Precision::float32}), {fixed(shape, condition, 0.2)});
@@ -273,26 +277,28 @@ TEST(Contact, SnowSinksLessThanACellIntoBodies) {
 }
 
 TEST(Contact, AMovingPlateCarriesSnowAlong) {
-  MotionSpec motion;
+  geometry::MotionSpec motion;
   motion.velocity = Vec3(0.3, 0, 0.5);
-  Obstacle plate = fixed(
-      make_plate(Vec3::Zero(), Vec3::UnitZ(), 1, std::numeric_limits<double>::infinity(), 0.05),
-      Condition::sticky);
+  Obstacle plate = fixed(geometry::make_plate(Vec3::Zero(), Vec3::UnitZ(), 1,
+                                              std::numeric_limits<double>::infinity(), 0.05),
+                         Condition::sticky);
   plate.motion.emplace(motion);
   const auto solver = make_solver(options_for({2, Precision::float32}), {plate});
   solver->add(filled_box(2, Vec3(0, 0, 0.003), Vec3(0.08, 0, 0.033), 0.005));
   const ParticleState start = solver->state();
   run_until(*solver, 0.2);
   const ParticleState end = solver->state();
-  const Vec3 moved = weighted_mean(end, end.positions) - weighted_mean(start, start.positions);
-  EXPECT_LT((moved - solver->time() * motion.velocity).norm(), 0.002);  // a fifth of a cell
+  const Vec3 displacement =
+      weighted_mean(end, end.positions) - weighted_mean(start, start.positions);
+  EXPECT_LT((displacement - solver->time() * motion.velocity).norm(), 0.002);  // a fifth of a cell
   // The snow rattles over the cells.
   EXPECT_LT((mean_velocity(*solver) - motion.velocity).norm(), 0.05);
 }
 
-TEST(Contact, TheUndersideOfASeparatingObstacleDoesNotHold) {
+TEST(Contact, TheUndersideOfASeparatingObstacleReleasesAtOnce) {
   const Boundary<double, 2> boundary(
-      {fixed(make_box(Vec3(0.035, 0, 0.035), Vec3(0.04, 1e9, 0.04)), Condition::separate, 0.3)},
+      {fixed(geometry::make_box(Vec3(0.035, 0, 0.035), Vec3(0.04, 1e9, 0.04)), Condition::separate,
+             0.3)},
       0.01);
   auto contacts = Contacts<double, 2>().relocated(boundary, {block_key<2>({0, 0})}, 0.0);
   ASSERT_EQ(contacts.count(0), 16);  // nodes 2 to 5 in each direction
@@ -305,7 +311,7 @@ TEST(Contact, TheUndersideOfASeparatingObstacleDoesNotHold) {
 
 TEST(Contact, StoredImpulsesSurviveRelocation) {
   const Boundary<float, 2> boundary(
-      {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::separate, 0.3)}, 0.01);
+      {fixed(geometry::make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::separate, 0.3)}, 0.01);
   const std::vector<BlockKey> few{block_key<2>({0, -1}), block_key<2>({0, 0})};
   auto contacts = Contacts<float, 2>().relocated(boundary, few, 0.0);
   ASSERT_EQ(contacts.count(0), 64);
@@ -332,4 +338,4 @@ TEST(Contact, StoredImpulsesSurviveRelocation) {
 }
 
 }  // namespace
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -1,11 +1,11 @@
-// Differences between sticky, slip and separate: snow that is pulled off an obstacle, and a slab
-// that reaches beyond an edge.
+// Differences between sticky, slip and separate: snow pulled off an obstacle, and a slab that
+// reaches beyond an edge.
 #include <gtest/gtest.h>
 
 #include "methods/mpm/solver_testing.hpp"
 #include "snowshed/geometry/bounds.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
 constexpr double cell = 0.01;
@@ -14,9 +14,9 @@ constexpr double cell = 0.01;
 std::unique_ptr<Solver> block_on(const ContactLaw& law, double gravity, const Vec3& velocity) {
   Options o = options_for({2, Precision::float32}, cell);
   o.gravity = gravity;
-  o.snows[0].model = SnowModel::elastic;
-  auto solver =
-      make_solver(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), law.condition, law.friction)});
+  o.snows[0].model = material::SnowModel::elastic;
+  auto solver = make_solver(
+      o, {fixed(geometry::make_plane(Vec3::Zero(), Vec3::UnitZ()), law.condition, law.friction)});
   ParticleBatch block = filled_box(2, Vec3::Zero(), Vec3(0.08, 0, 0.04), cell / 2);
   block.velocity = velocity;
   solver->add(block);
@@ -47,7 +47,7 @@ PullResult pulled_off(Condition condition, double duration) {
   return {foot(solver->state(), start) - foot(start, start), mean_velocity(*solver)};
 }
 
-TEST(Conditions, SnowThatIsPulledOffLeavesWithSeparateOnly) {
+TEST(Conditions, PulledSnowLeavesOnlyWithSeparate) {
   constexpr double t = 0.1;
   const PullResult separate = pulled_off(Condition::separate, t);
   EXPECT_NEAR(separate.foot.x(), 0.3 * t, 0.01 * t);
@@ -63,9 +63,9 @@ TEST(Conditions, SnowThatIsPulledOffLeavesWithSeparateOnly) {
   EXPECT_LT(sticky.foot.norm(), 0.1 * cell);
 }
 
-// Only snow that presses on an obstacle feels friction. Where slip holds snow up against its
-// weight, there is none.
-TEST(Conditions, SnowThatSlipHoldsUpFeelsNoFriction) {
+// Only snow that presses on an obstacle feels friction, not snow that slip holds against its
+// weight.
+TEST(Conditions, SnowHangingWithSlipFeelsNoFriction) {
   for (const double gravity : {9.81, -9.81}) {
     const auto solver = block_on({Condition::slip, 0.5}, gravity, Vec3(0.3, 0, 0));
     run_until(*solver, 0.05);
@@ -79,8 +79,8 @@ TEST(Conditions, SnowThatSlipHoldsUpFeelsNoFriction) {
 /// middle has sunk after a third of a second, m.
 double drop_over_the_edge(Condition condition) {
   Options o = options_for({2, Precision::float32}, cell);
-  o.snows[0].model = SnowModel::elastic;
-  const Shape shelf = make_box(Vec3(-0.5, 0, -0.05), Vec3(1, 1e9, 0.1));
+  o.snows[0].model = material::SnowModel::elastic;
+  const geometry::Shape shelf = geometry::make_box(Vec3(-0.5, 0, -0.05), Vec3(1, 1e9, 0.1));
   const auto solver = make_solver(o, {fixed(shelf, condition, 0.8)});
   solver->add(filled_box(2, Vec3(-0.08, 0, 0), Vec3(0.12, 0, 0.04), cell / 2));
   run_until(*solver, 0.33);
@@ -88,17 +88,18 @@ double drop_over_the_edge(Condition condition) {
   return 0.02 - weighted_mean(s, s.positions).z();
 }
 
-TEST(Conditions, ASlabTipsOverAnEdgeWithSeparateOnly) {
+TEST(Conditions, ASlabTipsOverAnEdgeOnlyWithSeparate) {
   EXPECT_GT(drop_over_the_edge(Condition::separate), 0.1);
   EXPECT_LT(drop_over_the_edge(Condition::slip), 0.01);  // the slab bends
   EXPECT_LT(drop_over_the_edge(Condition::sticky), 0.01);
 }
 
-// Snow leaves a panel with slip only over its edge. Nothing may hold the snow there.
-TEST(Conditions, WithSlipSnowLeavesAPanelOverItsEdge) {
+// Snow leaves a panel with slip only over its edge. The edge must not hold it.
+TEST(Conditions, SnowOnAPanelWithSlipLeavesOverTheEdge) {
   const double tilt = radians(40), length = 0.2;
   const Vec3 normal(std::sin(tilt), 0, std::cos(tilt)), slope(std::cos(tilt), 0, -std::sin(tilt));
-  const Shape panel = make_plate(-0.5 * length * slope, normal, length, infinity, 0.02);
+  const geometry::Shape panel =
+      geometry::make_plate(-0.5 * length * slope, normal, length, geometry::infinity, 0.02);
   const auto solver =
       make_solver(options_for({2, Precision::float32}, cell), {fixed(panel, Condition::slip, 0.3)});
   ParticleBatch slab = filled_box(2, Vec3(-0.15, 0, 0), Vec3(-0.05, 0, 0.03), cell / 2);
@@ -112,4 +113,4 @@ TEST(Conditions, WithSlipSnowLeavesAPanelOverItsEdge) {
 }
 
 }  // namespace
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -5,10 +5,10 @@
 
 #include "methods/mpm/solver_testing.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
-TEST(Damping, OfAShareInEachStepIsARateByTheStep) {
+TEST(Damping, TheRateOfAFlipRatioDependsOnTheStep) {
   Settings s;
   s.flip_ratio = 0.99;
   EXPECT_EQ(s.flip_share(1e-4), 0.99);
@@ -20,7 +20,7 @@ TEST(Damping, OfAShareInEachStepIsARateByTheStep) {
   EXPECT_EQ(*s.mean_damping_rate(1000, 0.1), 0.0);
 }
 
-TEST(Damping, OfARateIsTheSameOverStepsOfAnyLength) {
+TEST(Damping, AGivenRateDoesNotDependOnTheStep) {
   Settings s;
   s.damping_rate = 50;
   EXPECT_DOUBLE_EQ(s.flip_share(1e-4) * s.flip_share(3e-4), std::exp(-50 * 4e-4));
@@ -31,7 +31,7 @@ TEST(Damping, OfARateIsTheSameOverStepsOfAnyLength) {
   EXPECT_EQ(*s.mean_damping_rate(7, 0.1), 50.0);
 }
 
-TEST(Damping, OverALengthLeavesNothingToPic) {
+TEST(Damping, ADampingLengthReplacesDampingByPic) {
   Settings s;
   s.transfer = Transfer::affine_flip;
   s.damping_rate = 50;
@@ -40,9 +40,9 @@ TEST(Damping, OverALengthLeavesNothingToPic) {
   EXPECT_EQ(s.flip_share(1e-3), 1.0);
 }
 
-/// Returns the share of its spin that a disc of elastic snow keeps over a while. The radius of the
-/// disc is two cells. The grid does not resolve the spin of such a small disc completely, and PIC
-/// damps the unresolved part.
+/// Returns the share of spin that a disc of elastic snow keeps for 0.02 s. The radius of the disc
+/// is two cells. The grid does not resolve the spin of such a small disc completely, and PIC damps
+/// the unresolved part.
 double remaining_spin(const Settings& numerics) {
   constexpr double radius = 0.02, spin = 20, duration = 0.02;
   Options o = options_for({2, Precision::float64});
@@ -50,7 +50,7 @@ double remaining_spin(const Settings& numerics) {
   o.settings.damping_rate = numerics.damping_rate;
   o.settings.courant_factor = numerics.courant_factor;
   o.gravity = 0;
-  o.snows[0].model = SnowModel::elastic;
+  o.snows[0].model = material::SnowModel::elastic;
   const auto solver = make_solver(o, {});
   add_spinning_disc(*solver, radius, spin, 0.0025);
   const auto angular_momentum = [](const ParticleState& s) {
@@ -64,7 +64,8 @@ double remaining_spin(const Settings& numerics) {
   return angular_momentum(solver->state()) / before;
 }
 
-Settings with(double flip_ratio, std::optional<double> damping_rate, double courant_factor) {
+Settings settings_with(double flip_ratio, std::optional<double> damping_rate,
+                       double courant_factor) {
   Settings s;
   s.flip_ratio = flip_ratio;
   s.damping_rate = damping_rate;
@@ -72,22 +73,22 @@ Settings with(double flip_ratio, std::optional<double> damping_rate, double cour
   return s;
 }
 
-TEST(Damping, OfASpinDependsOnTheStepOnlyWhereGivenPerStep) {
-  const double undamped = remaining_spin(with(1.0, std::nullopt, 0.9));
-  const double by_rate = remaining_spin(with(0.99, 180.0, 0.9));
-  const double by_ratio = remaining_spin(with(0.99, std::nullopt, 0.9));
+TEST(Damping, SpinDampingDependsOnTheStepOnlyForAFlipRatio) {
+  const double undamped = remaining_spin(settings_with(1.0, std::nullopt, 0.9));
+  const double by_rate = remaining_spin(settings_with(0.99, 180.0, 0.9));
+  const double by_ratio = remaining_spin(settings_with(0.99, std::nullopt, 0.9));
   EXPECT_GT(undamped, 0.85);
   EXPECT_LT(by_rate, 0.8 * undamped);
   EXPECT_LT(by_ratio, 0.8 * undamped);
   for (const double courant_factor : {0.6, 0.3}) {
-    EXPECT_NEAR(std::log(remaining_spin(with(0.99, 180.0, courant_factor))), std::log(by_rate),
-                0.1 * std::abs(std::log(by_rate)))
+    EXPECT_NEAR(std::log(remaining_spin(settings_with(0.99, 180.0, courant_factor))),
+                std::log(by_rate), 0.1 * std::abs(std::log(by_rate)))
         << courant_factor;
-    EXPECT_LT(std::log(remaining_spin(with(0.99, std::nullopt, courant_factor))),
+    EXPECT_LT(std::log(remaining_spin(settings_with(0.99, std::nullopt, courant_factor))),
               1.3 * std::log(by_ratio))
         << courant_factor;
   }
 }
 
 }  // namespace
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -6,10 +6,10 @@
 #include "methods/mpm/solver_testing.hpp"
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
-TEST(Method, AddedVelocitiesCountInTheEnergyBalance) {
+TEST(MpmSolver, AddedVelocitiesCountInTheEnergyBalance) {
   Options options = options_for({3, Precision::float64});
   options.energy = true;
   options.gravity = 0;
@@ -20,13 +20,13 @@ TEST(Method, AddedVelocitiesCountInTheEnergyBalance) {
   solver->step();
   const ParticleState s = solver->state();
   for (const Vec3& v : s.velocities) EXPECT_LT((v - Vec3(1, 0, 2)).norm(), 1e-12);
-  EXPECT_NEAR(solver->energy().added, 2.5 * total_mass(s), 1e-12);
-  EXPECT_NEAR(solver->energy().residual(), 0, 1e-12);
+  EXPECT_NEAR(energy_of(*solver).added, 2.5 * total_mass(s), 1e-12);
+  EXPECT_NEAR(energy_of(*solver).residual(), 0, 1e-12);
   changes.pop_back();
   EXPECT_THROW(solver->add_velocity(changes), InputError);
 }
 
-TEST(Method, SettlingLowersAndCompacts) {
+TEST(MpmSolver, SettlingLowersAndCompactsSnow) {
   Options options = options_for({3, Precision::float64});
   options.energy = true;
   const auto solver = make_solver(options, {});
@@ -38,7 +38,7 @@ TEST(Method, SettlingLowersAndCompacts) {
     drops.push_back(0.5 * (x.z() - 1));
     changes.push_back(-std::log(2.0));
   }
-  const double residual = solver->energy().residual();
+  const double residual = energy_of(*solver).residual();
   solver->settle(drops, changes);
   const ParticleState after = solver->state();
   double fallen = 0;
@@ -48,7 +48,7 @@ TEST(Method, SettlingLowersAndCompacts) {
     ASSERT_EQ(after.velocities[i], before.velocities[i]);
     fallen += 9.81 * before.masses[i] * drops[i];
   }
-  const EnergyBalance energy_balance = solver->energy();
+  const EnergyBalance energy_balance = energy_of(*solver);
   EXPECT_NEAR(energy_balance.added, 9.81 * total_mass(before) * 1.15 - fallen, 0.01 * fallen);
   EXPECT_NEAR(energy_balance.residual(), residual, 1e-9 * energy_balance.added);
   ASSERT_NO_THROW(run_steps(*solver, 10));
@@ -58,13 +58,13 @@ TEST(Method, SettlingLowersAndCompacts) {
   EXPECT_THROW(solver->settle(drops, changes), InputError);
 }
 
-TEST(Method, ReportsItsParticles) {
+TEST(MpmSolver, StateListsItsParticles) {
   const auto solver = make_solver(options_for({3, Precision::float64}), {});
   ParticleBatch batch = filled_box(3, Vec3(-0.05, 0, 0), Vec3(0.05, 0.02, 0.03), 0.01);
   batch.velocity = Vec3(1, 2, 2);
   batch.event = 3;
   solver->add(batch);
-  const ParticleState s = solver->state();
+  const SnowState s = snow_state(*solver);
   ASSERT_EQ(s.positions.size(), batch.positions.size());
   for (std::size_t i = 0; i < s.positions.size(); ++i) {
     EXPECT_LT((s.positions[i] - batch.positions[i]).norm(), 1e-15);
@@ -83,4 +83,4 @@ TEST(Method, ReportsItsParticles) {
 }
 
 }  // namespace
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -5,7 +5,7 @@
 #include "snowshed/material/cam_clay.hpp"
 #include "snowshed/methods/quantities.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
 class ParticleFields : public testing::TestWithParam<SolverVariant> {
@@ -33,14 +33,14 @@ class ParticleFields : public testing::TestWithParam<SolverVariant> {
 TEST_P(ParticleFields, AgreeWithTheState) {
   const ParticleState state = solver_->state();
   const auto expect = [&](const char* name, const auto& expected) {
-    const FieldView view = solver_->field(name);
+    const particles::FieldView view = solver_->field(name);
     ASSERT_EQ(view.count, expected.size());
     for (std::size_t k = 0; k < view.count; ++k) {
-      const std::size_t place = solver_->order_by_id()[k];
+      const std::size_t index = solver_->order_by_id()[k];
       const auto* values = reinterpret_cast<const double*>(&expected[k]);
       for (int c = 0; c < view.info.components; ++c)
-        with_field_type(view.info.type, [&](auto zero) {
-          EXPECT_EQ(double(view.at<decltype(zero)>(place)[c]), values[c]) << name;
+        particles::with_field_type(view.info.type, [&](auto zero) {
+          EXPECT_EQ(double(view.at<decltype(zero)>(index)[c]), values[c]) << name;
         });
     }
   };
@@ -48,37 +48,38 @@ TEST_P(ParticleFields, AgreeWithTheState) {
   expect("velocity", state.velocities);
   expect("mass", state.masses);
   expect("density", state.densities);
-  expect("volume_ratio", state.volume_ratios);
-  expect("pressure", state.pressures);
-  expect("volumetric_plastic_strain", state.plastic_strains);
+  const double initial_density = options_for(GetParam()).snows.front().density;
+  const std::vector<double> volume_ratios = values_by_id(*solver_, "volume_ratio");
+  for (std::size_t k = 0; k < volume_ratios.size(); ++k)
+    EXPECT_DOUBLE_EQ(state.densities[k], initial_density / volume_ratios[k]);
   EXPECT_TRUE(std::is_sorted(state.ids.begin(), state.ids.end()));
 }
 
-/// All stresses lie within the yield surface of the law or on it, and some lie on it.
-TEST_P(ParticleFields, StressesAreThoseOfTheLaw) {
+/// All stresses lie within or on the yield surface of the law, and some lie on it.
+TEST_P(ParticleFields, StressesLieWithinTheYieldSurface) {
   shake(10.0);  // so that snow yields
-  const ParticleState state = solver_->state();
+  const SnowState state = snow_state(*solver_);
   const int dimension = GetParam().dimension;
-  const Snow snow = options_for(GetParam()).snows.front();
-  const auto law =
-      CamClay<double>::from(snow.youngs_modulus, snow.poissons_ratio, snow.critical_state_slope,
-                            snow.cohesion, snow.hardening_factor, dimension);
-  const FieldView q = solver_->field("deviatoric_stress");
-  const FieldView strength = solver_->field("preconsolidation_pressure");
-  double largest = -1;  // largest y over M^2 p0^2, which is at least -1/4 within the surface
+  const material::Snow snow = options_for(GetParam()).snows.front();
+  const auto law = material::CamClay<double>::from(snow.youngs_modulus, snow.poissons_ratio,
+                                                   snow.critical_state_slope, snow.cohesion,
+                                                   snow.hardening_factor, dimension);
+  const particles::FieldView q = solver_->field("deviatoric_stress");
+  const particles::FieldView strength = solver_->field("preconsolidation_pressure");
+  double max_yield = -1;  // y over M^2 p0^2; at least -1/4 within the surface
   for (std::size_t k = 0; k < q.count; ++k) {
-    const std::size_t place = solver_->order_by_id()[k];
-    const double p0 = *strength.at<double>(place);
+    const std::size_t index = solver_->order_by_id()[k];
+    const double p0 = *strength.at<double>(index);
     EXPECT_NEAR(p0, law.preconsolidation(state.plastic_strains[k]), 1e-9 * p0);
-    const PQ<double> stress{state.pressures[k], *q.at<double>(place)};
-    largest = std::max(largest, law.yield(stress, p0) / (law.m2 * p0 * p0));
+    const material::PQ<double> stress{state.pressures[k], *q.at<double>(index)};
+    max_yield = std::max(max_yield, law.yield(stress, p0) / (law.m2 * p0 * p0));
   }
-  EXPECT_NEAR(largest, 0.0, 5e-3);  // to rounding in single precision
+  EXPECT_NEAR(max_yield, 0.0, 5e-3);  // to rounding in single precision
 }
 
-TEST_P(ParticleFields, AreOfKnownQuantities) {
+TEST_P(ParticleFields, BelongToKnownQuantities) {
   const std::vector<Quantity> all = quantities();
-  for (const FieldInfo& info : solver_->fields()) {
+  for (const particles::FieldInfo& info : solver_->fields()) {
     const auto known = [&](const Quantity& q) {
       return info.name.compare(0, q.name.size(), q.name) == 0 && info.unit == q.unit;
     };
@@ -89,19 +90,19 @@ TEST_P(ParticleFields, AreOfKnownQuantities) {
 }
 
 /// Added particles are the last in the order of ids.
-TEST_P(ParticleFields, OrderFollowsParticlesThatAreAdded) {
+TEST_P(ParticleFields, AddedParticlesComeLastInTheOrder) {
   const std::size_t old = solver_->order_by_id().size();
   solver_->add(
       filled_box(GetParam().dimension, Vec3(-0.1, -0.03, 1.0), Vec3(-0.05, 0.03, 1.1), 0.01));
   const std::vector<std::uint32_t>& order = solver_->order_by_id();
   ASSERT_GT(order.size(), old);
-  const FieldView ids = solver_->field("id");
+  const particles::FieldView ids = solver_->field("id");
   for (std::size_t k = 0; k < order.size(); ++k)
     ASSERT_EQ(*ids.at<std::uint32_t>(order[k]), std::uint32_t(k));
 }
 
-INSTANTIATE_TEST_SUITE_P(Ways, ParticleFields, testing::ValuesIn(all_solver_variants()),
+INSTANTIATE_TEST_SUITE_P(Variants, ParticleFields, testing::ValuesIn(all_solver_variants()),
                          [](const auto& info) { return info.param.name(); });
 
 }  // namespace
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -14,10 +14,10 @@
 #include "snowshed/methods/mpm/material_constants.hpp"
 #include "snowshed/methods/mpm/particles.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
-/// The share of friction that remains is 1 for each of up to four obstacles.
+/// Full friction of up to four obstacles.
 template <class T>
 constexpr T full_friction[] = {1, 1, 1, 1};
 
@@ -61,7 +61,7 @@ GridSums<D> gathered(const Kernels<T>& kernels, const T* tile, int reach) {
   for (int block = 0; block < neighbour_count<D>; ++block) {
     if (!reaches<D>(reach, block)) continue;
     const T* tiles[neighbour_count<D>] = {};
-    tiles[neighbour_count<D> - 1 - block] = tile;                            // as the block sees it
+    tiles[neighbour_count<D> - 1 - block] = tile;  // its position relative to the block
     AlignedVector<T> sums(std::size_t(block_nodes<D>) * node_values, T(7));  // must be cleared
     kernels.gather(tiles, sums.data());
     for (int k = 0; k < block_nodes<D>; ++k) {
@@ -77,8 +77,8 @@ GridSums<D> gathered(const Kernels<T>& kernels, const T* tile, int reach) {
   return result;
 }
 
-/// Expects exact sums on the nodes after particles of one block, in a random state, are scattered
-/// to its tile and the surrounding blocks have gathered this tile.
+/// Scatters particles of one block, in a random state, to its tile, lets the surrounding blocks
+/// gather this tile, and expects exact sums on the nodes.
 template <class T, int D>
 void expect_exact_sums(const SolverVariant& variant, const Spread& spread) {
   constexpr int n = 37;  // not a multiple of any register's lanes
@@ -108,11 +108,11 @@ void expect_exact_sums(const SolverVariant& variant, const Spread& spread) {
     }
   }
   const Kernels<T> kernels =
-      select_kernels<T>({D, variant.transfer, variant.basis, SnowModel::cam_clay, false});
+      select_kernels<T>({D, variant.transfer, variant.basis, material::SnowModel::cam_clay, false});
   // Values that are not cleared must not be read.
   constexpr T unset = std::numeric_limits<T>::quiet_NaN();
   AlignedVector<T> tile(std::size_t(tile_nodes<D>(variant.basis)) * node_values, unset);
-  const auto snow = material_constants<T>(Snow(), D);
+  const auto snow = material_constants<T>(material::Snow(), D);
   const StepParameters<T> step{T(1e-4), T(0.01), T(9.81), T(0.99),         T(0.02),
                                T(0),    T(0),    &snow,   full_friction<T>};
   BlockStats stats;
@@ -132,7 +132,7 @@ void expect_exact_sums(const SolverVariant& variant, const Spread& spread) {
 }
 
 template <int D>
-void expect_exact_sums_wherever_particles_are(const SolverVariant& variant) {
+void expect_exact_sums_everywhere(const SolverVariant& variant) {
   for (const Spread& spread : spreads<D>()) {
     SCOPED_TRACE(testing::PrintToString(spread.low) + testing::PrintToString(spread.high));
     variant.precision == Precision::float32 ? expect_exact_sums<float, D>(variant, spread)
@@ -140,15 +140,15 @@ void expect_exact_sums_wherever_particles_are(const SolverVariant& variant) {
   }
 }
 
-TEST(Scatter, GivesTheGridExactlyTheParticlesMassMomentumAndCentre) {
+TEST(Scatter, KeepsMassMomentumAndCenterOfMass) {
   for (const SolverVariant& variant : all_solver_variants()) {
     SCOPED_TRACE(variant.name());
-    variant.dimension == 2 ? expect_exact_sums_wherever_particles_are<2>(variant)
-                           : expect_exact_sums_wherever_particles_are<3>(variant);
+    variant.dimension == 2 ? expect_exact_sums_everywhere<2>(variant)
+                           : expect_exact_sums_everywhere<3>(variant);
   }
 }
 
-TEST(Scatter, SaysWhenAParticleHasLeftTheTile) {
+TEST(Scatter, ReportsParticlesOutsideTheTile) {
   Particles<float, 2> particles;
   particles.has_plastic = true;
   particles.resize(3);
@@ -157,10 +157,10 @@ TEST(Scatter, SaysWhenAParticleHasLeftTheTile) {
   for (auto& s : particles.be_minus_identity) std::fill(s.begin(), s.end(), 0.0f);
   std::fill(particles.mass.begin(), particles.mass.end(), 1.0f);
   std::fill(particles.plastic.begin(), particles.plastic.end(), 0.0f);
-  const Kernels<float> kernels =
-      select_kernels<float>({2, Transfer::flip, Basis::quadratic, SnowModel::cam_clay, false});
+  const Kernels<float> kernels = select_kernels<float>(
+      {2, Transfer::flip, Basis::quadratic, material::SnowModel::cam_clay, false});
   AlignedVector<float> tile(std::size_t(tile_nodes<2>(Basis::quadratic)) * node_values);
-  const auto snow = material_constants<float>(Snow(), 2);
+  const auto snow = material_constants<float>(material::Snow(), 2);
   const StepParameters<float> step{
       1e-4f, 0.01f, 9.81f, 0.99f, 0.02f, 0.0f, 0.0f, &snow, full_friction<float>};
   for (float cell : {-1.01f, 9.0f, std::nanf("")}) {
@@ -182,14 +182,14 @@ TEST(Scatter, SaysWhenAParticleHasLeftTheTile) {
   std::exit(0);
 }
 
-TEST(KernelChoiceDeathTest, KnowsTheNamesOfItsVariants) {
+TEST(KernelChoiceDeathTest, AcceptsOnlyTheNamesOfItsVariants) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
-  const auto ended = testing::ExitedWithCode(0);
-  EXPECT_EXIT(choose_kernels("baseline"), ended, "chose baseline");
-  EXPECT_EXIT(choose_kernels("avx-2"), ended,
+  const auto exited = testing::ExitedWithCode(0);
+  EXPECT_EXIT(choose_kernels("baseline"), exited, "chose baseline");
+  EXPECT_EXIT(choose_kernels("avx-2"), exited,
               "SNOWSHED_KERNELS: is \"avx-2\"; allowed: baseline, avx2, avx512; this machine can "
               "run: baseline");
 }
 
 }  // namespace
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -1,19 +1,19 @@
-// Obstacles in motion: the nodes they hold, the velocities there, and the conditions under which
-// they hold snow.
+// Moving obstacles: the nodes in them, the velocities of these nodes, and the conditions under
+// which obstacles carry snow.
 #include <gtest/gtest.h>
 
 #include "methods/mpm/solver_testing.hpp"
 #include "snowshed/methods/mpm/boundary.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
 constexpr double cell = 0.01;
 
 /// A half space below a plane through the origin that turns about a point beside it.
 Obstacle turning_ground() {
-  Obstacle ground = fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::slip, 0.3);
-  MotionSpec motion;
+  Obstacle ground = fixed(geometry::make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::slip, 0.3);
+  geometry::MotionSpec motion;
   motion.angular_velocity = Vec3(0, 2, 0);
   motion.pivot = Vec3(0.02, 0, 0);
   motion.velocity = Vec3(0.1, 0, 0);
@@ -21,7 +21,7 @@ Obstacle turning_ground() {
   return ground;
 }
 
-TEST(MovingContact, NodesOfATurningObstacleHaveItsNormalAndVelocity) {
+TEST(MovingContact, NodesInATurningObstacleHaveItsNormalAndVelocity) {
   const Obstacle ground = turning_ground();
   const double time = 0.3, angle = 2 * time;
   const Boundary<double, 2> boundary({ground}, cell);
@@ -42,19 +42,19 @@ TEST(MovingContact, NodesOfATurningObstacleHaveItsNormalAndVelocity) {
 
 TEST(MovingContact, ASlipperyPlateLiftsSnow) {
   for (const Condition condition : {Condition::slip, Condition::separate}) {
-    Obstacle plate = fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), condition);
-    MotionSpec motion;
+    Obstacle plate = fixed(geometry::make_plane(Vec3::Zero(), Vec3::UnitZ()), condition);
+    geometry::MotionSpec motion;
     motion.velocity = Vec3(0.4, 0, 0.5);
     plate.motion.emplace(motion);
     const auto solver = make_solver(options_for({2, Precision::float32}, cell), {plate});
     solver->add(filled_box(2, Vec3(0, 0, 0.003), Vec3(0.08, 0, 0.033), 0.005));
     const Vec3 start = weighted_mean(solver->state(), solver->state().positions);
     run_until(*solver, 0.1);
-    const Vec3 moved = weighted_mean(solver->state(), solver->state().positions) - start;
-    EXPECT_NEAR(moved.z(), 0.5 * solver->time(), 0.003);
-    EXPECT_NEAR(moved.x(), 0.0, 0.003);
+    const Vec3 displacement = weighted_mean(solver->state(), solver->state().positions) - start;
+    EXPECT_NEAR(displacement.z(), 0.5 * solver->time(), 0.003);
+    EXPECT_NEAR(displacement.x(), 0.0, 0.003);
   }
 }
 
 }  // namespace
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -8,7 +8,7 @@
 #include "methods/mpm/solver_testing.hpp"
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
 constexpr double cell_size = 0.01;
@@ -23,7 +23,7 @@ TEST(Placement, FindsBlockAndCell) {
   EXPECT_THROW((Placement<2>::of(VecD<2>(std::nan(""), 0), cell_size, basis)), SimulationError);
 }
 
-TEST(Placement, RefusesPlacesThatTheKeysOfAFieldCannotHold) {
+TEST(Placement, RefusesPositionsBeyondTheKeysOfAField) {
   const double far = (block_coord_limit(1) + 1.5) * block_edge<2> * cell_size;
   EXPECT_NO_THROW((Placement<2>::of(VecD<2>(far, 0), cell_size, basis)));
   EXPECT_THROW((Placement<2>::of(VecD<2>(far, 0), cell_size, basis, 1)), SimulationError);
@@ -45,13 +45,13 @@ struct SortCase {
 };
 
 template <class C>
-class ParticleSorting : public testing::Test {
+class ParticleSortTest : public testing::Test {
  protected:
   static constexpr int D = C::D;
   using T = typename C::Scalar;
   Particles<T, D> particles;
   std::vector<BlockKey> blocks;
-  std::map<std::uint32_t, VecD<D>> where;  // position by id
+  std::map<std::uint32_t, VecD<D>> positions;  // position by id
 
   void add_random(std::size_t n, double reach) {
     Random random(9);
@@ -60,21 +60,21 @@ class ParticleSorting : public testing::Test {
     for (std::size_t i = 0; i < n; ++i) {
       const auto at =
           Placement<D>::of(section<D>(random_vector(random, D, reach)), cell_size, basis);
-      // Up to a cell outside their block, as after some steps.
+      // As after some steps, up to a cell outside their block.
       for (int d = 0; d < D; ++d) particles.cell[d][i] = T(at.cell[d] + 2 * random.uniform() - 1);
       blocks.push_back(block_key<D>(at.block));
       particles.id[i] = std::uint32_t(i);
       particles.mass[i] = T(i);
       particles.plastic[i] = T(-double(i));
-      where[std::uint32_t(i)] = position_of(particles, i, blocks[i], cell_size, basis);
+      positions[std::uint32_t(i)] = position_of(particles, i, blocks[i], cell_size, basis);
     }
   }
 };
 using SortCases = testing::Types<SortCase<float, 2>, SortCase<float, 3>, SortCase<double, 2>,
                                  SortCase<double, 3>>;
-TYPED_TEST_SUITE(ParticleSorting, SortCases);
+TYPED_TEST_SUITE(ParticleSortTest, SortCases);
 
-TYPED_TEST(ParticleSorting, PutsEveryParticleIntoItsBlock) {
+TYPED_TEST(ParticleSortTest, PutsEveryParticleIntoItsBlock) {
   constexpr int D = TypeParam::D;
   using T = typename TypeParam::Scalar;
   this->add_random(6000, 0.3);  // enough to sort in parallel
@@ -84,7 +84,7 @@ TYPED_TEST(ParticleSorting, PutsEveryParticleIntoItsBlock) {
   EXPECT_EQ(layout.first.front(), 0);
   EXPECT_EQ(layout.first.back(), 6000);
   EXPECT_TRUE(std::is_sorted(layout.particle_blocks.begin(), layout.particle_blocks.end()));
-  const std::vector<BlockKey> in = blocks_of_particles(layout);
+  const std::vector<BlockKey> keys = blocks_of_particles(layout);
   for (std::size_t i = 0; i < p.size(); ++i) {
     const std::uint32_t id = p.id[i];
     EXPECT_EQ(p.mass[i], T(id));  // all values move with the particle
@@ -94,12 +94,12 @@ TYPED_TEST(ParticleSorting, PutsEveryParticleIntoItsBlock) {
       EXPECT_LT(p.cell[d][i], T(block_edge<D>));
     }
     const double rounding = 16 * std::numeric_limits<T>::epsilon() * cell_size;
-    EXPECT_LT((position_of(p, i, in[i], cell_size, basis) - this->where[id]).norm(),
+    EXPECT_LT((position_of(p, i, keys[i], cell_size, basis) - this->positions[id]).norm(),
               rounding + 1e-15);
   }
 }
 
-TYPED_TEST(ParticleSorting, IsStableAndIdempotent) {
+TYPED_TEST(ParticleSortTest, IsStableAndIdempotent) {
   constexpr int D = TypeParam::D;
   this->add_random(6000, 0.3);
   const BlockLayout<D> layout = sorted(this->particles, this->blocks, BlockLayout<D>(), 2);
@@ -114,7 +114,7 @@ TYPED_TEST(ParticleSorting, IsStableAndIdempotent) {
   EXPECT_EQ(again.around_nodes, layout.around_nodes);
 }
 
-TYPED_TEST(ParticleSorting, RefusesParticlesThatAreNowhere) {
+TYPED_TEST(ParticleSortTest, RefusesInvalidPositions) {
   constexpr int D = TypeParam::D;
   using T = typename TypeParam::Scalar;
   for (T bad : {std::numeric_limits<T>::quiet_NaN(), std::numeric_limits<T>::infinity(), T(1e30)}) {
@@ -130,12 +130,12 @@ TYPED_TEST(ParticleSorting, RefusesParticlesThatAreNowhere) {
       EXPECT_NE(std::string(error.what()).find("particle 7 "), std::string::npos);
     }
     EXPECT_EQ(this->particles.id, before.id);
-    for (int i = 0; i < 7; ++i)  // the particles before it have not been moved either
+    for (int i = 0; i < 7; ++i)  // nor have the particles before it been moved
       EXPECT_EQ(this->particles.cell[0][i], before.cell[0][i]);
   }
 }
 
-TEST(ParticleSortFloat, ACellJustBelowZeroStaysInsideItsBlock) {
+TEST(ParticleSort, ACellJustBelowZeroStaysInsideItsBlock) {
   // -1e-9 + 8 rounds up to 8.0f, which would be the next block's.
   Particles<float, 2> p;
   p.resize(1);
@@ -147,4 +147,4 @@ TEST(ParticleSortFloat, ACellJustBelowZeroStaysInsideItsBlock) {
 }
 
 }  // namespace
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -7,11 +7,11 @@
 #include "methods/mpm/solver_testing.hpp"
 #include "snowshed/methods/mpm/time_step.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
-Snow soft_snow() {
-  Snow snow;
+material::Snow soft_snow() {
+  material::Snow snow;
   snow.density = 120;
   snow.youngs_modulus = 2e5;
   return snow;
@@ -19,14 +19,16 @@ Snow soft_snow() {
 
 /// Snow thrown onto a slippery slope, in two halves of the materials 0 and `upper`, with the energy
 /// balance.
-std::unique_ptr<Solver> thrown_halves(const SolverVariant& variant, std::vector<Snow> snows,
-                                      int upper, int threads = 1, bool energy_balance = true) {
+std::unique_ptr<Solver> thrown_halves(const SolverVariant& variant,
+                                      std::vector<material::Snow> snows, int upper, int threads = 1,
+                                      bool energy_balance = true) {
   Options o = options_for(variant);
   o.snows = std::move(snows);
   o.settings.threads = threads;
   o.energy = energy_balance;
-  auto solver = make_solver(
-      o, {fixed(make_plane(Vec3::Zero(), Vec3(0.5, 0, 1).normalized()), Condition::separate, 0.3)});
+  auto solver =
+      make_solver(o, {fixed(geometry::make_plane(Vec3::Zero(), Vec3(0.5, 0, 1).normalized()),
+                            Condition::separate, 0.3)});
   const double size = variant.dimension == 2 ? 0.12 : 0.05;
   for (int half : {0, 1}) {
     const int material_id = half * upper;
@@ -56,22 +58,22 @@ double relative_difference(const Values& a, const Values& b) {
   return difference / size;
 }
 
-TEST(MaterialPerParticle, ThatAreEqualMoveAsOneDoes) {
-  for (SnowModel model : {SnowModel::cam_clay, SnowModel::elastic})
+TEST(MaterialPerParticle, EqualMaterialsMoveLikeOne) {
+  for (material::SnowModel model : {material::SnowModel::cam_clay, material::SnowModel::elastic})
     for (const SolverVariant& variant : all_solver_variants()) {
-      SCOPED_TRACE(variant.name() + (model == SnowModel::elastic ? "_elastic" : ""));
-      Snow snow;
+      SCOPED_TRACE(variant.name() + (model == material::SnowModel::elastic ? "_elastic" : ""));
+      material::Snow snow;
       snow.model = model;
-      const auto one = thrown_halves(variant, {snow}, 0, 1, false);
+      const auto single = thrown_halves(variant, {snow}, 0, 1, false);
       const auto first_of_two = thrown_halves(variant, {snow, snow}, 0);
       const auto both = thrown_halves(variant, {snow, snow}, 1);
-      for (Method* solver : {one.get(), first_of_two.get(), both.get()}) run_steps(*solver, 40);
-      const ParticleState a = one->state(), b = first_of_two->state(), c = both->state();
+      for (Method* solver : {single.get(), first_of_two.get(), both.get()}) run_steps(*solver, 40);
+      const SnowState a = snow_state(*single), b = snow_state(*first_of_two), c = snow_state(*both);
       expect_same_bits(b, c);
-      EXPECT_EQ(first_of_two->energy().residual(), both->energy().residual());
+      EXPECT_EQ(energy_of(*first_of_two).residual(), energy_of(*both).residual());
       EXPECT_EQ(std::count(c.material_ids.begin(), c.material_ids.end(), 1),
                 std::ptrdiff_t(c.material_ids.size() / 2));
-      // Without the balance, a single snow has kernels of its own, which may round differently.
+      // Without the balance, a single snow has its own kernels, which may round differently.
       EXPECT_TRUE(a.material_ids.empty());
       const double round_off = 1000 * variant.epsilon();
       EXPECT_LT(relative_difference(a.positions, b.positions), round_off);
@@ -80,16 +82,16 @@ TEST(MaterialPerParticle, ThatAreEqualMoveAsOneDoes) {
     }
 }
 
-TEST(MaterialPerParticle, ElasticSnowBesideSnowThatYieldsStaysElastic) {
-  Snow elastic = soft_snow();
-  elastic.model = SnowModel::elastic;
-  Snow weak;
+TEST(MaterialPerParticle, ElasticSnowBesideYieldingSnowStaysElastic) {
+  material::Snow elastic = soft_snow();
+  elastic.model = material::SnowModel::elastic;
+  material::Snow weak;
   weak.preconsolidation_pressure = 200;
   for (Precision precision : {Precision::float32, Precision::float64}) {
     const auto solver = thrown_halves({2, precision}, {weak, elastic}, 1);
     run_steps(*solver, 300);
-    const ParticleState s = solver->state();
-    const auto initial = thrown_halves({2, precision}, {weak, elastic}, 1)->state();
+    const SnowState s = snow_state(*solver);
+    const SnowState initial = snow_state(*thrown_halves({2, precision}, {weak, elastic}, 1));
     std::size_t yielded = 0;
     for (std::size_t i = 0; i < s.material_ids.size(); ++i) {
       if (s.material_ids[i] == 1)
@@ -102,11 +104,11 @@ TEST(MaterialPerParticle, ElasticSnowBesideSnowThatYieldsStaysElastic) {
   }
 }
 
-TEST(MaterialPerParticle, TheStiffestThereIsLimitsTheStep) {
+TEST(MaterialPerParticle, TheStiffestPresentSnowLimitsTheStep) {
   Options o = options_for({2, Precision::float64});
   o.gravity = 0;
-  o.snows = {soft_snow(), Snow()};
-  const auto limit = [&](const Snow& s) {
+  o.snows = {soft_snow(), material::Snow()};
+  const auto limit = [&](const material::Snow& s) {
     return o.settings.courant_factor * elastic_time_step(s.youngs_modulus, s.poissons_ratio,
                                                          s.density, 2, o.settings.dx,
                                                          Transfer::flip, Basis::quadratic);
@@ -123,13 +125,13 @@ TEST(MaterialPerParticle, TheStiffestThereIsLimitsTheStep) {
   EXPECT_DOUBLE_EQ(solver->time_step(), limit(o.snows[1]));
 }
 
-TEST(MaterialPerParticle, TheStiffestLimitsTheStepWhereverItStandsInTheList) {
+TEST(MaterialPerParticle, TheStiffestSnowLimitsTheStepAtAnyListPosition) {
   Options o = options_for({2, Precision::float64});
   o.gravity = 0;
   double step[2];
   for (const int stiffest : {0, 1}) {
     o.snows = {soft_snow(), soft_snow()};
-    o.snows[std::size_t(stiffest)] = Snow();
+    o.snows[std::size_t(stiffest)] = material::Snow();
     const auto solver = make_solver(o, {});
     for (const int material_id : {0, 1}) {
       const double x = 0.05 * material_id;
@@ -143,28 +145,28 @@ TEST(MaterialPerParticle, TheStiffestLimitsTheStepWhereverItStandsInTheList) {
   EXPECT_DOUBLE_EQ(step[0], step[1]);
 }
 
-TEST(MaterialPerParticle, AColumnOfTwoSettlesPiecewise) {
+TEST(MaterialPerParticle, AColumnOfTwoSnowsSettlesPiecewise) {
   // Elastic snow stands on a sticky floor between frictionless walls, and the lower layer carries
   // the upper one. With s = lambda + 2 mu of each layer, u' = g (rho_1 (h_1 - z) + rho_2 h_2)/s_1
   // in the lower layer, and u' = g rho_2 (H - z)/s_2 in the upper one. The snow vibrates about this
   // state. Its average over many of the longest periods is the static state.
   constexpr double half = 0.1, dx = 0.0025, width = 4 * dx, bin = 0.01, g = 9.81;
   Options o = options_for({2, Precision::float64}, dx);
-  o.snows.assign(2, Snow());
-  for (Snow& snow : o.snows) snow.model = SnowModel::elastic;
+  o.snows.assign(2, material::Snow());
+  for (material::Snow& snow : o.snows) snow.model = material::SnowModel::elastic;
   o.snows[0].density = 300;
   o.snows[0].youngs_modulus = 3e5;
   o.snows[1].density = 100;
   o.snows[1].youngs_modulus = 1e5;
   o.snows[1].poissons_ratio = 0.1;
-  const auto stiffness = [](const Snow& s) {
+  const auto stiffness = [](const material::Snow& s) {
     const double nu = s.poissons_ratio;
     return s.youngs_modulus * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
   };
-  const auto solver =
-      make_solver(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky),
-                      fixed(make_plane(Vec3::Zero(), Vec3::UnitX()), Condition::separate),
-                      fixed(make_plane(Vec3(width, 0, 0), -Vec3::UnitX()), Condition::separate)});
+  const auto solver = make_solver(
+      o, {fixed(geometry::make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky),
+          fixed(geometry::make_plane(Vec3::Zero(), Vec3::UnitX()), Condition::separate),
+          fixed(geometry::make_plane(Vec3(width, 0, 0), -Vec3::UnitX()), Condition::separate)});
   for (int material_id : {0, 1}) {
     ParticleBatch layer =
         filled_box(2, Vec3(0, 0, material_id * half), Vec3(width, 0, (material_id + 1) * half),
@@ -198,16 +200,16 @@ TEST(MaterialPerParticle, AColumnOfTwoSettlesPiecewise) {
   }
 }
 
-TEST(MaterialPerParticle, EnergyBooksClose) {
+TEST(MaterialPerParticle, EnergyBalanceCloses) {
   for (const SolverVariant& variant : {SolverVariant{2, Precision::float32},
                                        SolverVariant{2, Precision::float64, Transfer::apic}}) {
     Options o = options_for(variant);
     o.energy = true;
-    o.snows = {Snow(), soft_snow()};
-    for (Snow& snow : o.snows) snow.preconsolidation_pressure = 200;  // too weak to stand
+    o.snows = {material::Snow(), soft_snow()};
+    for (material::Snow& snow : o.snows) snow.preconsolidation_pressure = 200;  // too weak to stand
     o.snows[1].cohesion = 0;
-    const auto solver =
-        make_solver(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
+    const auto solver = make_solver(
+        o, {fixed(geometry::make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
     for (int material_id : {0, 1}) {
       ParticleBatch layer =
           filled_box(2, Vec3(0, 0, 0.12 * material_id), Vec3(0.05, 0, 0.12 * (material_id + 1)),
@@ -216,40 +218,40 @@ TEST(MaterialPerParticle, EnergyBooksClose) {
       layer.material_id = material_id;
       solver->add(layer);
     }
-    const EnergyBalance start = solver->energy();
+    const EnergyBalance start = energy_of(*solver);
     EXPECT_NEAR(start.gravitational, 9.81 * 0.05 * 0.12 * (210 * 0.06 + 120 * 0.18), 1e-5);
     run_until(*solver, 0.2);
-    const EnergyBalance end = solver->energy();
+    const EnergyBalance end = energy_of(*solver);
     const double turnover = start.gravitational - end.gravitational;
     EXPECT_GT(end.plastic, 0.05 * turnover) << variant.name();
     EXPECT_NEAR(end.residual(), 0.0, 0.02 * turnover) << variant.name();
   }
 }
 
-TEST(MaterialPerParticle, ElasticEnergyIsThatOfEachParticlesOwnSnow) {
+TEST(MaterialPerParticle, ElasticEnergyUsesTheSnowOfEachParticle) {
   // The energy that add() counts must be the energy that the kernels record.
-  const auto solver = thrown_halves({2, Precision::float64}, {Snow(), soft_snow()}, 1);
+  const auto solver = thrown_halves({2, Precision::float64}, {material::Snow(), soft_snow()}, 1);
   run_steps(*solver, 100);
-  const double booked = solver->energy().elastic;
+  const double recorded = energy_of(*solver).elastic;
   ParticleBatch grain;
   grain.positions = {Vec3(1, 0, 1)};
   grain.mass = 1e-9;
   solver->add(grain);
-  EXPECT_GT(booked, 1e-3);
-  EXPECT_NEAR(solver->energy().elastic, booked, 1e-9 * booked);
+  EXPECT_GT(recorded, 1e-3);
+  EXPECT_NEAR(energy_of(*solver).elastic, recorded, 1e-9 * recorded);
 }
 
-TEST(MaterialPerParticle, GiveTheSameBitsOnAnyNumberOfThreads) {
+TEST(MaterialPerParticle, ThreadsDoNotChangeTheBits) {
   const SolverVariant variant{2, Precision::float32};
-  const auto one = thrown_halves(variant, {Snow(), soft_snow()}, 1);
-  const auto two = thrown_halves(variant, {Snow(), soft_snow()}, 1, 2);
-  run_steps(*one, 150);
+  const auto single = thrown_halves(variant, {material::Snow(), soft_snow()}, 1);
+  const auto two = thrown_halves(variant, {material::Snow(), soft_snow()}, 1, 2);
+  run_steps(*single, 150);
   run_steps(*two, 150);
-  EXPECT_GT(one->counters().sorts, 1);
-  expect_same_bits(two->state(), one->state());
-  EXPECT_EQ(two->state().material_ids, one->state().material_ids);
-  EXPECT_EQ(two->energy().residual(), one->energy().residual());
+  EXPECT_GT(single->sorts(), 1);
+  expect_same_bits(snow_state(*two), snow_state(*single));
+  EXPECT_EQ(two->state().material_ids, single->state().material_ids);
+  EXPECT_EQ(energy_of(*two).residual(), energy_of(*single).residual());
 }
 
 }  // namespace
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

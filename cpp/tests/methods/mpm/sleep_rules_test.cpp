@@ -4,7 +4,7 @@
 
 #include "snowshed/methods/mpm/sleep.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
 constexpr double speed_limit = 0.02, time_to_sleep = 0.04, step = 1e-4;
@@ -17,7 +17,7 @@ struct QuietBlock {
   VecD<2> velocity = VecD<2>::Zero();
 };
 
-class TwoBlocks : public testing::Test {
+class SleepRules : public testing::Test {
  protected:
   /// Checks the blocks every few steps for a time (s). Returns whether the quiet block sleeps at
   /// the end.
@@ -45,12 +45,12 @@ class TwoBlocks : public testing::Test {
   Sleep<2> sleep_ = Sleep<2>(speed_limit, time_to_sleep, 9.81).relocated(layout_, 0.0);
 };
 
-TEST_F(TwoBlocks, SleepBelowTheLimitAfterTheTime) {
+TEST_F(SleepRules, BlocksSleepAfterTheTimeBelowTheLimit) {
   EXPECT_FALSE(sleeps_after(0.9 * time_to_sleep, {0.9 * speed_limit, speed_limit, {}}));
   EXPECT_TRUE(sleeps_after(0.3 * time_to_sleep, {0.9 * speed_limit, speed_limit, {}}));
 }
 
-TEST_F(TwoBlocks, StayAwakeAboveTheLimitAndWithOneFastParticle) {
+TEST_F(SleepRules, FastBlocksAndFastParticlesStayAwake) {
   EXPECT_FALSE(sleeps_after(5 * time_to_sleep, {1.1 * speed_limit, speed_limit, {}}));
   EXPECT_FALSE(sleeps_after(5 * time_to_sleep, {0.5 * speed_limit, 6 * speed_limit, {}}));
   EXPECT_TRUE(sleeps_after(5 * time_to_sleep, {0.5 * speed_limit, 4 * speed_limit, {}}));
@@ -58,7 +58,7 @@ TEST_F(TwoBlocks, StayAwakeAboveTheLimitAndWithOneFastParticle) {
 
 /// The mean velocity is 2 mm/s in the first half of the time to fall asleep, and smaller or larger
 /// in the second.
-TEST_F(TwoBlocks, StayAwakeWhileTheySetOff) {
+TEST_F(SleepRules, BlocksThatSetOffStayAwake) {
   for (const double second : {0.001, 0.009}) {
     wake_all();
     QuietBlock block{0.5 * speed_limit, speed_limit, {}, VecD<2>(0.0, -0.002)};
@@ -68,7 +68,7 @@ TEST_F(TwoBlocks, StayAwakeWhileTheySetOff) {
   }
 }
 
-TEST_F(TwoBlocks, StayAwakeWhileTheyLoseTheSpeedThatGravityTakes) {
+TEST_F(SleepRules, BlocksThatGravitySlowsDownStayAwake) {
   const double lost_speed = 9.81 * 0.5 * time_to_sleep;  // from one half to the other
   for (const double part : {0.3, 0.7}) {
     wake_all();
@@ -79,7 +79,7 @@ TEST_F(TwoBlocks, StayAwakeWhileTheyLoseTheSpeedThatGravityTakes) {
   }
 }
 
-TEST_F(TwoBlocks, WakeWhereTheirNeighbourWouldCarryThemFasterThanTheLimit) {
+TEST_F(SleepRules, BlocksWakeIfTheirNeighbourCarriesThemBeyondTheLimit) {
   for (const double part : {0.9, 1.1}) {
     fall_asleep();
     QuietBlock block{0, 0, {}};
@@ -90,7 +90,7 @@ TEST_F(TwoBlocks, WakeWhereTheirNeighbourWouldCarryThemFasterThanTheLimit) {
 
 /// Snow falls asleep after a time t. Within this time a steady force that causes the acceleration a
 /// gives it the velocity a t.
-TEST_F(TwoBlocks, WakeByForcesThatActForAsLongAsItTakesToFallAsleep) {
+TEST_F(SleepRules, SteadyForcesWakeBlocks) {
   for (const double part : {0.8, 1.2}) {
     fall_asleep();
     QuietBlock block{1.0, 1.0, {}};  // fast: once awake, the block stays awake
@@ -100,4 +100,4 @@ TEST_F(TwoBlocks, WakeByForcesThatActForAsLongAsItTakesToFallAsleep) {
 }
 
 }  // namespace
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

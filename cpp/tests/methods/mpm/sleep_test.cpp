@@ -6,7 +6,7 @@
 #include "methods/mpm/solver_testing.hpp"
 #include "snowshed/io/binary_archive.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
 constexpr double sleep_speed = 0.02;
@@ -16,13 +16,15 @@ const SolverVariant two_d{2, Precision::float32}, three_d{3, Precision::float32}
 Options sleepy(const SolverVariant& variant, double speed = sleep_speed,
                bool energy_balance = false) {
   Options o = options_for(variant);
-  o.snows[0].model = SnowModel::cam_clay;
+  o.snows[0].model = material::SnowModel::cam_clay;
   o.settings.sleep_speed = speed;
   o.energy = energy_balance;
   return o;
 }
 
-Obstacle floor() { return fixed(make_plane(Vec3(0, 0, 0), Vec3(0, 0, 1)), Condition::sticky); }
+Obstacle floor() {
+  return fixed(geometry::make_plane(Vec3(0, 0, 0), Vec3(0, 0, 1)), Condition::sticky);
+}
 
 /// A low wall of snow, resting on the floor.
 ParticleBatch wall_of_snow(const SolverVariant& variant) {
@@ -48,15 +50,15 @@ std::unique_ptr<Solver> wall_under_lump(const SolverVariant& variant, double spe
   return solver;
 }
 
-double largest_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-  double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, (a[i] - b[i]).norm());
-  return largest;
+double max_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double distance = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) distance = std::max(distance, (a[i] - b[i]).norm());
+  return distance;
 }
 
-class SleepFiles : public TemporaryFolder {};
+class SleepCheckpoint : public io::TemporaryFolder {};
 
-TEST(Sleep, SnowAtRestCostsNothingAndStaysWhereItIs) {
+TEST(Sleep, SnowAtRestCostsNothingAndDoesNotMove) {
   for (const SolverVariant& variant : {two_d, three_d}) {
     const auto solver = make_solver(sleepy(variant), {floor()});
     solver->add(wall_of_snow(variant));
@@ -67,7 +69,7 @@ TEST(Sleep, SnowAtRestCostsNothingAndStaysWhereItIs) {
     run_steps(*solver, 500);
     EXPECT_EQ(solver->counters().particle_updates, counters.particle_updates);
     EXPECT_EQ(solver->slept_updates() - slept, std::int64_t(500 * solver->size()));
-    EXPECT_EQ(largest_distance(solver->state().positions, before.positions), 0.0);
+    EXPECT_EQ(max_distance(solver->state().positions, before.positions), 0.0);
     EXPECT_EQ(solver->motion(sleep_speed).rms_speed, 0.0);
   }
 }
@@ -77,12 +79,12 @@ TEST(Sleep, IsOffAtSpeedZero) {
   solver->add(wall_of_snow(two_d));
   run_until(*solver, 0.2);
   EXPECT_EQ(solver->slept_updates(), 0);
-  EXPECT_EQ(solver->energy().sleep, 0.0);
+  EXPECT_EQ(energy_of(*solver).sleep, 0.0);
 }
 
 /// The snow takes a twentieth of a second to become faster than the limit. It must not fall asleep
 /// in this time, because its mean velocity grows.
-TEST(Sleep, SnowThatSetsOffSlowlyGoesOn) {
+TEST(Sleep, SnowThatSetsOffSlowlyKeepsMoving) {
   Options o = sleepy(two_d);
   o.gravity = 0.4;
   const auto solver = make_solver(o, {});
@@ -94,15 +96,15 @@ TEST(Sleep, SnowThatSetsOffSlowlyGoesOn) {
 }
 
 /// A slab on a ramp of 40 degrees whose friction nearly holds it: 0.3 and 0.07 m/s2 down the slope.
-TEST(Sleep, ASlabThatSetsOffSlowlyGoesOn) {
+TEST(Sleep, ASlabThatSetsOffSlowlyKeepsMoving) {
   const double tilt = radians(40);
   const Vec3 normal(std::sin(tilt), 0, std::cos(tilt)), slope(std::cos(tilt), 0, -std::sin(tilt));
   for (const double friction : {0.8, 0.82, 0.83}) {
     double speed[2];
     for (const double limit : {0.0, sleep_speed}) {
-      const auto solver =
-          make_solver(sleepy(two_d, limit),
-                      {fixed(make_plane(Vec3::Zero(), normal), Condition::separate, friction)});
+      const auto solver = make_solver(
+          sleepy(two_d, limit),
+          {fixed(geometry::make_plane(Vec3::Zero(), normal), Condition::separate, friction)});
       ParticleBatch slab = filled_box(2, Vec3::Zero(), Vec3(1, 0, 0.05), 0.005);
       for (Vec3& x : slab.positions) x = x.x() * slope + x.z() * normal;
       solver->add(slab);
@@ -114,8 +116,8 @@ TEST(Sleep, ASlabThatSetsOffSlowlyGoesOn) {
   }
 }
 
-/// Snow that drifts without weight has one speed, and nothing wakes it.
-TEST(Sleep, BeginsAtTheStatedSpeedAndAfterTheStatedTime) {
+/// Snow that drifts without gravity has a constant speed, and nothing wakes it.
+TEST(Sleep, BeginsAtTheGivenSpeedAfterTheGivenTime) {
   for (const double part : {0.9, 1.1}) {
     Options o = sleepy(two_d);
     o.gravity = 0;
@@ -130,9 +132,9 @@ TEST(Sleep, BeginsAtTheStatedSpeedAndAfterTheStatedTime) {
   }
 }
 
-/// A layer that is laid on snow without a blow hardly moves: its weight alone must wake the snow,
+/// A layer that is laid on snow without impact hardly moves: its weight alone must wake the snow,
 /// which then carries it.
-TEST(Sleep, PressureWakes) {
+TEST(Sleep, PressureWakesSnow) {
   double gain[2];
   for (const double limit : {0.0, sleep_speed}) {
     const auto solver = make_solver(sleepy(two_d, limit), {floor()});
@@ -144,8 +146,8 @@ TEST(Sleep, PressureWakes) {
       run_until(*solver, from);
       while (solver->time() < from + 0.1) {
         run_steps(*solver, 8);
-        const ParticleState s = solver->state();
-        for (std::size_t i = 0; i < below.positions.size(); ++i) sum += s.pressures[i], ++count;
+        const std::vector<double> pressures = values_by_id(*solver, "pressure");
+        for (std::size_t i = 0; i < below.positions.size(); ++i) sum += pressures[i], ++count;
       }
       return sum / count;
     };
@@ -158,8 +160,8 @@ TEST(Sleep, PressureWakes) {
   EXPECT_NEAR(gain[1], gain[0], 0.3 * gain[0]);
 }
 
-/// A grain that is put into a block of sleeping snow, without touching it, flies on.
-TEST(Sleep, ArrivalsWake) {
+/// A grain that enters a block of sleeping snow without touching it keeps flying.
+TEST(Sleep, ArrivingParticlesWakeSnow) {
   Options o = sleepy(two_d);
   o.gravity = 0;
   const auto solver = make_solver(o, {});
@@ -176,9 +178,9 @@ TEST(Sleep, ArrivalsWake) {
   EXPECT_NEAR(solver->state().positions.back().z(), 0.02 + 0.1 * (solver->time() - start), 1e-4);
 }
 
-TEST(Sleep, SnowThatTurnsInTheAirGoesOn) {
-  // The speed is the same before and after the top of a throw. It can also stay the same when a
-  // blow reduces one component of the velocity while gravity increases another.
+TEST(Sleep, SnowAtTheTopOfAThrowStaysAwake) {
+  // The speed is the same before and after the top of a throw. It can also stay the same when an
+  // impact reduces one component of the velocity while gravity increases another.
   Options o = sleepy(two_d, 0.2);
   for (const Vec3& thrown : {Vec3(0, 0, 0.05), Vec3(0.1, 0, 0.05), Vec3(-0.15, 0, 0.02)}) {
     const auto solver = make_solver(o, {});
@@ -190,7 +192,7 @@ TEST(Sleep, SnowThatTurnsInTheAirGoesOn) {
   }
 }
 
-TEST(Sleep, AnImpactWakes) {
+TEST(Sleep, AnImpactWakesSnow) {
   for (const SolverVariant& variant : {two_d, three_d}) {
     const auto sleeping = wall_under_lump(variant, sleep_speed),
                awake = wall_under_lump(variant, 0.0);
@@ -201,26 +203,27 @@ TEST(Sleep, AnImpactWakes) {
     run_until(*sleeping, end);
     run_until(*awake, end);
     const auto a = sleeping->state().positions, b = awake->state().positions;
-    EXPECT_GT(largest_distance(before.positions, a), 0.01);
-    // The mean height hardly differs, and no particle lies farther off than two cells.
+    EXPECT_GT(max_distance(before.positions, a), 0.01);
+    // The mean height hardly differs, and no particle differs by more than two cells.
     EXPECT_NEAR(weighted_mean(sleeping->state(), a)[2], weighted_mean(awake->state(), b)[2], 5e-4);
-    EXPECT_LT(largest_distance(a, b), 0.02);
+    EXPECT_LT(max_distance(a, b), 0.02);
     EXPECT_LT(sleeping->counters().particle_updates, awake->counters().particle_updates * 3 / 4);
   }
 }
 
-TEST(Sleep, EnergyThatSleepTakesIsInTheBooks) {
+TEST(Sleep, EnergyLostToSleepIsRecorded) {
   const auto solver = wall_under_lump(two_d, sleep_speed, 1, true);
   run_until(*solver, 0.5);
-  const EnergyBalance e = solver->energy();
+  const EnergyBalance e = energy_of(*solver);
   EXPECT_GT(e.sleep, 0.0);
   EXPECT_LT(e.sleep, 0.01 * e.added);
   EXPECT_NEAR(e.residual(), 0.0, 0.01 * e.added);
 }
 
-TEST(Sleep, AMovingObstacleWakes) {
-  Obstacle paddle = fixed(make_box(Vec3(-0.05, 0, 0.05), Vec3(0.06, 1, 0.08)), Condition::sticky);
-  MotionSpec motion;
+TEST(Sleep, AMovingObstacleWakesSnow) {
+  Obstacle paddle =
+      fixed(geometry::make_box(Vec3(-0.05, 0, 0.05), Vec3(0.06, 1, 0.08)), Condition::sticky);
+  geometry::MotionSpec motion;
   motion.start = 0.2;
   motion.velocity = Vec3(0.5, 0, 0);
   paddle.motion.emplace(motion);
@@ -232,7 +235,7 @@ TEST(Sleep, AMovingObstacleWakes) {
   EXPECT_GT(solver->motion(sleep_speed).rms_speed, 0.05);
 }
 
-TEST(Sleep, AKickWakes) {
+TEST(Sleep, AKickWakesSnow) {
   const auto solver = make_solver(sleepy(two_d), {floor()});
   solver->add(wall_of_snow(two_d));
   run_until(*solver, 0.2);
@@ -242,33 +245,33 @@ TEST(Sleep, AKickWakes) {
   EXPECT_EQ(solver->counters().particle_updates - before, std::int64_t(solver->size()));
 }
 
-TEST(Sleep, GivesTheSameBitsOnAnyNumberOfThreads) {
-  const auto one = wall_under_lump(three_d, sleep_speed),
+TEST(Sleep, ThreadsDoNotChangeTheBits) {
+  const auto single = wall_under_lump(three_d, sleep_speed),
              two = wall_under_lump(three_d, sleep_speed, 2);
-  for (const auto* solver : {&one, &two}) run_until(**solver, 0.2);
-  EXPECT_GT(one->slept_updates(), 0);
-  EXPECT_EQ(two->slept_updates(), one->slept_updates());
-  expect_same_bits(two->state(), one->state());
+  for (const auto* solver : {&single, &two}) run_until(**solver, 0.2);
+  EXPECT_GT(single->slept_updates(), 0);
+  EXPECT_EQ(two->slept_updates(), single->slept_updates());
+  expect_same_bits(snow_state(*two), snow_state(*single));
 }
 
-TEST_F(SleepFiles, GoesOnFromACheckpointWithTheSameBits) {
-  const auto whole = wall_under_lump(two_d, sleep_speed, 1, true);
-  run_until(*whole, 0.1);
-  EXPECT_GT(whole->slept_updates(), 0);
-  while (!whole->at_safe_point()) whole->step();
-  BinaryWriter out;
-  whole->save(out);
+TEST_F(SleepCheckpoint, ResumesToTheSameBits) {
+  const auto reference = wall_under_lump(two_d, sleep_speed, 1, true);
+  run_until(*reference, 0.1);
+  EXPECT_GT(reference->slept_updates(), 0);
+  while (!reference->at_safe_point()) reference->step();
+  io::BinaryWriter out;
+  reference->save(out);
   out.save(path("checkpoint"));
   const auto resumed = make_solver(sleepy(two_d, sleep_speed, true), {floor()});
-  resumed->load(BinaryReader::load(path("checkpoint")));
-  for (const auto* solver : {&whole, &resumed}) run_until(**solver, 0.25);
-  expect_same_bits(resumed->state(), whole->state());
-  EXPECT_EQ(resumed->slept_updates(), whole->slept_updates());
-  EXPECT_EQ(resumed->energy().residual(), whole->energy().residual());
+  resumed->load(io::BinaryReader::load(path("checkpoint")));
+  for (const auto* solver : {&reference, &resumed}) run_until(**solver, 0.25);
+  expect_same_bits(snow_state(*resumed), snow_state(*reference));
+  EXPECT_EQ(resumed->slept_updates(), reference->slept_updates());
+  EXPECT_EQ(energy_of(*resumed).residual(), energy_of(*reference).residual());
 }
 
-/// The cells of the particles in sleeping blocks, as a checkpoint has them.
-std::vector<float> sleeping_cells(const BinaryReader& in) {
+/// The cells of the particles in sleeping blocks, as stored in a checkpoint.
+std::vector<float> sleeping_cells(const io::BinaryReader& in) {
   const auto first = in.get<std::int32_t>("blocks/first");
   const auto sleep = in.get<double>("sleep");
   const std::size_t blocks = first.size() - 1, values = sleep.size() / blocks;
@@ -282,8 +285,8 @@ std::vector<float> sleeping_cells(const BinaryReader& in) {
   return cells;
 }
 
-/// Snow that glides on without weight is quiet, and some of it is always about to leave its block.
-TEST_F(SleepFiles, SnowThatSleepsLiesWithinItsBlock) {
+/// Snow that drifts without gravity is quiet, and some of it is always about to leave its block.
+TEST_F(SleepCheckpoint, SleepingSnowLiesWithinItsBlock) {
   for (const double speed : {0.5, 0.8, 1.1, 1.4}) {
     Options o = sleepy(two_d, 2.0);
     o.gravity = 0;
@@ -295,10 +298,10 @@ TEST_F(SleepFiles, SnowThatSleepsLiesWithinItsBlock) {
     std::size_t asleep = 0;
     for (int k = 0; k < 40; ++k) {
       run_steps(*solver, 8);
-      BinaryWriter out;
+      io::BinaryWriter out;
       solver->save(out);
       out.save(path("checkpoint"));
-      for (const float cell : sleeping_cells(BinaryReader::load(path("checkpoint")))) {
+      for (const float cell : sleeping_cells(io::BinaryReader::load(path("checkpoint")))) {
         ASSERT_GE(cell, 0.0f) << speed;
         ASSERT_LT(cell, 8.0f) << speed;
         ++asleep;
@@ -309,4 +312,4 @@ TEST_F(SleepFiles, SnowThatSleepsLiesWithinItsBlock) {
 }
 
 }  // namespace
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -8,23 +8,23 @@
 #include "snowshed/io/binary_archive.hpp"
 #include "snowshed/methods/mpm/kernel_api.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
-class InEveryWay : public testing::TestWithParam<SolverVariant> {};
-INSTANTIATE_TEST_SUITE_P(Method, InEveryWay, testing::ValuesIn(all_solver_variants()),
+class MpmSolverVariants : public testing::TestWithParam<SolverVariant> {};
+INSTANTIATE_TEST_SUITE_P(All, MpmSolverVariants, testing::ValuesIn(all_solver_variants()),
                          [](const auto& info) { return info.param.name(); });
 
-/// A swarm of particles with velocities of their own, a few of which share each cell.
+/// A swarm of particles with random velocities, a few per cell.
 void add_swarm(Method& solver, const SolverVariant& variant, int particles, double size,
                double speed) {
   Random random(11);
   for (int i = 0; i < particles; ++i) {
-    ParticleBatch one;
-    one.positions = {random_vector(random, variant.dimension, size)};
-    one.velocity = random_vector(random, variant.dimension, speed);
-    one.mass = 1e-3 * (0.5 + random.uniform());
-    solver.add(one);
+    ParticleBatch particle;
+    particle.positions = {random_vector(random, variant.dimension, size)};
+    particle.velocity = random_vector(random, variant.dimension, speed);
+    particle.mass = 1e-3 * (0.5 + random.uniform());
+    solver.add(particle);
   }
 }
 
@@ -34,7 +34,7 @@ double sum_of_speeds(const ParticleState& s) {
   return sum;
 }
 
-TEST_P(InEveryWay, FreeFlightKeepsMassAndMomentum) {
+TEST_P(MpmSolverVariants, FreeFlightKeepsMassAndMomentum) {
   const SolverVariant variant = GetParam();
   Options o = options_for(variant);
   o.gravity = 0;
@@ -51,7 +51,7 @@ TEST_P(InEveryWay, FreeFlightKeepsMassAndMomentum) {
             0.01);  // the particles did interact
 }
 
-TEST_P(InEveryWay, FreeFallIsExact) {
+TEST_P(MpmSolverVariants, FreeFallIsExact) {
   const SolverVariant variant = GetParam();
   const auto solver = make_solver(options_for(variant), {});
   ParticleBatch batch = filled_box(variant.dimension, Vec3(0, 0, 1), Vec3(0.03, 0.03, 1.03), 0.005);
@@ -64,29 +64,29 @@ TEST_P(InEveryWay, FreeFallIsExact) {
     speed -= 9.81 * solver->time_step();
     height += speed * solver->time_step();
   }
-  const ParticleState after = solver->state();
+  const SnowState after = snow_state(*solver);
   const double t = solver->time();
   EXPECT_NEAR(speed, 1 - 9.81 * t, 1e-12);
   // Positions are sums of 300 displacements, rounded to a block of 8 cells.
   const double rounding = 300 * variant.epsilon();
   for (std::size_t i = 0; i < after.positions.size(); ++i) {
-    const Vec3 moved = after.positions[i] - before.positions[i];
-    ASSERT_NEAR(moved.x(), 0.5 * t, 0.08 * rounding);
-    ASSERT_NEAR(moved.z(), height, 0.08 * rounding);
+    const Vec3 displacement = after.positions[i] - before.positions[i];
+    ASSERT_NEAR(displacement.x(), 0.5 * t, 0.08 * rounding);
+    ASSERT_NEAR(displacement.z(), height, 0.08 * rounding);
     ASSERT_NEAR(after.velocities[i].x(), 0.5, rounding);
     ASSERT_NEAR(after.velocities[i].z(), speed, 2 * rounding);
     ASSERT_NEAR(after.volume_ratios[i], 1.0, 10 * rounding);
   }
 }
 
-class SolverFiles : public TemporaryFolder {
+class MpmRotation : public io::TemporaryFolder {
  protected:
   /// Sum over the particles of the antisymmetric part of APIC's affine matrix, as a vector.
   Vec3 affine_spin(const Method& solver, int dimension) {
-    BinaryWriter out;
+    io::BinaryWriter out;
     solver.save(out);
     out.save(path("state"));
-    const BinaryReader in = BinaryReader::load(path("state"));
+    const io::BinaryReader in = io::BinaryReader::load(path("state"));
     const auto masses = in.get<double>("particles/mass");
     Mat3 sum = Mat3::Zero();
     for (int i = 0; i < dimension; ++i)
@@ -111,7 +111,7 @@ class SolverFiles : public TemporaryFolder {
   }
 };
 
-TEST_F(SolverFiles, ApicKeepsAngularMomentum) {
+TEST_F(MpmRotation, ApicKeepsAngularMomentum) {
   for (const SolverVariant& variant : all_solver_variants()) {
     if (variant.transfer != Transfer::apic || variant.precision != Precision::float64) continue;
     Options o = options_for(variant);
@@ -130,7 +130,7 @@ TEST_F(SolverFiles, ApicKeepsAngularMomentum) {
 
 /// Affine FLIP keeps the angular momentum if the affine velocities fit the particles' velocities,
 /// as in a spin.
-TEST_F(SolverFiles, AffineFlipKeepsTheAngularMomentumOfASpin) {
+TEST_F(MpmRotation, AffineFlipKeepsTheAngularMomentumOfASpin) {
   const SolverVariant variant{2, Precision::float64, Transfer::affine_flip};
   Options o = options_for(variant);
   o.gravity = 0;
@@ -144,14 +144,14 @@ TEST_F(SolverFiles, AffineFlipKeepsTheAngularMomentumOfASpin) {
   EXPECT_NEAR(after.y(), before.y(), 0.005 * before.y());  // FLIP loses four fifths, at 16 1/s
 }
 
-TEST_F(SolverFiles, ADiscKeepsSpinning) {
+TEST_F(MpmRotation, ADiscKeepsSpinning) {
   constexpr double radius = 0.05, spin = 20, duration = 0.04;
   for (Transfer transfer : {Transfer::flip, Transfer::apic, Transfer::affine_flip}) {
     const SolverVariant variant{2, Precision::float64, transfer};
     Options o = options_for(variant);
     o.gravity = 0;
     o.settings.flip_ratio = 1;  // each percent of PIC damps a spin of so few cells visibly
-    o.snows[0].model = SnowModel::elastic;
+    o.snows[0].model = material::SnowModel::elastic;
     const auto solver = make_solver(o, {});
     add_spinning_disc(*solver, radius, spin, 0.005);
     const ParticleState before = solver->state();
@@ -160,27 +160,29 @@ TEST_F(SolverFiles, ADiscKeepsSpinning) {
       inertia += before.masses[i] * before.positions[i].squaredNorm();
     // The grid's moment of inertia is larger by M dx^2/4 in each direction. Affine FLIP's affine
     // velocities, which are zero at first, follow the particles' velocities.
-    const double of_grid = inertia + total_mass(before) * 1e-4 / 2;
-    const double expected = transfer == Transfer::affine_flip ? spin : spin * inertia / of_grid;
+    const double grid_inertia = inertia + total_mass(before) * 1e-4 / 2;
+    const double expected =
+        transfer == Transfer::affine_flip ? spin : spin * inertia / grid_inertia;
     run_until(*solver, duration);
     const ParticleState after = solver->state();
     const double angle = expected * solver->time();
     const Mat3 turn = Eigen::AngleAxisd(angle, Vec3::UnitY()).toRotationMatrix();
-    double worst = 0;
+    double max_error = 0;
     for (std::size_t i = 0; i < after.positions.size(); ++i)
-      worst = std::max(worst, (after.positions[i] - turn * before.positions[i]).norm());
+      max_error = std::max(max_error, (after.positions[i] - turn * before.positions[i]).norm());
     // The limit is relative to the distance that the rim has moved. FLIP's rim lags a little,
-    // because it is not quite affine there.
-    EXPECT_LT(worst, (transfer == Transfer::flip ? 0.03 : 0.01) * angle * radius) << variant.name();
+    // because the velocity is not quite affine there.
+    EXPECT_LT(max_error, (transfer == Transfer::flip ? 0.03 : 0.01) * angle * radius)
+        << variant.name();
   }
 }
 
-TEST(Method, AnElasticBarVibratesAtItsNaturalFrequency) {
+TEST(MpmSolver, AnElasticBarVibratesAtItsNaturalFrequency) {
   // Free at both ends, nu = 0: f = c/(2 L) with c = sqrt(E/rho), no lateral motion.
   constexpr double length = 0.6, amplitude = 0.05;
   Options o = options_for({2, Precision::float64});
   o.gravity = 0;
-  o.snows[0].model = SnowModel::elastic;
+  o.snows[0].model = material::SnowModel::elastic;
   o.snows[0].poissons_ratio = 0;
   const double c = std::sqrt(o.snows[0].youngs_modulus / o.snows[0].density);
   const double frequency = c / (2 * length);
@@ -202,44 +204,45 @@ TEST(Method, AnElasticBarVibratesAtItsNaturalFrequency) {
     return 2 * sum / double(s.masses.size());
   };
   std::vector<double> zeros;
-  double before = mode(), largest = 0;
+  double before = mode(), last_amplitude = 0;
   while (zeros.size() < 5) {
     solver->step();
     const double now = mode();
     if (before * now < 0) {
       zeros.push_back(solver->time() - solver->time_step() * now / (now - before));
-      largest = 0;
+      last_amplitude = 0;
     }
-    largest = std::max(largest, std::abs(now));
+    last_amplitude = std::max(last_amplitude, std::abs(now));
     before = now;
     ASSERT_LT(solver->time(), 4 / frequency);
   }
   EXPECT_NEAR(2 / (zeros[4] - zeros[0]) / frequency, 1.0, 0.02);
-  RecordProperty("lost_amplitude_percent_in_2_periods", int(100 * (1 - largest / amplitude)));
+  RecordProperty("lost_amplitude_percent_in_2_periods",
+                 int(100 * (1 - last_amplitude / amplitude)));
 }
 
-TEST(Method, AColumnCarriesItsWeight) {
+TEST(MpmSolver, AColumnCarriesItsWeight) {
   // Elastic snow stands on a sticky floor between frictionless walls. With s = lambda + 2 mu, the
   // vertical stress is rho g (H - z), the pressure is (lambda + mu)/s of it, and the settlement is
   // rho g (H z - z^2/2)/s. The snow vibrates about this state. Its average over four of the longest
   // periods, 4 H/c, is the static state.
   constexpr double height = 0.2, width = 0.04, spacing = 0.005;
   Options o = options_for({2, Precision::float64});
-  o.snows[0].model = SnowModel::elastic;
+  o.snows[0].model = material::SnowModel::elastic;
   o.snows[0].youngs_modulus = 1e5;
   const double nu = o.snows[0].poissons_ratio, mu = 1e5 / (2 * (1 + nu));
   const double lambda = 1e5 * nu / ((1 + nu) * (1 - 2 * nu)), s = lambda + 2 * mu;
   const double weight = o.snows[0].density * o.gravity;
-  const auto solver =
-      make_solver(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky),
-                      fixed(make_plane(Vec3::Zero(), Vec3::UnitX()), Condition::separate),
-                      fixed(make_plane(Vec3(width, 0, 0), -Vec3::UnitX()), Condition::separate)});
+  const auto solver = make_solver(
+      o, {fixed(geometry::make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky),
+          fixed(geometry::make_plane(Vec3::Zero(), Vec3::UnitX()), Condition::separate),
+          fixed(geometry::make_plane(Vec3(width, 0, 0), -Vec3::UnitX()), Condition::separate)});
   solver->add(filled_box(2, Vec3::Zero(), Vec3(width, 0, height), spacing));
   const ParticleState start = solver->state();
   const std::size_t n = start.positions.size();
   std::vector<double> pressure(n), settlement(n);
   const double duration = 16 * height / std::sqrt(s / o.snows[0].density);
-  average(*solver, duration, [&](double part, const ParticleState& now) {
+  average(*solver, duration, [&](double part, const SnowState& now) {
     for (std::size_t i = 0; i < n; ++i) {
       pressure[i] += part * now.pressures[i];
       settlement[i] += part * (start.positions[i].z() - now.positions[i].z());
@@ -271,8 +274,9 @@ std::unique_ptr<Solver> thrown_snow(SolverVariant variant, int threads, double s
   Options o = options_for(variant);
   o.settings.threads = threads;
   o.energy = energy_balance;
-  auto solver = make_solver(
-      o, {fixed(make_plane(Vec3::Zero(), Vec3(0.5, 0, 1).normalized()), Condition::separate, 0.3)});
+  auto solver =
+      make_solver(o, {fixed(geometry::make_plane(Vec3::Zero(), Vec3(0.5, 0, 1).normalized()),
+                            Condition::separate, 0.3)});
   ParticleBatch batch =
       filled_box(variant.dimension, Vec3(0, 0, 0.01), Vec3(size, size, size), 0.005);
   batch.velocity = Vec3(1, 0, -3);
@@ -280,10 +284,10 @@ std::unique_ptr<Solver> thrown_snow(SolverVariant variant, int threads, double s
   return solver;
 }
 
-/// The energy balance has kernels of its own.
-class SameBits : public SolverFiles, public testing::WithParamInterface<bool> {};
+/// The energy balance has its own kernels.
+class MpmReproducibility : public MpmRotation, public testing::WithParamInterface<bool> {};
 
-TEST_P(SameBits, OnAnyNumberOfThreads) {
+TEST_P(MpmReproducibility, ThreadsDoNotChangeTheBits) {
   const bool energy_balance = GetParam();
   for (const SolverVariant& variant :
        {SolverVariant{2, Precision::float32}, SolverVariant{3, Precision::float32},
@@ -291,55 +295,55 @@ TEST_P(SameBits, OnAnyNumberOfThreads) {
         SolverVariant{2, Precision::float64, Transfer::affine_flip, Basis::cubic}}) {
     const double size = variant.dimension == 2 ? 0.25 : 0.08;
     const int steps = variant.dimension == 2 ? 150 : 80;
-    const auto one = thrown_snow(variant, 1, size, energy_balance);
-    run_steps(*one, steps);
-    EXPECT_GT(one->counters().sorts, 1);
+    const auto single = thrown_snow(variant, 1, size, energy_balance);
+    run_steps(*single, steps);
+    EXPECT_GT(single->sorts(), 1);
     for (int threads : {2, 4}) {
-      const auto many = thrown_snow(variant, threads, size, energy_balance);
-      run_steps(*many, steps);
+      const auto several = thrown_snow(variant, threads, size, energy_balance);
+      run_steps(*several, steps);
       SCOPED_TRACE(variant.name() + " on " + std::to_string(threads) + " threads");
-      expect_same_bits(many->state(), one->state());
-      EXPECT_EQ(many->time(), one->time());
-      EXPECT_EQ(many->energy().friction, one->energy().friction);
-      EXPECT_EQ(many->energy().residual(), one->energy().residual());
+      expect_same_bits(snow_state(*several), snow_state(*single));
+      EXPECT_EQ(several->time(), single->time());
+      EXPECT_EQ(energy_of(*several).friction, energy_of(*single).friction);
+      EXPECT_EQ(energy_of(*several).residual(), energy_of(*single).residual());
     }
   }
 }
 
-TEST_P(SameBits, FromACheckpoint) {
+TEST_P(MpmReproducibility, ResumingDoesNotChangeTheBits) {
   const bool energy_balance = GetParam();
   for (SolverVariant variant : all_solver_variants()) {
     if (variant.dimension == 3 && variant.precision == Precision::float64) continue;
-    const auto whole = thrown_snow(variant, 1, 0.05, energy_balance);
-    run_steps(*whole, 40);
-    while (!whole->at_safe_point()) whole->step();
-    BinaryWriter out;
-    whole->save(out);
+    const auto reference = thrown_snow(variant, 1, 0.05, energy_balance);
+    run_steps(*reference, 40);
+    while (!reference->at_safe_point()) reference->step();
+    io::BinaryWriter out;
+    reference->save(out);
     out.save(path(variant.name()));
     const auto resumed = thrown_snow(variant, 1, 0.05, energy_balance);
-    resumed->load(BinaryReader::load(path(variant.name())));
-    run_steps(*whole, 70);
+    resumed->load(io::BinaryReader::load(path(variant.name())));
+    run_steps(*reference, 70);
     run_steps(*resumed, 70);
     SCOPED_TRACE(variant.name());
-    expect_same_bits(resumed->state(), whole->state());
-    EXPECT_EQ(resumed->time(), whole->time());
-    EXPECT_EQ(resumed->counters().steps, whole->counters().steps);
-    EXPECT_EQ(resumed->energy().residual(), whole->energy().residual());
+    expect_same_bits(snow_state(*resumed), snow_state(*reference));
+    EXPECT_EQ(resumed->time(), reference->time());
+    EXPECT_EQ(resumed->counters().steps, reference->counters().steps);
+    EXPECT_EQ(energy_of(*resumed).residual(), energy_of(*reference).residual());
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Method, SameBits, testing::Bool(), [](const auto& info) {
+INSTANTIATE_TEST_SUITE_P(All, MpmReproducibility, testing::Bool(), [](const auto& info) {
   return info.param ? "with_energy_balance" : "without_energy_balance";
 });
 
-// --- steps that are too much ------------------------------------------------------------------
+// --- steps that are too large -----------------------------------------------------------------
 
-TEST(Method, AViolentImpactStaysFinite) {
+TEST(MpmSolver, AViolentImpactStaysFinite) {
   for (Transfer transfer : {Transfer::flip, Transfer::apic, Transfer::affine_flip}) {
     Options o = options_for({2, Precision::float32, transfer});
     o.snows[0].youngs_modulus = 1e4;
-    const auto solver =
-        make_solver(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
+    const auto solver = make_solver(
+        o, {fixed(geometry::make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
     ParticleBatch batch = filled_box(2, Vec3(0, 0, 0.02), Vec3(0.1, 0, 0.12), 0.005);
     batch.velocity.z() = -100;
     solver->add(batch);
@@ -353,12 +357,12 @@ TEST(Method, AViolentImpactStaysFinite) {
   }
 }
 
-TEST(Method, RejectsStepsThatStrainTooMuch) {
+TEST(MpmSolver, RejectsStepsWithTooMuchStrain) {
   for (double limit : {0.2, 0.002}) {
     Options o = options_for({2, Precision::float64});
     o.settings.strain_limit = limit;
-    const auto solver =
-        make_solver(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
+    const auto solver = make_solver(
+        o, {fixed(geometry::make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
     ParticleBatch batch = filled_box(2, Vec3(0, 0, 0.005), Vec3(0.05, 0, 0.055), 0.005);
     batch.velocity.z() = -1;
     solver->add(batch);
@@ -371,7 +375,7 @@ TEST(Method, RejectsStepsThatStrainTooMuch) {
   }
 }
 
-TEST(Method, FastSnowMovesLessThanHalfACellInEveryStep) {
+TEST(MpmSolver, FastSnowMovesLessThanHalfACellPerStep) {
   const auto solver = make_solver(options_for({2, Precision::float32}), {});
   ParticleBatch batch = filled_box(2, Vec3::Zero(), Vec3(0.03, 0, 0.03), 0.005);
   batch.velocity.x() = 200;
@@ -382,25 +386,25 @@ TEST(Method, FastSnowMovesLessThanHalfACellInEveryStep) {
   }
 }
 
-TEST(Method, GivesUpWithAClearErrorWhereNoStepIsSmallEnough) {
+TEST(MpmSolver, FailsWithAClearErrorIfNoStepIsSmallEnough) {
   Options o = options_for({2, Precision::float64});
   o.settings.strain_limit = 1e-12;
   const auto solver =
-      make_solver(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
+      make_solver(o, {fixed(geometry::make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
   ParticleBatch batch = filled_box(2, Vec3::Zero(), Vec3(0.05, 0, 0.05), 0.005);
   batch.velocity.z() = -1;
   solver->add(batch);
-  const ParticleState before = solver->state();
+  const SnowState before = snow_state(*solver);
   try {
     run_steps(*solver, 10);
     FAIL();
   } catch (const SimulationError& error) {
     EXPECT_NE(std::string(error.what()).find("time step fell"), std::string::npos);
   }
-  expect_same_bits(solver->state(), before);
+  expect_same_bits(snow_state(*solver), before);
 }
 
-TEST(Method, ParticlesOnAndNextToNodesDoNoHarm) {
+TEST(MpmSolver, ParticlesOnAndNextToNodesFallFreely) {
   // Their farthest nodes receive next to no mass.
   for (const SolverVariant& variant : all_solver_variants())
     for (double dx : {1e-3, 0.01, 1.0}) {
@@ -422,4 +426,4 @@ TEST(Method, ParticlesOnAndNextToNodesDoNoHarm) {
 }
 
 }  // namespace
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -11,10 +12,12 @@
 #include "snowshed/core/random.hpp"
 #include "snowshed/geometry/primitives.hpp"
 #include "snowshed/io/binary_archive.hpp"
+#include "snowshed/methods/advance.hpp"
+#include "snowshed/methods/fields_by_id.hpp"
 #include "snowshed/methods/mpm/describe.hpp"
 #include "snowshed/methods/mpm/solver.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 
 /// A variant of the solver, for parameterised tests.
 struct SolverVariant {
@@ -59,7 +62,7 @@ inline std::unique_ptr<Solver> make_solver(Options o, std::vector<Obstacle> obst
   return make_solver(std::move(o));
 }
 
-inline Obstacle fixed(Shape shape, Condition condition, double friction = 0.0) {
+inline Obstacle fixed(geometry::Shape shape, Condition condition, double friction = 0.0) {
   return {"obstacle", std::move(shape), {condition, friction}, std::nullopt};
 }
 
@@ -91,11 +94,11 @@ inline void add_spinning_disc(Method& solver, double radius, double rate, double
       filled_box(2, Vec3(-radius, 0, -radius), Vec3(radius, 0, radius), spacing);
   for (const Vec3& x : box.positions) {
     if (x.norm() > radius) continue;
-    ParticleBatch one;
-    one.positions = {x};
-    one.velocity = rate * Vec3::UnitY().cross(x);
-    one.mass = box.mass;
-    solver.add(one);
+    ParticleBatch particle;
+    particle.positions = {x};
+    particle.velocity = rate * Vec3::UnitY().cross(x);
+    particle.mass = box.mass;
+    solver.add(particle);
   }
 }
 
@@ -107,12 +110,41 @@ inline Vec3 random_vector(Random& random, int dimension, double size) {
   return v;
 }
 
-inline void run_until(Method& solver, double time) {
-  while (solver.time() < time) solver.step();
+/// The energy balance of a solver.
+inline EnergyBalance energy_of(const Solver& solver) {
+  std::map<std::string, double> joules;
+  for (const auto& [name, value] : solver.energies()) joules[name] = value;
+  EnergyBalance e;
+  e.kinetic = joules.at("kinetic_j");
+  e.gravitational = joules.at("gravitational_j");
+  e.elastic = joules.at("elastic_j");
+  e.plastic = joules.at("plastic_j");
+  e.friction = joules.at("friction_j");
+  e.sticking = joules.at("sticking_j");
+  e.impact = joules.at("impact_j");
+  e.transfer = joules.at("transfer_j");
+  e.sleep = joules.at("sleep_j");
+  e.damping = joules.at("damping_j");
+  e.added = joules.at("added_j");
+  return e;
 }
+
+inline void run_until(Method& solver, double time) { advance_to(solver, time); }
 
 inline void run_steps(Method& solver, int steps) {
   for (int i = 0; i < steps; ++i) solver.step();
+}
+
+/// The particles, with quantities that only this method has.
+struct SnowState : ParticleState {
+  std::vector<double> pressures;        // Kirchhoff, Pa, compression positive
+  std::vector<double> volume_ratios;    // current over initial volume
+  std::vector<double> plastic_strains;  // volumetric, compaction negative
+};
+
+inline SnowState snow_state(const Method& solver) {
+  return {solver.state(), values_by_id(solver, "pressure"), values_by_id(solver, "volume_ratio"),
+          values_by_id(solver, "volumetric_plastic_strain")};
 }
 
 /// Averages the states of vibrating snow over a duration, which gives its static state. Calls `add`
@@ -125,7 +157,7 @@ void average(Method& solver, double duration, const Add& add) {
     run_steps(solver, 8);
     const double middle = (covered + solver.time()) / 2;
     const double weight = 2 * std::pow(std::sin(pi * middle / duration), 2);
-    add((solver.time() - covered) / duration * weight, solver.state());
+    add((solver.time() - covered) / duration * weight, snow_state(solver));
     covered = solver.time();
   }
 }
@@ -137,9 +169,9 @@ inline double total_mass(const ParticleState& s) {
 }
 
 /// Mean of a particle quantity, weighted by mass.
-inline Vec3 weighted_mean(const ParticleState& s, const std::vector<Vec3>& of) {
+inline Vec3 weighted_mean(const ParticleState& s, const std::vector<Vec3>& values) {
   Vec3 sum = Vec3::Zero();
-  for (std::size_t i = 0; i < of.size(); ++i) sum += s.masses[i] * of[i];
+  for (std::size_t i = 0; i < values.size(); ++i) sum += s.masses[i] * values[i];
   return sum / total_mass(s);
 }
 
@@ -148,7 +180,7 @@ inline Vec3 mean_velocity(const Method& solver) {
   return weighted_mean(s, s.velocities);
 }
 
-inline void expect_same_bits(const ParticleState& a, const ParticleState& b) {
+inline void expect_same_bits(const SnowState& a, const SnowState& b) {
   EXPECT_TRUE(a.positions == b.positions);
   EXPECT_TRUE(a.velocities == b.velocities);
   EXPECT_EQ(a.pressures, b.pressures);
@@ -156,20 +188,20 @@ inline void expect_same_bits(const ParticleState& a, const ParticleState& b) {
   EXPECT_EQ(a.ids, b.ids);
 }
 
-/// Expects that a fresh solver, which loads the state of another one from `file`, goes on with the
-/// same bits as that one.
+/// Saves a solver to `file`, loads the file into a fresh solver, and expects the same bits of both
+/// after further steps.
 inline void expect_resumes(Solver& solver, Solver& fresh, const std::string& file, int steps) {
-  BinaryWriter out;
+  io::BinaryWriter out;
   solver.save(out);
   out.save(file);
-  fresh.load(BinaryReader::load(file));
+  fresh.load(io::BinaryReader::load(file));
   run_steps(solver, steps);
   run_steps(fresh, steps);
-  expect_same_bits(fresh.state(), solver.state());
+  expect_same_bits(snow_state(fresh), snow_state(solver));
 }
 
 inline Vec3 momentum(const ParticleState& s) {
   return total_mass(s) * weighted_mean(s, s.velocities);
 }
 
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -5,10 +5,10 @@
 #include "methods/mpm/solver_testing.hpp"
 #include "snowshed/methods/mpm/kernels/bspline.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
-TEST(TimeStep, ScalesAsACourantCondition) {
+TEST(MpmTimeStep, ScalesLikeACourantCondition) {
   for (Transfer transfer : {Transfer::flip, Transfer::apic, Transfer::affine_flip}) {
     const auto step = [&](double modulus, double density, int dimension, double dx, Basis basis) {
       return elastic_time_step(modulus, 0.3, density, dimension, dx, transfer, basis);
@@ -23,27 +23,27 @@ TEST(TimeStep, ScalesAsACourantCondition) {
 }
 
 template <Basis basis>
-double largest_stability_number() {
-  double largest = 0;
+double max_stability_number() {
+  double max_value = 0;
   for (double f = 1e-6; f < 1; f += 1e-4) {
     double w[support(basis)], g[support(basis)], sum = 0;
     BSpline<basis>::evaluate(f, w, g);
     for (int k = 0; k < support(basis); ++k) sum += g[k] * g[k] / w[k];
-    largest = std::max(largest, sum);
+    max_value = std::max(max_value, sum);
   }
-  return largest;
+  return max_value;
 }
 
-TEST(TimeStep, StabilityNumbersBoundTheWeights) {
-  const double quadratic = largest_stability_number<Basis::quadratic>();
-  const double cubic = largest_stability_number<Basis::cubic>();
+TEST(MpmTimeStep, StabilityNumbersBoundTheWeights) {
+  const double quadratic = max_stability_number<Basis::quadratic>();
+  const double cubic = max_stability_number<Basis::cubic>();
   EXPECT_LE(quadratic, stability_number(Basis::quadratic) + 1e-9);
   EXPECT_LE(cubic, stability_number(Basis::cubic) + 1e-9);
   EXPECT_GT(quadratic, 0.98 * stability_number(Basis::quadratic));
   EXPECT_GT(cubic, 0.98 * stability_number(Basis::cubic));
 }
 
-TEST(TimeStep, FastSnowMovesLessThanHalfACell) {
+TEST(MpmTimeStep, FastSnowMovesLessThanHalfACell) {
   EXPECT_DOUBLE_EQ(next_time_step(1e-4, 0.0, 0.01, 0.9), 0.9e-4);
   for (double speed : {0.1, 10.0, 1e4}) {
     const double dt = next_time_step(1e-4, speed, 0.01, 1.0);
@@ -53,29 +53,29 @@ TEST(TimeStep, FastSnowMovesLessThanHalfACell) {
 }
 
 /// Largest pressure of a lone elastic particle after some hundred steps, which comes from round-off
-/// alone. A lone particle has the highest frequency that a grid can give snow.
+/// alone. A lone particle has the highest frequency of snow on a grid.
 double pressure_from_round_off(Transfer transfer, Basis basis, double fraction, double factor) {
   Options o = options_for({2, Precision::float64, transfer, basis});
   o.gravity = 0;
-  o.snows[0].model = SnowModel::elastic;
+  o.snows[0].model = material::SnowModel::elastic;
   o.settings.courant_factor = factor;
   o.settings.strain_limit = 1e6;
   const auto solver = make_solver(o, {});
-  ParticleBatch one;
+  ParticleBatch particle;
   const double x = (3 + base_offset(basis) + fraction) * 0.01;
-  one.positions = {Vec3(x, 0, x)};
-  one.velocity = Vec3(1e-7, 0, 3e-8);
-  one.mass = 0.005;
-  solver->add(one);
-  double largest = 0;
-  for (int i = 0; i < 500 && largest < 1; ++i) {
+  particle.positions = {Vec3(x, 0, x)};
+  particle.velocity = Vec3(1e-7, 0, 3e-8);
+  particle.mass = 0.005;
+  solver->add(particle);
+  double max_value = 0;
+  for (int i = 0; i < 500 && max_value < 1; ++i) {
     solver->step();
-    largest = std::max(largest, std::abs(solver->state().pressures[0]));
+    max_value = std::max(max_value, std::abs(*solver->field("pressure").at<double>(0)));
   }
-  return largest;
+  return max_value;
 }
 
-TEST(TimeStep, StepsWithinTheLimitAreStable) {
+TEST(MpmTimeStep, StepsWithinTheLimitAreStable) {
   for (Transfer transfer : {Transfer::flip, Transfer::apic, Transfer::affine_flip})
     for (Basis basis : {Basis::quadratic, Basis::cubic})
       for (double fraction : {1e-3, 0.1, 0.25, 0.5, 0.8})
@@ -83,7 +83,7 @@ TEST(TimeStep, StepsWithinTheLimitAreStable) {
             << name_of(transfer) << " " << support(basis) << " nodes at " << fraction;
 }
 
-TEST(TimeStep, TheLimitIsNotFarTooSafe) {
+TEST(MpmTimeStep, StepsJustBeyondTheLimitAreUnstable) {
   // Just beyond the limit, a lone particle blows up at the worst position.
   for (Transfer transfer : {Transfer::flip, Transfer::apic, Transfer::affine_flip}) {
     EXPECT_GT(pressure_from_round_off(transfer, Basis::quadratic, 1e-3, 1.1), 1.0);
@@ -92,4 +92,4 @@ TEST(TimeStep, TheLimitIsNotFarTooSafe) {
 }
 
 }  // namespace
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

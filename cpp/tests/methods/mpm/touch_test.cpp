@@ -6,7 +6,7 @@
 #include "io/temporary_folder.hpp"
 #include "methods/mpm/solver_testing.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
 Options touching_options(const SolverVariant& variant, double dx = 0.01) {
@@ -24,7 +24,7 @@ double lowest(const ParticleState& s) {
   return z;
 }
 
-/// Gap (in cells) between the ground and a slab that came down on it.
+/// Gap (in cells) between the ground and a slab that fell on it.
 double resting_gap(const SolverVariant& variant, double dx, ContactRule contact,
                    const Obstacle& ground, double surface) {
   Options o = touching_options(variant, dx);
@@ -47,9 +47,10 @@ TEST_P(RestingGap, IsLessThanATenthOfACell) {
   const Condition condition = GetParam();
   for (const double dx : {0.02, 0.005})
     for (const double surface : {0.0, 0.37 * dx, 0.81 * dx}) {
-      const Obstacle ground = fixed(make_plane(Vec3(0, 0, surface), Vec3::UnitZ()), condition, 0.3);
-      const Obstacle plate =
-          fixed(make_box(Vec3(0, 0, surface - dx / 4), Vec3(2, 2, dx / 2)), condition, 0.3);
+      const Obstacle ground =
+          fixed(geometry::make_plane(Vec3(0, 0, surface), Vec3::UnitZ()), condition, 0.3);
+      const Obstacle plate = fixed(
+          geometry::make_box(Vec3(0, 0, surface - dx / 4), Vec3(2, 2, dx / 2)), condition, 0.3);
       const SolverVariant variant{2, Precision::float32};
       for (const Obstacle& obstacle : {ground, plate})
         EXPECT_NEAR(resting_gap(variant, dx, ContactRule::touch, obstacle, surface), 0, 0.11)
@@ -61,7 +62,8 @@ TEST_P(RestingGap, IsLessThanATenthOfACell) {
 
 TEST_P(RestingGap, IsAsSmallInThreeDimensions) {
   const Condition condition = GetParam();
-  const Obstacle ground = fixed(make_plane(Vec3(0, 0, 0.002), Vec3::UnitZ()), condition, 0.3);
+  const Obstacle ground =
+      fixed(geometry::make_plane(Vec3(0, 0, 0.002), Vec3::UnitZ()), condition, 0.3);
   EXPECT_NEAR(resting_gap({3, Precision::float32}, 0.01, ContactRule::touch, ground, 0.002), 0,
               0.11);
 }
@@ -71,7 +73,7 @@ double speed_beside_edge(ContactRule contact, double clearance) {
   Options o = touching_options({2, Precision::float64});
   o.settings.contact = contact;
   const auto solver = make_solver(
-      o, {fixed(make_box(Vec3(-0.5, 0, -0.02), Vec3(1, 1, 0.04)), Condition::separate)});
+      o, {fixed(geometry::make_box(Vec3(-0.5, 0, -0.02), Vec3(1, 1, 0.04)), Condition::separate)});
   solver->add(filled_box(2, Vec3(clearance, 0, 0.01), Vec3(clearance + 0.02, 0, 0.02), 0.004));
   run_until(*solver, 0.06);
   return mean_velocity(*solver).z();
@@ -85,10 +87,10 @@ TEST(Touch, SnowPastAnEdgeIsNotCarried) {
 }
 
 /// Snow that lies on the ground does not hold snow that falls a few cells away.
-TEST(Touch, SnowBesideSnowThatTouchesFallsFreely) {
+TEST(Touch, SnowBesideTouchingSnowFallsFreely) {
   const auto solver =
       make_solver(touching_options({2, Precision::float64}),
-                  {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::separate)});
+                  {fixed(geometry::make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::separate)});
   solver->add(filled_box(2, Vec3(0.01, 0, -0.001), Vec3(0.03, 0, 0.019), 0.004));
   ParticleBatch falling = filled_box(2, Vec3(0.06, 0, 0.012), Vec3(0.08, 0, 0.024), 0.004);
   falling.event = 2;
@@ -100,12 +102,12 @@ TEST(Touch, SnowBesideSnowThatTouchesFallsFreely) {
 }
 
 /// The ball lies where the corners of four blocks meet.
-TEST(Touch, ASmallBallHoldsSnowWhereverItIs) {
+TEST(Touch, ASmallBallBetweenBlocksHoldsSnow) {
   Options o = touching_options({2, Precision::float64});
   o.gravity = 0;
   const double corner = (8 + base_offset(Basis::quadratic)) * 0.01;
-  const auto solver =
-      make_solver(o, {fixed(make_sphere(Vec3(corner, 0, corner), 0.004), Condition::sticky)});
+  const auto solver = make_solver(
+      o, {fixed(geometry::make_sphere(Vec3(corner, 0, corner), 0.004), Condition::sticky)});
   ParticleBatch chunk = filled_box(2, Vec3(corner - 0.01, 0, corner + 0.01),
                                    Vec3(corner + 0.01, 0, corner + 0.03), 0.004);
   chunk.velocity.z() = -0.1;
@@ -114,14 +116,14 @@ TEST(Touch, ASmallBallHoldsSnowWhereverItIs) {
   EXPECT_GT(mean_velocity(*solver).z(), -0.02);
 }
 
-TEST(Touch, FrictionIsCoulombs) {
+TEST(Touch, FrictionFollowsCoulomb) {
   constexpr double tilt = radians(40);
   const Vec3 normal(std::sin(tilt), 0, std::cos(tilt)), slope(std::cos(tilt), 0, -std::sin(tilt));
   for (const Condition condition : {Condition::slip, Condition::separate})
     for (const double friction : {0.0, 0.3, 0.6}) {
       const auto solver =
           make_solver(touching_options({2, Precision::float32}),
-                      {fixed(make_plane(Vec3::Zero(), normal), condition, friction)});
+                      {fixed(geometry::make_plane(Vec3::Zero(), normal), condition, friction)});
       ParticleBatch slab = filled_box(2, Vec3::Zero(), Vec3(0.25, 0, 0.03), 0.004);
       for (Vec3& x : slab.positions) x = x.x() * slope + x.z() * normal;
       solver->add(slab);
@@ -136,16 +138,16 @@ TEST(Touch, FrictionIsCoulombs) {
 }
 
 /// Acceleration of a slab that starts at rest and covers a tilted plate from end to end, divided by
-/// that with Coulomb's friction.
+/// the acceleration with Coulomb's friction.
 double acceleration_on_plate(double dx, double along, double thickness, Condition condition) {
   constexpr double tilt = radians(50), friction = 0.6, length = 0.245;
   const Vec3 normal(std::sin(tilt), 0, std::cos(tilt)), slope(std::cos(tilt), 0, -std::sin(tilt));
   Mat3 axes;
   axes << slope, Vec3::UnitY(), normal;
-  const OrientedBox plate{(0.5 * length + along) * slope - 0.5 * thickness * normal, axes,
-                          Vec3(0.5 * length, 0.5, 0.5 * thickness)};
+  const geometry::OrientedBox plate{(0.5 * length + along) * slope - 0.5 * thickness * normal, axes,
+                                    Vec3(0.5 * length, 0.5, 0.5 * thickness)};
   const auto solver = make_solver(touching_options({2, Precision::float32}, dx),
-                                  {fixed(make_box(plate), condition, friction)});
+                                  {fixed(geometry::make_box(plate), condition, friction)});
   ParticleBatch slab = filled_box(2, Vec3::Zero(), Vec3(length, 0, 0.02), dx / 2.5);
   for (Vec3& x : slab.positions) x = (x.x() + along) * slope + x.z() * normal;
   solver->add(slab);
@@ -157,7 +159,7 @@ double acceleration_on_plate(double dx, double along, double thickness, Conditio
 }
 
 /// Nothing holds snow at the ends of a plate.
-TEST(Touch, SnowStartsToSlideFromAWholePlate) {
+TEST(Touch, SnowStartsToSlideOffAPlateThatItCovers) {
   for (const double dx : {0.02, 0.01})
     for (const double along : {0.0, 0.3 * dx, 0.7 * dx})
       for (const double thickness : {0.5 * dx, 3 * dx})
@@ -169,8 +171,9 @@ TEST(Touch, SnowStartsToSlideFromAWholePlate) {
 TEST(Touch, AMovingObstaclePushesOnceItTouches) {
   Options o = touching_options({2, Precision::float64});
   o.gravity = 0;
-  Obstacle wall = fixed(make_box(Vec3(-0.05, 0, 0), Vec3(0.1, 1, 1)), Condition::separate);
-  MotionSpec motion;
+  Obstacle wall =
+      fixed(geometry::make_box(Vec3(-0.05, 0, 0), Vec3(0.1, 1, 1)), Condition::separate);
+  geometry::MotionSpec motion;
   motion.velocity = Vec3(0.5, 0, 0);
   wall.motion.emplace(motion);
   const auto solver = make_solver(o, {wall});
@@ -195,7 +198,7 @@ void expect_radius_of_volume() {
   std::vector<BlockKey> blocks;
   state.append(model, particle, blocks);
   const double initial = state.particles.plastic[0];
-  for (const double ratio : {1.0, 0.5, 1.4, 4.0}) {  // loose snow counts as larger by half at most
+  for (const double ratio : {1.0, 0.5, 1.4, 4.0}) {  // dilation beyond 1.5 does not count
     state.particles.plastic[0] = initial + std::log(ratio);
     EXPECT_NEAR(state.contact_radius(model, 0),
                 part * spacing / 2 * std::pow(std::min(ratio, 1.5), 1.0 / D), 1e-9)
@@ -203,20 +206,20 @@ void expect_radius_of_volume() {
   }
 }
 
-TEST(Touch, TheRadiusOfAParticleIsThatOfItsVolume) {
+TEST(Touch, TheContactRadiusFollowsFromTheVolume) {
   expect_radius_of_volume<2>();
   expect_radius_of_volume<3>();
 }
 
-class TouchFiles : public TemporaryFolder {};
+class TouchCheckpoint : public io::TemporaryFolder {};
 
 std::unique_ptr<Solver> landing_snow(int threads) {
   Options o = touching_options({2, Precision::float32});
   o.settings.threads = threads;
   o.settings.sleep_speed = 0.02;
-  auto solver =
-      make_solver(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::separate, 0.5),
-                      fixed(make_box(Vec3(0, 0, 0.02), Vec3(0.05, 1, 0.04)), Condition::slip)});
+  auto solver = make_solver(
+      o, {fixed(geometry::make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::separate, 0.5),
+          fixed(geometry::make_box(Vec3(0, 0, 0.02), Vec3(0.05, 1, 0.04)), Condition::slip)});
   ParticleBatch below = filled_box(2, Vec3(-0.3, 0, 0.001), Vec3(-0.05, 0, 0.04), 0.004);
   ParticleBatch above = filled_box(2, Vec3(-0.1, 0, 0.06), Vec3(0.3, 0, 0.09), 0.004);
   above.velocity = Vec3(-0.5, 0, -1);
@@ -225,15 +228,15 @@ std::unique_ptr<Solver> landing_snow(int threads) {
   return solver;
 }
 
-TEST_F(TouchFiles, GivesTheSameBitsOnAnyNumberOfThreadsAndFromACheckpoint) {
-  const auto one = landing_snow(1), many = landing_snow(3);
-  for (Solver* solver : {one.get(), many.get()}) {
+TEST_F(TouchCheckpoint, ThreadsAndResumingDoNotChangeTheBits) {
+  const auto single = landing_snow(1), several = landing_snow(3);
+  for (Solver* solver : {single.get(), several.get()}) {
     run_steps(*solver, 900);
     while (!solver->at_safe_point()) solver->step();
   }
-  expect_same_bits(many->state(), one->state());
-  expect_resumes(*one, *landing_snow(1), path("state"), 300);
+  expect_same_bits(snow_state(*several), snow_state(*single));
+  expect_resumes(*single, *landing_snow(1), path("state"), 300);
 }
 
 }  // namespace
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

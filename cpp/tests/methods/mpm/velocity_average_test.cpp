@@ -6,7 +6,7 @@
 #include "io/temporary_folder.hpp"
 #include "methods/mpm/solver_testing.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
 constexpr double length = 0.01, rate = 380;  // m, 1/s
@@ -27,12 +27,12 @@ void add_turning_chunk(Method& solver, int dimension, double w, double spacing, 
   const ParticleBatch box = filled_box(dimension, -half, half, spacing);
   const Mat3 turn = Eigen::AngleAxisd(angle, Vec3::UnitY()).toRotationMatrix();
   for (const Vec3& position : box.positions) {
-    ParticleBatch one;
+    ParticleBatch particle;
     const Vec3 x = turn * position;
-    one.positions = {x + Vec3(0.003, 0, 0.302)};
-    one.velocity = spin * Vec3::UnitY().cross(x);
-    one.mass = box.mass;
-    solver.add(one);
+    particle.positions = {x + Vec3(0.003, 0, 0.302)};
+    particle.velocity = spin * Vec3::UnitY().cross(x);
+    particle.mass = box.mass;
+    solver.add(particle);
   }
 }
 
@@ -41,10 +41,11 @@ void add_turning_chunk(Method& solver, int dimension, double w, double spacing, 
 double spin_momentum(const Method& solver, double dx) {
   const ParticleState s = solver.state();
   const Vec3 x = weighted_mean(s, s.positions), v = weighted_mean(s, s.velocities);
+  const std::vector<double> affine = values_by_id(solver, "affine");
   double sum = 0;
   for (std::size_t i = 0; i < s.masses.size(); ++i) {
     sum += s.masses[i] * (s.positions[i] - x).cross(s.velocities[i] - v).y();
-    sum += s.masses[i] * dx * dx / 4 * (s.affine[i](0, 2) - s.affine[i](2, 0));
+    sum += s.masses[i] * dx * dx / 4 * (affine[9 * i + 2] - affine[9 * i + 6]);
   }
   return sum;
 }
@@ -110,7 +111,7 @@ double exact_decay_rate(double w) {
   return sum / 8;
 }
 
-TEST(VelocityAverage, AChunkStopsTurningAsFastOnAnyGrid) {
+TEST(VelocityAverage, RotationDecaysEquallyFastOnAnyGrid) {
   for (const double w : {0.02, 0.04, 0.08}) {
     double min_rate = 1e9, max_rate = 0;
     for (const double dx : {0.02, 0.01, 0.007, 0.005, 0.0025}) {
@@ -127,18 +128,19 @@ TEST(VelocityAverage, AChunkStopsTurningAsFastOnAnyGrid) {
   }
 }
 
-TEST(VelocityAverage, AChunkStopsTurningAsFastInThreeDimensions) {
+TEST(VelocityAverage, RotationDecaysEquallyFastInThreeDimensions) {
   const double coarse = decay_rate(3, 0.04, 0.01), fine = decay_rate(3, 0.04, 0.005);
   EXPECT_NEAR(coarse / fine, 1.0, 0.1) << coarse << " and " << fine << " 1/s";
 }
 
-/// On cells larger than twice the length a smaller share diffuses velocities as fast.
-TEST(VelocityAverage, OnCoarseGridsDampsALargeChunkAsFast) {
-  const double rate_of_fine = decay_rate(2, 0.24, 0.02);
-  EXPECT_NEAR(decay_rate(2, 0.24, 0.04), rate_of_fine, 0.2 * rate_of_fine);
+/// On cells larger than twice the length a smaller share of the average diffuses velocities equally
+/// fast.
+TEST(VelocityAverage, CoarseGridsDampLargeChunksEquallyFast) {
+  const double fine_rate = decay_rate(2, 0.24, 0.02);
+  EXPECT_NEAR(decay_rate(2, 0.24, 0.04), fine_rate, 0.2 * fine_rate);
 }
 
-TEST(VelocityAverage, IsNotOfTheStep) {
+TEST(VelocityAverage, DoesNotDependOnTheStep) {
   const auto decay_rate_at = [](double courant_factor) {
     Options o = damped_options({2, Precision::float64});
     o.settings.courant_factor = courant_factor;
@@ -156,14 +158,14 @@ TEST(VelocityAverage, IsNotOfTheStep) {
 
 /// A particle with random position, velocity and mass.
 ParticleBatch swarm_particle(Random& random, int dimension) {
-  ParticleBatch one;
-  one.positions = {random_vector(random, dimension, 0.03)};
-  one.velocity = random_vector(random, dimension, 1.0);
-  one.mass = 1e-3 * (0.5 + random.uniform());
-  return one;
+  ParticleBatch particle;
+  particle.positions = {random_vector(random, dimension, 0.03)};
+  particle.velocity = random_vector(random, dimension, 1.0);
+  particle.mass = 1e-3 * (0.5 + random.uniform());
+  return particle;
 }
 
-TEST(VelocityAverage, KeepsMomentumAndTakesEnergyThatIsBalanced) {
+TEST(VelocityAverage, KeepsMomentumAndBalancesItsEnergy) {
   for (const SolverVariant& variant :
        {SolverVariant{2, Precision::float32}, SolverVariant{2, Precision::float64},
         SolverVariant{3, Precision::float32}, SolverVariant{3, Precision::float64}}) {
@@ -174,35 +176,35 @@ TEST(VelocityAverage, KeepsMomentumAndTakesEnergyThatIsBalanced) {
       Random random(7);
       double speeds = 0;
       for (int i = 0; i < 120; ++i) {
-        const ParticleBatch one = swarm_particle(random, variant.dimension);
-        solver->add(one);
-        speeds += one.mass * one.velocity.norm();
+        const ParticleBatch particle = swarm_particle(random, variant.dimension);
+        solver->add(particle);
+        speeds += particle.mass * particle.velocity.norm();
       }
       const Vec3 before = momentum(solver->state());
-      const EnergyBalance start = solver->energy();
+      const EnergyBalance start = energy_of(*solver);
       run_steps(*solver, 80);
       const Vec3 change = momentum(solver->state()) - before;
       EXPECT_LT(change.norm(), 80 * variant.epsilon() * speeds) << variant.name() << " " << dx;
-      const EnergyBalance end = solver->energy();
+      const EnergyBalance end = energy_of(*solver);
       EXPECT_GT(end.damping, 0.01 * start.kinetic) << variant.name() << " " << dx;
       EXPECT_NEAR(end.residual(), 0, 0.02 * start.kinetic) << variant.name() << " " << dx;
     }
   }
 }
 
-TEST(VelocityAverage, BooksOfATurningChunkClose) {
+TEST(VelocityAverage, EnergyOfATurningChunkCloses) {
   Options o = damped_options({2, Precision::float64});
   o.energy = true;
-  o.snows[0].model = SnowModel::elastic;
+  o.snows[0].model = material::SnowModel::elastic;
   const auto solver = make_solver(o, {});
   add_turning_chunk(*solver, 2, 0.04, 0.004, 0.4, 10);
   run_until(*solver, 0.02);
-  const EnergyBalance e = solver->energy();
+  const EnergyBalance e = energy_of(*solver);
   EXPECT_GT(e.damping, 0.5 * e.added);  // energy taken by the average, not by the transfer
   EXPECT_NEAR(e.residual(), 0, 0.01 * e.added);
 }
 
-/// Two particles at one place that fly apart with 10 microjoules.
+/// Two particles at the same position that fly apart with 10 microjoules.
 void add_parting_particles(Solver& solver) {
   for (const double speed : {0.1, -0.1}) {
     ParticleBatch particle;
@@ -213,32 +215,32 @@ void add_parting_particles(Solver& solver) {
   }
 }
 
-/// Such fast damping leaves the two particles at rest.
-TEST(VelocityAverage, BooksWhatItTakes) {
+/// Damping at this rate stops both particles.
+TEST(VelocityAverage, RecordsTheEnergyThatItTakes) {
   Options o = damped_options({2, Precision::float64});
   o.energy = true;
   o.settings.damping_rate = 1e9;
   const auto solver = make_solver(o, {});
   add_parting_particles(*solver);
   run_steps(*solver, steps_between_averages);
-  const EnergyBalance e = solver->energy();
+  const EnergyBalance e = energy_of(*solver);
   EXPECT_NEAR(e.added, 1e-5, 1e-11);
   EXPECT_NEAR(e.damping, e.added, 1e-6 * e.added);
   EXPECT_NEAR(e.kinetic, 0, 1e-6 * e.added);
 }
 
 /// Neither an average over a length far below a cell nor PIC takes energy.
-TEST(VelocityAverage, OverNoLengthTakesNothing) {
+TEST(VelocityAverage, AVanishingLengthTakesNoEnergy) {
   Options o = damped_options({2, Precision::float64});
   o.settings.damping_length = 1e-5;
   o.energy = true;
   const auto solver = make_solver(o, {});
   add_parting_particles(*solver);
   run_until(*solver, 0.01);
-  EXPECT_NEAR(solver->energy().kinetic, 1e-5, 1e-7);
+  EXPECT_NEAR(energy_of(*solver).kinetic, 1e-5, 1e-7);
 }
 
-TEST(VelocityAverage, LeavesWhatMovesAsOneAlone) {
+TEST(VelocityAverage, DoesNotChangeUniformMotion) {
   Options o = damped_options({2, Precision::float64});
   const auto solver = make_solver(o, {});
   ParticleBatch batch = filled_box(2, Vec3(0, 0, 0), Vec3(0.05, 0, 0.05), 0.005);
@@ -248,14 +250,15 @@ TEST(VelocityAverage, LeavesWhatMovesAsOneAlone) {
   for (const Vec3& v : solver->state().velocities) ASSERT_LT((v - batch.velocity).norm(), 1e-11);
 }
 
-class VelocityAverageFiles : public TemporaryFolder {};
+class VelocityAverageCheckpoint : public io::TemporaryFolder {};
 
 std::unique_ptr<Solver> thrown_chunk(int threads) {
   Options o = damped_options({2, Precision::float32});
   o.gravity = 9.81;
   o.settings.threads = threads;
   o.settings.sleep_speed = 0.02;
-  auto solver = make_solver(o, {fixed(make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
+  auto solver =
+      make_solver(o, {fixed(geometry::make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)});
   ParticleBatch below = filled_box(2, Vec3(-0.3, 0, 0), Vec3(0.3, 0, 0.04), 0.004);
   ParticleBatch above = filled_box(2, Vec3(-0.1, 0, 0.06), Vec3(0.1, 0, 0.1), 0.004);
   above.velocity = Vec3(1, 0, -1);
@@ -264,24 +267,25 @@ std::unique_ptr<Solver> thrown_chunk(int threads) {
   return solver;
 }
 
-TEST_F(VelocityAverageFiles, GivesTheSameBitsOnAnyNumberOfThreadsAndFromACheckpoint) {
-  const auto one = thrown_chunk(1), many = thrown_chunk(3);
-  const auto go_on = [](Method& solver) {
+TEST_F(VelocityAverageCheckpoint, ThreadsAndResumingDoNotChangeTheBits) {
+  const auto single = thrown_chunk(1), several = thrown_chunk(3);
+  const auto run = [](Method& solver) {
     run_steps(solver, 1201);
     solver.add_velocity(std::vector<Vec3>(solver.size(), Vec3(0, 0, 1e-3)));  // a safe point
     run_steps(solver, 2);
   };
-  go_on(*one);
-  go_on(*many);
-  expect_same_bits(many->state(), one->state());
-  EXPECT_GT(one->slept_updates(), 0);
-  one->add_velocity(std::vector<Vec3>(one->size(), Vec3::Zero()));  // a safe point
-  ASSERT_NE(one->counters().steps % steps_between_averages, 0);  // a part of a damping is pending
-  expect_resumes(*one, *thrown_chunk(1), path("state"), 300);
+  run(*single);
+  run(*several);
+  expect_same_bits(snow_state(*several), snow_state(*single));
+  EXPECT_GT(single->slept_updates(), 0);
+  single->add_velocity(std::vector<Vec3>(single->size(), Vec3::Zero()));  // a safe point
+  ASSERT_NE(single->counters().steps % steps_between_averages,
+            0);  // part of the damping is pending
+  expect_resumes(*single, *thrown_chunk(1), path("state"), 300);
 }
 
-/// A checkpoint does not hold the averages' sums of sleeping snow.
-TEST_F(VelocityAverageFiles, GoesOnFromACheckpointBesideSnowThatSleeps) {
+/// A checkpoint does not contain the averages' sums of sleeping snow.
+TEST_F(VelocityAverageCheckpoint, ResumesToTheSameBitsBesideSleepingSnow) {
   const auto solver = thrown_chunk(1);
   for (int i = 0; i < 4; ++i) {
     run_steps(*solver, 300);
@@ -292,4 +296,4 @@ TEST_F(VelocityAverageFiles, GoesOnFromACheckpointBesideSnowThatSleeps) {
 }
 
 }  // namespace
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

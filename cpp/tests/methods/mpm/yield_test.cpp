@@ -1,5 +1,5 @@
-// Snow that the whole solver brings to yield, compared with closed forms. It breaks where the law
-// says only if constants, kernels and transfer are all right.
+// Snow that yields in the complete solver, compared with closed forms. It breaks at the strength of
+// the law only if constants, kernels and transfer are all right.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -7,18 +7,18 @@
 #include "material/rate_integration.hpp"
 #include "methods/mpm/solver_testing.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
 /// Snow whose law has a closed form, because uniaxial stress causes no lateral strain.
-Snow test_snow() {
-  Snow snow;
+material::Snow test_snow() {
+  material::Snow snow;
   snow.poissons_ratio = 0;
   snow.critical_state_slope = 1.5;
   return snow;
 }
 
-LawConstants constants_of(const Snow& s) {
+material::LawConstants constants_of(const material::Snow& s) {
   return {s.youngs_modulus, s.poissons_ratio, s.critical_state_slope, s.cohesion,
           s.hardening_factor};
 }
@@ -26,8 +26,8 @@ LawConstants constants_of(const Snow& s) {
 // --- hanging column ---------------------------------------------------------------------------
 
 /// Uniaxial tension at which snow yields, Pa: the root of (1.2.6) for p = -s/D and q = s (in space)
-/// or s sqrt(3)/2 (in the plane, whose invariants are taken in it).
-double tensile_strength(const Snow& snow, int dimension) {
+/// or s sqrt(3)/2 (in the plane, whose law uses the invariants of two dimensions).
+double tensile_strength(const material::Snow& snow, int dimension) {
   const double p0 = snow.preconsolidation_pressure, beta = snow.cohesion;
   const double m2 = snow.critical_state_slope * snow.critical_state_slope;
   const double q_squared = dimension == 2 ? 0.75 : 1.0, p = 1.0 / dimension;
@@ -38,15 +38,15 @@ double tensile_strength(const Snow& snow, int dimension) {
 
 constexpr double column_length = 0.2;
 
-/// Fall of the lower half of a column that hangs from a sticky ceiling. Its weight grows slowly
+/// Fall of the lower quarter of a column that hangs from a sticky ceiling. Its weight grows slowly
 /// until the pull on the ceiling is a part of the column's strength, and then stays constant.
 double fall_of_column(int dimension, double part_of_strength) {
   Options o = options_for({dimension, Precision::float32});
-  Snow& snow = o.snows[0] = test_snow();
+  material::Snow& snow = o.snows[0] = test_snow();
   const double stress = part_of_strength * tensile_strength(snow, dimension);
   o.gravity = stress / (snow.density * column_length);
-  const auto solver =
-      make_solver(o, {fixed(make_plane(Vec3::Zero(), -Vec3::UnitZ()), Condition::sticky)});
+  const auto solver = make_solver(
+      o, {fixed(geometry::make_plane(Vec3::Zero(), -Vec3::UnitZ()), Condition::sticky)});
   const double width = dimension == 2 ? 0.06 : 0.03;
   solver->add(filled_box(dimension, Vec3(0, 0, -column_length), Vec3(width, width, 0), 0.005));
   const double period = 4 * column_length / std::sqrt(snow.youngs_modulus / snow.density);
@@ -83,12 +83,12 @@ struct Stress {
 };
 
 /// Mean stress within two cells of the origin.
-Stress stress_at_middle(const Method& solver, const Snow& snow, int dimension) {
+Stress stress_at_middle(const Method& solver, const material::Snow& snow, int dimension) {
   const double mu = snow.youngs_modulus / (2 * (1 + snow.poissons_ratio));
   const double lambda = 2 * mu * snow.poissons_ratio / (1 - 2 * snow.poissons_ratio);
-  const FieldView positions = solver.field("position");
-  std::vector<std::pair<std::string, FieldView>> strains;
-  for (const FieldInfo& info : solver.fields())
+  const particles::FieldView positions = solver.field("position");
+  std::vector<std::pair<std::string, particles::FieldView>> strains;
+  for (const particles::FieldInfo& info : solver.fields())
     if (info.name.rfind("be_minus_identity", 0) == 0)
       strains.emplace_back(info.name.substr(info.name.size() - 2), solver.field(info.name));
   Stress mean{0, 0};
@@ -116,8 +116,9 @@ Stress stress_at_middle(const Method& solver, const Snow& snow, int dimension) {
 }
 
 /// A block about the origin in which the velocity is `gradient` times the position. Waves from its
-/// faces reach the middle only after the tests have measured there.
-std::unique_ptr<Solver> straining_block(const Snow& snow, int dimension, const Mat3& gradient) {
+/// faces reach the middle only after the measurements.
+std::unique_ptr<Solver> straining_block(const material::Snow& snow, int dimension,
+                                        const Mat3& gradient) {
   Options o = options_for({dimension, Precision::float64});
   o.gravity = 0;
   o.settings.dx = 0.02;
@@ -126,28 +127,28 @@ std::unique_ptr<Solver> straining_block(const Snow& snow, int dimension, const M
   auto solver = make_solver(o, {});
   const ParticleBatch block =
       filled_box(dimension, Vec3::Constant(-0.1), Vec3::Constant(0.1), 0.01);
-  std::vector<ParticleBatch> single;
+  std::vector<ParticleBatch> particles;
   for (const Vec3& x : block.positions) {
-    ParticleBatch& one = single.emplace_back();
-    one.positions = {x};
-    one.mass = block.mass;
-    one.velocity = gradient * x;
-    if (dimension == 2) one.velocity.y() = 0;
+    ParticleBatch& particle = particles.emplace_back();
+    particle.positions = {x};
+    particle.mass = block.mass;
+    particle.velocity = gradient * x;
+    if (dimension == 2) particle.velocity.y() = 0;
   }
-  solver->add(single);
+  solver->add(particles);
   return solver;
 }
 
-TEST(PlaneShear, FollowsTheLawToYieldAndBeyond) {
+TEST(PlaneShear, FollowsTheLawBeyondYield) {
   for (int dimension : {2, 3}) {
-    Snow snow = test_snow();
+    material::Snow snow = test_snow();
     snow.hardening_factor = 2;  // so that hardening shows within small strains
     snow.preconsolidation_pressure = 3e3;
     const double rate = 8;  // 1/s
     Mat3 gradient = Mat3::Zero();
     gradient(0, 2) = rate;
     const auto solver = straining_block(snow, dimension, gradient);
-    const RateEquations law(constants_of(snow), dimension);
+    const material::RateEquations law(constants_of(snow), dimension);
     const double ev = -std::asinh(snow.preconsolidation_pressure / law.hardening) / 2;
     for (const double time : {0.4e-3, 0.6e-3, 0.8e-3}) {
       run_until(*solver, time);
@@ -159,28 +160,28 @@ TEST(PlaneShear, FollowsTheLawToYieldAndBeyond) {
         const auto end = law.integrate<D>({zero, ev}, path);
         return {law.p<D>(end.strain), law.q<D>(end.strain)};
       };
-      const Stress want = dimension == 2 ? exact(Eigen::Matrix2d(Eigen::Matrix2d::Zero()))
-                                         : exact(Eigen::Matrix3d(Eigen::Matrix3d::Zero()));
-      const Stress found = stress_at_middle(*solver, snow, dimension);
-      EXPECT_NEAR(found.q, want.q, 0.01 * want.q) << dimension << "D " << time;
-      EXPECT_NEAR(found.p, want.p, 0.015 * want.q) << dimension << "D " << time;
+      const Stress expected = dimension == 2 ? exact(Eigen::Matrix2d(Eigen::Matrix2d::Zero()))
+                                             : exact(Eigen::Matrix3d(Eigen::Matrix3d::Zero()));
+      const Stress measured = stress_at_middle(*solver, snow, dimension);
+      EXPECT_NEAR(measured.q, expected.q, 0.01 * expected.q) << dimension << "D " << time;
+      EXPECT_NEAR(measured.p, expected.p, 0.015 * expected.q) << dimension << "D " << time;
     }
   }
 }
 
-TEST(HangingColumn, SnowPulledAlikeInAllDirectionsPartsAtBetaTimesP0) {
+TEST(IsotropicTension, BreaksSnowAtBetaTimesP0) {
   for (int dimension : {2, 3}) {
-    const Snow snow = test_snow();
+    const material::Snow snow = test_snow();
     const auto solver = straining_block(snow, dimension, 3 * Mat3::Identity());
-    double lowest = 0;
+    double min_pressure = 0;
     while (solver->time() < 1e-3) {
       solver->step();
-      lowest = std::min(lowest, stress_at_middle(*solver, snow, dimension).p);
+      min_pressure = std::min(min_pressure, stress_at_middle(*solver, snow, dimension).p);
     }
     const double strength = snow.cohesion * snow.preconsolidation_pressure;
-    EXPECT_NEAR(lowest, -strength, 0.01 * strength) << dimension;
+    EXPECT_NEAR(min_pressure, -strength, 0.01 * strength) << dimension;
   }
 }
 
 }  // namespace
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

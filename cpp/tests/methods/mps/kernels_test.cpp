@@ -11,7 +11,7 @@
 #include "snowshed/methods/mps/moments.hpp"
 #include "snowshed/particles/neighbour_lists.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 namespace {
 
 /// A random cloud, partly denser and partly sparser than a lattice, so that row lengths differ.
@@ -20,7 +20,7 @@ struct Cloud {
   static constexpr double radius = 2.1;
   AlignedVector<VecD<D>> position, velocity;
   double period;  // along x; 0: none
-  NeighbourLists<D> lists;
+  particles::NeighbourLists<D> lists;
   std::array<const float*, D> offset;
   PairRows rows;
   AlignedVector<float> weight, slope, sum, filling;
@@ -28,13 +28,13 @@ struct Cloud {
   explicit Cloud(std::size_t count, double repeated = 0)
       : position(count), velocity(count), period(repeated) {
     std::mt19937 random(7);
-    std::uniform_real_distribution<double> place(0, 8), speed(-1, 1);
+    std::uniform_real_distribution<double> coordinate(0, 8), speed(-1, 1);
     for (std::size_t i = 0; i < count; ++i)
       for (int d = 0; d < D; ++d) {
-        position[i][d] = place(random);
+        position[i][d] = coordinate(random);
         velocity[i][d] = speed(random);
       }
-    CellOrder<D> cells;
+    particles::CellOrder<D> cells;
     cells.update(position, radius, period);
     const AlignedVector<VecD<D>> unsorted = position;
     for (std::size_t k = 0; k < count; ++k) position[k] = unsorted[cells.order()[k]];
@@ -65,29 +65,29 @@ struct Cloud {
 };
 
 template <class T>
-class KernelsOf : public ::testing::Test {};
+class MpsKernels : public ::testing::Test {};
 using Dimensions = ::testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
-TYPED_TEST_SUITE(KernelsOf, Dimensions);
+TYPED_TEST_SUITE(MpsKernels, Dimensions);
 
-TYPED_TEST(KernelsOf, FindTheNeighboursThatAllPairsHave) {
+TYPED_TEST(MpsKernels, FindTheNeighboursOfABruteForceSearch) {
   constexpr int D = TypeParam::value;
   for (const double period : {0.0, 8.0}) {
     const Cloud<D> cloud(150, period);
     for (std::size_t i = 0; i < 150; ++i) {
-      std::set<std::size_t> near, found;
+      std::set<std::size_t> near, listed;
       for (std::size_t j = 0; j < 150; ++j)
         if (j != i && cloud.separation(i, j).norm() < cloud.radius) near.insert(j);
       for (std::uint32_t e = cloud.lists.begin(i); e < cloud.lists.end(i); ++e) {
         const std::size_t j = cloud.lists.neighbour(e);
-        EXPECT_TRUE(found.insert(j).second);
+        EXPECT_TRUE(listed.insert(j).second);
         EXPECT_LT((cloud.lists.separation(e) - cloud.separation(i, j)).norm(), 1e-6);
       }
-      EXPECT_EQ(found, near);
+      EXPECT_EQ(listed, near);
     }
   }
 }
 
-TYPED_TEST(KernelsOf, WeighPairsByTheirDirection) {
+TYPED_TEST(MpsKernels, WeighPairsByTheirDirection) {
   constexpr int D = TypeParam::value;
   constexpr std::size_t half = RowMoments<D>::half;
   const Cloud<D> cloud(150);
@@ -99,22 +99,23 @@ TYPED_TEST(KernelsOf, WeighPairsByTheirDirection) {
   chosen_kernels<D>().isotropic_weights(cloud.rows, cloud.offset.data(), cloud.weight.data(),
                                         correction.data()->data(), corrected.data(), 0,
                                         cloud.size());
-  std::array<int, 3> within{};  // factors at the lower limit, between, at the upper one
+  std::array<int, 3>
+      counts{};  // factors at the lower limit, between the limits, at the upper limit
   cloud.for_each_pair([&](std::size_t i, std::size_t j, std::size_t e) {
     const VecD<D> separation = cloud.separation(i, j).normalized();
     const double factor =
         0.5 *
         separation.dot((symmetric<D>(correction[i].data()) + symmetric<D>(correction[j].data())) *
                        separation);
-    ++within[factor < 0.5 ? 0 : factor < 2 ? 1 : 2];
+    ++counts[factor < 0.5 ? 0 : factor < 2 ? 1 : 2];
     EXPECT_NEAR(corrected[e], double(cloud.weight[e]) * std::clamp(factor, 0.5, 2.0),
                 1e-4 * (1 + double(cloud.weight[e])));
   });
-  EXPECT_GT(within[0], 10);
-  EXPECT_GT(within[1], 10);
+  EXPECT_GT(counts[0], 10);
+  EXPECT_GT(counts[1], 10);
 }
 
-TYPED_TEST(KernelsOf, WeighPairsAndSumThem) {
+TYPED_TEST(MpsKernels, WeighAndSumPairs) {
   constexpr int D = TypeParam::value;
   const Cloud<D> cloud(150);
   AlignedVector<RowMoments<D>> moments(150);
@@ -138,39 +139,39 @@ TYPED_TEST(KernelsOf, WeighPairsAndSumThem) {
   }
 }
 
-TYPED_TEST(KernelsOf, MultiplyRows) {
+TYPED_TEST(MpsKernels, MultiplyRowsByVectors) {
   constexpr int D = TypeParam::value;
   using Matrix = Eigen::Matrix<double, D, D>;
   const Cloud<D> cloud(150);
   AlignedVector<double> diagonal(150, 3.0), p(150), q(150);
   AlignedVector<Matrix> block(150, Matrix(2 * Matrix::Identity() + 0.5 * Matrix::Ones()));
-  AlignedVector<VecD<D>> moved(150);
+  AlignedVector<VecD<D>> product(150);
   diagonal[5] = 0;
   block[5].setZero();
   for (std::size_t i = 0; i < 150; ++i) p[i] = cloud.velocity[i][0];
   chosen_kernels<D>().apply(cloud.rows, cloud.weight.data(), diagonal.data(), p.data(), q.data(), 0,
                             cloud.size());
   chosen_kernels<D>().apply_to_velocities(cloud.rows, cloud.weight.data(), block.data()->data(),
-                                          cloud.velocity.data()->data(), moved.data()->data(), 0,
+                                          cloud.velocity.data()->data(), product.data()->data(), 0,
                                           cloud.size());
   AlignedVector<double> expected(150);
-  AlignedVector<VecD<D>> expected_moved(150);
+  AlignedVector<VecD<D>> expected_product(150);
   for (std::size_t i = 0; i < 150; ++i) {
     expected[i] = diagonal[i] * p[i];
-    expected_moved[i] = block[i] * cloud.velocity[i];
+    expected_product[i] = block[i] * cloud.velocity[i];
   }
   cloud.for_each_pair([&](std::size_t i, std::size_t j, std::size_t e) {
     if (i == 5) return;
     expected[i] -= double(cloud.weight[e]) * p[j];
-    expected_moved[i] -= double(cloud.weight[e]) * cloud.velocity[j];
+    expected_product[i] -= double(cloud.weight[e]) * cloud.velocity[j];
   });
   for (std::size_t i = 0; i < 150; ++i) {
     EXPECT_NEAR(q[i], expected[i], 1e-9 * (1 + double(cloud.sum[i])));
-    EXPECT_LT((moved[i] - expected_moved[i]).norm(), 1e-9 * (1 + double(cloud.sum[i])));
+    EXPECT_LT((product[i] - expected_product[i]).norm(), 1e-9 * (1 + double(cloud.sum[i])));
   }
 }
 
-TYPED_TEST(KernelsOf, SumSeparationsAndApproaches) {
+TYPED_TEST(MpsKernels, SumSeparationsAndApproaches) {
   constexpr int D = TypeParam::value;
   const Cloud<D> cloud(150);
   constexpr double limit = 1.3;
@@ -215,7 +216,7 @@ TYPED_TEST(KernelsOf, SumSeparationsAndApproaches) {
 }
 
 /// A linear velocity field has the same shear rate at the midpoints of all pairs.
-TYPED_TEST(KernelsOf, FindTheShearRateOfALinearField) {
+TYPED_TEST(MpsKernels, ComputeTheShearRateOfALinearField) {
   constexpr int D = TypeParam::value;
   using Matrix = Eigen::Matrix<double, D, D>;
   Cloud<D> cloud(150);
@@ -238,14 +239,14 @@ TYPED_TEST(KernelsOf, FindTheShearRateOfALinearField) {
   AlignedVector<float> rate(cloud.lists.pairs());
   chosen_kernels<D>().pair_rates(cloud.rows, cloud.offset.data(), cloud.velocity.data()->data(),
                                  gradient.data()->data(), rate.data(), 0, cloud.size());
-  const double known = (field + field.transpose()).norm() / std::sqrt(2.0);
+  const double expected_rate = (field + field.transpose()).norm() / std::sqrt(2.0);
   cloud.for_each_pair([&](std::size_t i, std::size_t j, std::size_t e) {
     if (j > i) {
-      EXPECT_NEAR(rate[e], known, 1e-4 * known);
+      EXPECT_NEAR(rate[e], expected_rate, 1e-4 * expected_rate);
     }
     EXPECT_EQ(cloud.lists.neighbour(cloud.lists.mirror(e)), i);
   });
 }
 
 }  // namespace
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

@@ -8,7 +8,7 @@
 #include "snowshed/geometry/mesh_level_set.hpp"
 #include "snowshed/geometry/mesh_shells.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 namespace {
 
 using geometry_testing::sphere_mesh;
@@ -16,10 +16,10 @@ using geometry_testing::sphere_mesh;
 constexpr double bump = 0.01;  // m, largest height and depth of the ground
 
 /// Ground with bumps, 0.2 m long along both axes, from -0.1 to `edge` + 0.1 m.
-TriangleMesh bumpy_ground(double edge) {
+geometry::TriangleMesh bumpy_ground(double edge) {
   constexpr std::uint32_t cells = 12;
   constexpr double wave = 2 * 3.14159265358979 / 0.2;
-  TriangleMesh mesh;
+  geometry::TriangleMesh mesh;
   const std::uint32_t side = cells + 1, layer = side * side;
   for (const bool top : {false, true})
     for (std::uint32_t j = 0; j < side; ++j)
@@ -49,9 +49,9 @@ TriangleMesh bumpy_ground(double edge) {
   return mesh;
 }
 
-Obstacle mesh_obstacle(const char* name, TriangleMesh mesh) {
+Obstacle mesh_obstacle(const char* name, geometry::TriangleMesh mesh) {
   return {name,
-          make_mesh(merged_layers(solid_of_shells(mesh, name))),
+          geometry::make_mesh(geometry::merged_layers(geometry::solid_of_shells(mesh, name))),
           {Condition::sticky, 0.0},
           std::nullopt};
 }
@@ -68,8 +68,8 @@ Options bumpy_tank(double width) {
 ParticleBatch block_outside(const Options& o, const Vec3& low, const Vec3& high) {
   ParticleBatch batch = block_of(o, low, high);
   const auto inside = [&](const Vec3& x) {
-    return std::any_of(o.obstacles.begin(), o.obstacles.end(), [&](const Obstacle& one) {
-      return one.shape->distance(x) < 0.5 * o.settings.spacing - 1e-9;
+    return std::any_of(o.obstacles.begin(), o.obstacles.end(), [&](const Obstacle& obstacle) {
+      return obstacle.shape->distance(x) < 0.5 * o.settings.spacing - 1e-9;
     });
   };
   batch.positions.erase(std::remove_if(batch.positions.begin(), batch.positions.end(), inside),
@@ -77,12 +77,12 @@ ParticleBatch block_outside(const Options& o, const Vec3& low, const Vec3& high)
   return batch;
 }
 
-/// The least distance of a particle from an obstacle, m.
-double least_distance(const Method& method, const Options& o) {
+/// Smallest distance of a particle from an obstacle, m.
+double nearest_distance(const Method& method, const Options& o) {
   double min_distance = HUGE_VAL;
   for (const Vec3& x : method.state().positions)
-    for (const Obstacle& one : o.obstacles)
-      min_distance = std::min(min_distance, one.shape->distance(x));
+    for (const Obstacle& obstacle : o.obstacles)
+      min_distance = std::min(min_distance, obstacle.shape->distance(x));
   return min_distance;
 }
 
@@ -100,16 +100,16 @@ TEST(MpsMeshWalls, HoldWaterAtRestOnBumpyGround) {
   const double depth = double(count) * std::pow(o.settings.spacing, 3) / (edge * edge);
   EXPECT_NEAR(height, 0.5 * (depth - 0.25 * bump * bump / depth), 0.02 * depth);
   EXPECT_LT(mps->motion(0).rms_speed, 0.02 * std::sqrt(9.81 * depth));
-  EXPECT_GT(least_distance(*mps, o), 0);
+  EXPECT_GT(nearest_distance(*mps, o), 0);
   EXPECT_EQ(mps->size(), count);
 }
 
-TEST(MpsMeshWalls, LetNoSnowThrough) {
+TEST(MpsMeshWalls, StopAllSnow) {
   Options o = bumpy_tank(0.4);
   o.settings.rheology = ShearLaw::bingham_dilatant;
   o.settings.density = 200;
   o.settings.viscosity = 0.012;
-  TriangleMesh ball = sphere_mesh(0.06, 6);
+  geometry::TriangleMesh ball = sphere_mesh(0.06, 6);
   for (Vec3& x : ball.vertices) x += Vec3(0.22, 0.2, 0.05);
   o.obstacles.push_back(mesh_obstacle("ball", ball));
   const auto mps = make_solver(o);
@@ -119,11 +119,11 @@ TEST(MpsMeshWalls, LetNoSnowThrough) {
   double min_distance = HUGE_VAL;
   while (mps->time() < 0.15) {
     mps->step();
-    min_distance = std::min(min_distance, least_distance(*mps, o));
+    min_distance = std::min(min_distance, nearest_distance(*mps, o));
   }
   EXPECT_GT(min_distance, 0);
   EXPECT_EQ(mps->size(), snow.positions.size());
 }
 
 }  // namespace
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

@@ -5,9 +5,10 @@
 #include <memory>
 
 #include "snowshed/geometry/primitives.hpp"
+#include "snowshed/methods/fields_by_id.hpp"
 #include "snowshed/methods/mps/solver.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 
 /// A particle at the middle of every cell of a box, or of its section y = 0 in 2D.
 inline ParticleBatch block_of(const Options& o, const Vec3& low, const Vec3& high) {
@@ -25,14 +26,13 @@ inline ParticleBatch block_of(const Options& o, const Vec3& low, const Vec3& hig
 }
 
 inline Obstacle wall(const Vec3& point, const Vec3& normal) {
-  return {"wall", make_plane(point, normal), {Condition::sticky, 0.0}, std::nullopt};
+  return {"wall", geometry::make_plane(point, normal), {Condition::sticky, 0.0}, std::nullopt};
 }
 
-/// A tank, open above, of a viscous fluid.
+/// An open tank with a viscous fluid.
 inline Options tank(int dimension, double width, double spacing) {
   Options o;
   o.dimension = dimension;
-  o.gravity = {0, 0, -9.81};
   o.settings.spacing = spacing;
   o.settings.density = 1000;
   o.settings.rheology = ShearLaw::newtonian;
@@ -72,4 +72,4 @@ inline void flow_until(Method& method, double time) {
   while (method.time() < time) method.step();
 }
 
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

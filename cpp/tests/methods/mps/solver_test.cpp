@@ -11,11 +11,11 @@
 #include "snowshed/methods/mps/kernel_function.hpp"
 #include "snowshed/methods/mps/rheology.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 namespace {
 
 // Constants of the regular lattice, against values computed by hand and by others.
-TEST(MpsKernel, ConstantsOfALattice) {
+TEST(MpsKernelFunction, ConstantsOfALatticeMatchKnownValues) {
   const struct {
     int dimension;
     double radius, n0, lambda;
@@ -23,14 +23,14 @@ TEST(MpsKernel, ConstantsOfALattice) {
                {2, 3.1, 18.976417, 2.448472}, {3, 3.1, 54.321209, 3.243422},
                {2, 4.0, 35.609223, 3.707100}, {3, 4.0, 123.991565, 5.211991}};
   for (const auto& k : known) {
-    const KernelConstants found = kernel_constants(k.dimension, k.radius);
-    EXPECT_NEAR(found.number_density, k.n0, 5e-7);
-    EXPECT_NEAR(found.lambda, k.lambda, 5e-7);
+    const KernelConstants constants = kernel_constants(k.dimension, k.radius);
+    EXPECT_NEAR(constants.number_density, k.n0, 5e-7);
+    EXPECT_NEAR(constants.lambda, k.lambda, 5e-7);
   }
 }
 
-// In hexagons as large as the squares of a lattice the sum of w is smaller at the same density.
-TEST(MpsKernel, FillingIsThatOfTheRoomHoweverParticlesLie) {
+// The sum of w is smaller in a hexagonal lattice than in a square one of the same density.
+TEST(MpsKernelFunction, FillingMeasuresTheSpaceOfAnyArrangement) {
   const KernelConstants k = kernel_constants(2, 2.1);
   const double side = std::sqrt(2 / std::sqrt(3.0));
   double number = 0, filling = 1;
@@ -45,7 +45,7 @@ TEST(MpsKernel, FillingIsThatOfTheRoomHoweverParticlesLie) {
   EXPECT_LT(number / k.number_density, 0.994);
 }
 
-TEST(MpsRheology, IsContinuousWhereItBecomesDilatant) {
+TEST(MpsRheology, IsContinuousAtTheDilatantRate) {
   Settings s;
   s.cohesion = 100;
   const Rheology law = Rheology::from(s);
@@ -63,15 +63,16 @@ TEST(MpsRheology, IsContinuousWhereItBecomesDilatant) {
 double pressure_slope(const Method& method, const Options& o, double height) {
   const ParticleState s = method.state();
   const double margin = 2 * o.settings.spacing;
+  const std::vector<double> pressures = values_by_id(method, "pressure");
   double n = 0, z = 0, p = 0, zz = 0, zp = 0;
   for (std::size_t i = 0; i < s.positions.size(); ++i) {
     const double h = s.positions[i].z();
     if (h < margin || h > height - margin) continue;
     ++n;
     z += h;
-    p += s.pressures[i];
+    p += pressures[i];
     zz += h * h;
-    zp += h * s.pressures[i];
+    zp += h * pressures[i];
   }
   return -(n * zp - z * p) / (n * zz - z * z) / (o.settings.density * 9.81);
 }
@@ -105,6 +106,14 @@ double highest(const Method& method) {
   double z = -HUGE_VAL;
   for (const Vec3& x : method.state().positions) z = std::max(z, x.z());
   return z;
+}
+
+TEST(MpsSolver, ABodyFallsByDefault) {
+  Options o;
+  o.dimension = 2;
+  const auto mps = body_of(o, {4 * o.settings.spacing, 0, 4 * o.settings.spacing});
+  flow_until(*mps, 0.02);
+  for (const Vec3& u : mps->state().velocities) EXPECT_NEAR(u.z() / mps->time(), -9.81, 0.1);
 }
 
 // Gaps that particles at the surface leave behind would make the water rise, and then boil.
@@ -146,7 +155,7 @@ TEST(MpsSolver, AStiffColumnIsHydrostatic) {
   }
 }
 
-// The same with wall particles, which conduct pressure, in corners, too.
+// The same between wall particles, which conduct pressure also in corners.
 TEST(MpsSolver, ColumnsBetweenWallParticlesStayAtRest) {
   for (const int dimension : {2, 3}) {
     Options o = tank(dimension, 0.1, dimension == 2 ? 0.01 : 0.02);
@@ -181,7 +190,7 @@ TEST(MpsSolver, AllPreconditionersFindTheSamePressure) {
     o.settings.preconditioner = Preconditioner(k);
     const auto mps = body_of(o, {0.1, 0, 0.2});
     mps->step();
-    pressures[k] = mps->state().pressures;
+    pressures[k] = values_by_id(*mps, "pressure");
     EXPECT_LE(mps->report().pressure_residual, 1e-9);
   }
   for (std::size_t i = 0; i < pressures[0].size(); ++i) {
@@ -202,7 +211,7 @@ TEST(MpsSolver, NothingFallsThroughWalls) {
   }
 }
 
-TEST(MpsSolver, AnUnsolvedEquationLeavesTheStateAsItWas) {
+TEST(MpsSolver, AnUnsolvedEquationLeavesTheStateUnchanged) {
   Options o = tank(2, 0.2, 0.01);
   o.settings.max_iterations = 1;
   o.settings.pressure_tolerance = 1e-9;
@@ -212,33 +221,33 @@ TEST(MpsSolver, AnUnsolvedEquationLeavesTheStateAsItWas) {
   EXPECT_EQ(mps->motion(0).rms_speed, 0);
 }
 
-using MpsCheckpoint = TemporaryFolder;
+using MpsReproducibility = io::TemporaryFolder;
 
-TEST_F(MpsCheckpoint, SameBitsOnAnyThreadsAndAfterResuming) {
+TEST_F(MpsReproducibility, ThreadsAndResumingDoNotChangeTheBits) {
   const auto run = [this](int threads, bool resume, Walls walls, Coupling coupling) {
     Options o = tank(2, 1.0, 0.02);
     o.settings.walls = walls;
     o.settings.coupling = coupling;
     o.settings.threads = threads;
     o.settings.rheology = ShearLaw::bingham_dilatant;
-    o.settings.yield_iterations = 2;  // enough for the same bits
+    o.settings.yield_iterations = 2;  // enough to compare bits
     auto mps = body_of(o, {1.0, 0, 1.0});
     for (int k = 0; k < 6; ++k) {
       if (resume && k == 3) {
-        BinaryWriter out;
+        io::BinaryWriter out;
         mps->save(out);
         out.save(path("state"));
         mps = make_solver(o);
-        mps->load(BinaryReader::load(path("state")));
+        mps->load(io::BinaryReader::load(path("state")));
       }
       mps->step();
     }
     return mps->state().positions;
   };
   const auto expect_the_same = [&](Walls walls, Coupling coupling) {
-    const std::vector<Vec3> once = run(1, false, walls, coupling);
-    EXPECT_EQ(once, run(3, false, walls, coupling));
-    EXPECT_EQ(once, run(1, true, walls, coupling));
+    const std::vector<Vec3> reference = run(1, false, walls, coupling);
+    EXPECT_EQ(reference, run(3, false, walls, coupling));
+    EXPECT_EQ(reference, run(1, true, walls, coupling));
   };
   expect_the_same(Walls::mirrors, Coupling::stiff);
   expect_the_same(Walls::mirrors, Coupling::always);
@@ -270,7 +279,7 @@ double mean_speed(const Method& method) {
   return speed;
 }
 
-TEST(MpsSolver, SlabOnAnInclineAcceleratesByCoulombsFriction) {
+TEST(MpsSolver, ASlabOnAnInclineFollowsCoulomb) {
   for (const Walls walls : {Walls::mirrors, Walls::particles})
     for (const double degrees : {35.0, 45.0}) {
       Options o = incline(degrees, 0, 0.01);
@@ -284,7 +293,7 @@ TEST(MpsSolver, SlabOnAnInclineAcceleratesByCoulombsFriction) {
 
 // A slab stops if it is thinner than c/(rho g (sin a - cos a tan phi)); otherwise it accelerates.
 class MpsSlab : public testing::TestWithParam<Walls> {};
-TEST_P(MpsSlab, WithCohesionStopsOrSlides) {
+TEST_P(MpsSlab, StopsIfThinAndSlidesIfThick) {
   for (const double thickness : {0.2, 0.3}) {
     Options o = incline(35, 100, 0.02);
     o.settings.walls = GetParam();
@@ -346,7 +355,7 @@ TEST(MpsSolver, BinghamPoiseuilleFlowConverges) {
   const FlowErrors coarse = bingham_poiseuille(10, 0.2), fine = bingham_poiseuille(20, 0.1);
   EXPECT_LT(std::abs(fine.plug), 0.03);
   EXPECT_LT(std::abs(fine.discharge), 0.03);
-  EXPECT_GT(std::log2(std::abs(coarse.plug / fine.plug)), 1.5);  // the order
+  EXPECT_GT(std::log2(std::abs(coarse.plug / fine.plug)), 1.5);  // order of convergence
 }
 
 // A thin Bingham fluid comes to rest with h(x) = sqrt(2 tau0 (xf - x)/(rho g)), Liu and Mei (1989).
@@ -392,4 +401,4 @@ TEST(MpsSolver, DamBreakKeepsItsEnergy) {
 }
 
 }  // namespace
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

@@ -7,13 +7,13 @@
 
 #include "mps_testing.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 namespace {
 
-/// The mean of n/n0 - 1 of the particles that are not at the surface: the share of its volume that
-/// a body has lost inside.
+/// Mean of n/n0 - 1 over the particles below the surface: the share of volume that the inside of a
+/// body has lost.
 double mean_excess(const Method& method, double surface_ratio) {
-  const FieldView density = method.field("number_density");
+  const particles::FieldView density = method.field("number_density");
   double sum = 0, count = 0;
   for (std::size_t i = 0; i < density.count; ++i) {
     const double n = *density.at<double>(i);
@@ -32,21 +32,21 @@ TEST(MpsVolume, AStiffSlumpKeepsItsVolume) {
     o.settings.walls = walls;
     o.settings.viscosity = 1e4;
     const auto mps = body_of(o, {0.3, 0, 0.2});
-    double largest = 0;
+    double max_density = 0;
     while (mps->time() < 2) {
       mps->step();
-      largest = std::max(largest, mps->report().largest_density);
+      max_density = std::max(max_density, mps->report().largest_density);
     }
     EXPECT_LT(std::abs(mean_excess(*mps, o.settings.surface_ratio)), 0.01) << int(walls);
     EXPECT_LT(mps->report().density_error, 0.02) << int(walls);
-    EXPECT_LT(largest, 1.08) << int(walls);
+    EXPECT_LT(max_density, 1.08) << int(walls);
   }
 }
 
 /// The mean space per particle, relative to a lattice, deeper than three spacings below the
 /// surface. The space of a particle consists of the points that are nearest to it. The heap lies on
 /// z = 0, beside x = 0.
-double mean_room(const Method& method, double spacing) {
+double mean_space(const Method& method, double spacing) {
   const std::vector<Vec3> points = method.state().positions;
   constexpr int parts = 16;
   const double part = spacing / parts, length = 10;
@@ -57,21 +57,21 @@ double mean_room(const Method& method, double spacing) {
       top[c] = std::max(top[c], x.z());
   std::vector<std::vector<Vec3>> in_column(top.size());
   for (const Vec3& x : points) in_column[column(x)].push_back(x);
-  double places = 0, deep = 0;
+  double samples = 0, deep = 0;
   const auto is_deep = [&](const Vec3& x) { return x.z() < top[column(x)] - 3 * spacing; };
   for (const Vec3& x : points) deep += is_deep(x);
   for (std::size_t c = 0; c + 2 < top.size() && top[c] > 0; ++c)
     for (int i = 0; i < parts; ++i)
       for (double z = 0.5 * part; z < top[c]; z += part) {
-        const Vec3 place((double(c) + (i + 0.5) / parts) * spacing, 0, z);
+        const Vec3 sample((double(c) + (i + 0.5) / parts) * spacing, 0, z);
         const Vec3* nearest = nullptr;
         for (std::size_t b = std::max<std::size_t>(c, 2) - 2; b <= c + 2; ++b)
           for (const Vec3& x : in_column[b])
-            if (!nearest || (x - place).squaredNorm() < (*nearest - place).squaredNorm())
+            if (!nearest || (x - sample).squaredNorm() < (*nearest - sample).squaredNorm())
               nearest = &x;
-        places += nearest && is_deep(*nearest);
+        samples += nearest && is_deep(*nearest);
       }
-  return places / (parts * parts) / deep;
+  return samples / (parts * parts) / deep;
 }
 
 // At the same density disordered particles have a higher number density than a lattice. When the
@@ -86,13 +86,13 @@ TEST(MpsVolume, ABinghamHeapKeepsItsVolume) {
     o.settings.viscosity = 5;
     const auto mps = body_of(o, {0.3, 0, 0.2});
     flow_until(*mps, 0.5);  // still fast, and most disordered
-    EXPECT_NEAR(mean_room(*mps, 0.01), 1, 0.015) << int(walls);
+    EXPECT_NEAR(mean_space(*mps, 0.01), 1, 0.015) << int(walls);
     for (const double time : {1.0, 2.0}) {
       flow_until(*mps, time);
-      EXPECT_NEAR(mean_room(*mps, 0.01), 1, 0.01) << int(walls) << ' ' << time;
+      EXPECT_NEAR(mean_space(*mps, 0.01), 1, 0.01) << int(walls) << ' ' << time;
     }
   }
 }
 
 }  // namespace
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

@@ -9,7 +9,7 @@
 #include "snowshed/geometry/primitives.hpp"
 #include "snowshed/methods/mps/forces.hpp"
 
-namespace snowshed::mps {
+namespace snowshed::methods::mps {
 namespace {
 
 template <int D>
@@ -70,25 +70,27 @@ TEST(MpsWallParticles, CoverAnInclineEvenly) {
   Particles<2> p = at_rest<2>(row);
   WallParticles<2> walls(o.obstacles, 0.01, 0.021);
   walls.append_near(0, 0, 1, p);
-  int touched = 0;
+  int covered = 0;
   for (std::size_t i = row.size(); i < p.size(); ++i) {
     const double depth = -embed(p.position[i]).dot(normal) / 0.01;
     EXPECT_NEAR(depth - std::floor(depth), 0.5, 1e-9);
     EXPECT_EQ(p.kind[i] == Kind::inner_wall, depth < 1);
-    touched += std::abs(embed(p.position[i]).dot(along)) < 0.1 && depth < 1;
+    covered += std::abs(embed(p.position[i]).dot(along)) < 0.1 && depth < 1;
   }
-  EXPECT_EQ(touched, 20);
+  EXPECT_EQ(covered, 20);
 }
 
 // On curved walls the points of a lattice are moved onto layers, where they would crowd.
-TEST(MpsWallParticles, OfABallStandApartInTheMiddleOfLayers) {
+TEST(MpsWallParticles, DoNotCrowdInTheLayersOfABall) {
   constexpr double spacing = 0.01, radius = 0.06;
   Options o = tank(3, 1, spacing);
-  o.obstacles = {
-      {"ball", make_sphere(Vec3::Zero(), radius), {Condition::sticky, 0.0}, std::nullopt}};
-  ParticleBatch around = block_of(o, Vec3::Constant(-0.08), Vec3::Constant(0.08));
+  o.obstacles = {{"ball",
+                  geometry::make_sphere(Vec3::Zero(), radius),
+                  {Condition::sticky, 0.0},
+                  std::nullopt}};
+  ParticleBatch surroundings = block_of(o, Vec3::Constant(-0.08), Vec3::Constant(0.08));
   std::vector<Vec3> snow;
-  for (const Vec3& x : around.positions)
+  for (const Vec3& x : surroundings.positions)
     if (x.norm() > radius + 0.5 * spacing) snow.push_back(x);
   Particles<3> p = at_rest<3>(snow);
   WallParticles<3> walls(o.obstacles, spacing, 2.1 * spacing);
@@ -107,10 +109,10 @@ TEST(MpsWallParticles, OfABallStandApartInTheMiddleOfLayers) {
 }
 
 // A wall thinner than a particle has a single layer, through which no pressure goes.
-TEST(MpsWallParticles, OfAThinBoardStandInItsMiddle) {
+TEST(MpsWallParticles, LieInTheMiddleOfAThinBoard) {
   Options o = tank(2, 1, 0.01);
   o.obstacles = {{"board",
-                  make_box(Vec3(0.05, 0, 0.05), Vec3(0.002, 2, 0.1)),
+                  geometry::make_box(Vec3(0.05, 0, 0.05), Vec3(0.002, 2, 0.1)),
                   {Condition::sticky, 0.0},
                   std::nullopt}};
   Particles<2> p = at_rest<2>({{0.03, 0, 0.05}, {0.07, 0, 0.05}});
@@ -127,10 +129,11 @@ TEST(MpsWallParticles, OfAThinBoardStandInItsMiddle) {
 
 // The wall of a bin has particles on both sides, no matter how thick the block was from which it
 // was cut.
-TEST(MpsWallParticles, OfAThinWallOfACombinedSolidStandWhereItIs) {
+TEST(MpsWallParticles, LieAlongTheThinWallsOfACombinedSolid) {
   const double spacing = 0.01, wall = 0.004;
-  const Shape bin = subtract(make_box(Vec3(0, 0, 0.2), Vec3(0.6, 10, 0.4)),
-                             {make_box(Vec3(0, 0, 0.2 + wall), Vec3(0.6 - 2 * wall, 11, 0.4))});
+  const geometry::Shape bin = geometry::subtract(
+      geometry::make_box(Vec3(0, 0, 0.2), Vec3(0.6, 10, 0.4)),
+      {geometry::make_box(Vec3(0, 0, 0.2 + wall), Vec3(0.6 - 2 * wall, 11, 0.4))});
   Options o = tank(2, 1, spacing);
   o.settings.walls = Walls::particles;
   o.obstacles = {{"bin", bin, {Condition::sticky, 0.0}, std::nullopt}};
@@ -151,4 +154,4 @@ TEST(MpsWallParticles, OfAThinWallOfACombinedSolidStandWhereItIs) {
 }
 
 }  // namespace
-}  // namespace snowshed::mps
+}  // namespace snowshed::methods::mps

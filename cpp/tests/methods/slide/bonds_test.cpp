@@ -4,7 +4,7 @@
 
 #include "methods/slide/slide_testing.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 namespace {
 
 /// Points of a triangular lattice of side 1, `columns` in each of `rows` rows.
@@ -31,9 +31,9 @@ TEST(SlideBonds, ALatticeIsBondedAlongItsEdges) {
 
 TEST(SlideBonds, RestLengthIsTheDistanceInSpace) {
   const Bonds bonds = bonds_between(lattice(3, 2, 1.0), 0, 1.0, nullptr);
-  double longest = 0;
-  for (const double length : bonds.rest_length) longest = std::max(longest, length);
-  EXPECT_NEAR(longest, std::sqrt(2.0), 1e-12);
+  double max_length = 0;
+  for (const double length : bonds.rest_length) max_length = std::max(max_length, length);
+  EXPECT_NEAR(max_length, std::sqrt(2.0), 1e-12);
 }
 
 TEST(SlideBonds, GapsOfTheAreaAreNotBridged) {
@@ -47,7 +47,7 @@ TEST(SlideBonds, GapsOfTheAreaAreNotBridged) {
     EXPECT_EQ(p.x[bonds.first[b]] < 2.75, p.x[bonds.second[b]] < 2.75);
 }
 
-TEST(SlideBonds, OfParticlesThatAreGoneAreGone) {
+TEST(SlideBonds, BondsOfRemovedParticlesAreRemoved) {
   Bonds bonds;
   bonds.add(0, 1, 1.0);
   bonds.add(1, 2, 2.0);
@@ -61,7 +61,7 @@ TEST(SlideBonds, OfParticlesThatAreGoneAreGone) {
 /// Four particles in two triangles on level ground, without friction or pressure, pulled apart.
 struct Strip {
   explicit Strip(double speed, double modulus = 50000) {
-    Options o = slide_on(terrain_of(40, 40, 2, [](double, double) { return 0.0; }),
+    Options o = slide_on(geometry::terrain_of(40, 40, 2, [](double, double) { return 0.0; }),
                          rectangle(10, 10, 60, 60));
     o.gravity = 0;
     o.settings.friction = 0;
@@ -88,13 +88,13 @@ TEST(SlideBonds, AStripBreaksAtTheFailureStrain) {
   EXPECT_NEAR(strip.slide->time(), 0.1, 0.002);
 }
 
-TEST(SlideBonds, AStrainedBondPullsWithItsModulusTimesContactAreaTimesStrain) {
+TEST(SlideBonds, AStrainedBondPullsWithModulusTimesAreaTimesStrain) {
   Strip strip(0.1);
   step(*strip.slide, 1);
   const ParticleState before = strip.slide->state();
   step(*strip.slide, 1);
   const ParticleState after = strip.slide->state();
-  const FieldView thickness = strip.slide->field("thickness");
+  const particles::FieldView thickness = strip.slide->field("thickness");
   const auto at = [&](std::size_t i) {
     return *thickness.at<double>(strip.slide->order_by_id()[i]);
   };
@@ -110,11 +110,11 @@ TEST(SlideBonds, AStrainedBondPullsWithItsModulusTimesContactAreaTimesStrain) {
 /// apart.
 struct Roll {
   explicit Roll(double modulus, double max_strain) {
-    Options o = slide_on(terrain_of(80, 30, 2,
-                                    [](double x, double) {
-                                      const double bend = std::max(x - 50, 0.0);
-                                      return 200 - 0.5 * x - 0.6 * bend;
-                                    }),
+    Options o = slide_on(geometry::terrain_of(80, 30, 2,
+                                              [](double x, double) {
+                                                const double bend = std::max(x - 50, 0.0);
+                                                return 200 - 0.5 * x - 0.6 * bend;
+                                              }),
                          rectangle(30.3, 18.3, 70.3, 42.3));
     o.settings.friction_law = FrictionLaw::coulomb;
     o.settings.friction = 0.45;
@@ -137,7 +137,7 @@ struct Roll {
   std::unique_ptr<Solver> slide;
 };
 
-TEST(SlideBonds, ASlabWithStrongBondsMovesAsOneAndWithWeakOnesTears) {
+TEST(SlideBonds, StrongBondsHoldASlabTogetherAndWeakOnesTear) {
   const Roll strong(5e6, 0.5), weak(5e4, 0.05);
   EXPECT_LT(strong.spread(), 0.05);
   EXPECT_GT(weak.spread(), 0.3);
@@ -146,4 +146,4 @@ TEST(SlideBonds, ASlabWithStrongBondsMovesAsOneAndWithWeakOnesTears) {
 }
 
 }  // namespace
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

@@ -9,28 +9,28 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/io/binary_archive.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 namespace {
 
 /// A slope of 36 degrees that runs out onto level ground.
-HeightField run_out() {
-  return terrain_of(100, 50, 2, [](double x, double) {
+geometry::HeightField run_out() {
+  return geometry::terrain_of(100, 50, 2, [](double x, double) {
     const double slope = std::tan(radians(36)), bend = std::min(std::max(x - 70, 0.0), 40.0);
     return 100 - slope * (std::min(x, 70.0) + bend - bend * bend / 80);
   });
 }
 
-Options options_with_energy(HeightField terrain, Area release) {
+Options options_with_energy(geometry::HeightField terrain, Area release) {
   Options o = slide_on(std::move(terrain), std::move(release));
   o.energy = true;
   return o;
 }
 
 std::map<std::string, double> energies(const Method& method) {
-  std::map<std::string, double> found;
+  std::map<std::string, double> values;
   for (const auto& [name, joules] : capability<KeepsEnergy>(method)->energies())
-    found[name] = joules;
-  return found;
+    values[name] = joules;
+  return values;
 }
 
 /// The residual of the energy balance, divided by the drop of potential energy.
@@ -38,7 +38,7 @@ double gap(const std::map<std::string, double>& e, double potential_before) {
   return std::abs(e.at("residual_j")) / (potential_before - e.at("potential_j"));
 }
 
-TEST(SlideEnergy, OfASlideWithAllThatTakesEnergyCloses) {
+TEST(SlideEnergy, BalanceClosesWithAllDissipation) {
   Options o = options_with_energy(run_out(), rectangle(20.3, 30.3, 50.3, 64.3));
   o.areas.entrainment = {rectangle(60, 20, 90, 80, 0.2)};
   o.areas.resistance = {rectangle(90, 20, 120, 80)};
@@ -55,7 +55,7 @@ TEST(SlideEnergy, OfASlideWithAllThatTakesEnergyCloses) {
     EXPECT_GT(e.at(part), 0) << part;
 }
 
-TEST(SlideEnergy, OfFrictionIsWhatABlockLoses) {
+TEST(SlideEnergy, FrictionEnergyIsItsWorkOnABlock) {
   Options o = options_with_energy(inclined(35, 120, 40), rectangle(20.3, 18.3, 60.3, 58.3));
   o.settings.friction_law = FrictionLaw::coulomb;
   o.settings.friction = 0.4;
@@ -63,14 +63,15 @@ TEST(SlideEnergy, OfFrictionIsWhatABlockLoses) {
   const double mass = total_mass(*slide);
   const Vec3 from = slide->state().positions[0];
   step(*slide, 200);
-  const double way = (slide->state().positions[0] - from).norm();
-  const double work = 0.4 * mass * 9.81 * std::cos(radians(35)) * way;
+  const double distance = (slide->state().positions[0] - from).norm();
+  const double work = 0.4 * mass * 9.81 * std::cos(radians(35)) * distance;
   EXPECT_NEAR(energies(*slide).at("coulomb_j") / work, 1, 0.02);
 }
 
-TEST(SlideEnergy, OfSnowThatSpreadsOnLevelGroundComesFromItsThickness) {
-  Options o = options_with_energy(terrain_of(60, 60, 2, [](double, double) { return 0.0; }),
-                                  rectangle(40.3, 42.3, 70.3, 72.3));
+TEST(SlideEnergy, SpreadingTurnsThicknessIntoKineticEnergy) {
+  Options o =
+      options_with_energy(geometry::terrain_of(60, 60, 2, [](double, double) { return 0.0; }),
+                          rectangle(40.3, 42.3, 70.3, 72.3));
   o.settings.friction = 0;
   o.settings.friction_law = FrictionLaw::coulomb;
   o.settings.bonds = false;
@@ -84,7 +85,7 @@ TEST(SlideEnergy, OfSnowThatSpreadsOnLevelGroundComesFromItsThickness) {
   EXPECT_LT(gap(e, before), 0.01);
 }
 
-TEST(SlideEnergy, OfSnowThatLeavesTheTerrainIsCounted) {
+TEST(SlideEnergy, EnergyThatLeavesTheTerrainIsCounted) {
   const auto slide =
       released_slide(options_with_energy(inclined(40, 40, 30), rectangle(20.3, 18.3, 50.3, 40.3)));
   const double before = energies(*slide).at("potential_j");
@@ -94,23 +95,23 @@ TEST(SlideEnergy, OfSnowThatLeavesTheTerrainIsCounted) {
   EXPECT_LT(std::abs(e.at("residual_j")) / before, 0.01);
 }
 
-class SlideEnergyCheckpoint : public TemporaryFolder {};
+class SlideEnergyCheckpoint : public io::TemporaryFolder {};
 
-TEST_F(SlideEnergyCheckpoint, GoesOnWhereItWas) {
+TEST_F(SlideEnergyCheckpoint, ResumesToTheSameEnergies) {
   const Options o = options_with_energy(run_out(), rectangle(20.3, 30.3, 50.3, 64.3));
   const auto slide = released_slide(o);
   step(*slide, 100);
-  BinaryWriter out;
+  io::BinaryWriter out;
   slide->save(out);
   out.save(path("c.bin"), [](const std::filesystem::path&) {});
   const auto resumed = make_solver(o);
-  resumed->load(BinaryReader::load(path("c.bin")));
+  resumed->load(io::BinaryReader::load(path("c.bin")));
   step(*slide, 50);
   step(*resumed, 50);
   EXPECT_EQ(energies(*slide), energies(*resumed));
 }
 
-TEST(SlideEnergy, StiffBondsShortenTheStepAndDoNotShakeTheSlab) {
+TEST(SlideEnergy, StiffBondsShortenTheStepAndStayStable) {
   Options o = options_with_energy(inclined(35), rectangle(20.3, 18.3, 40.3, 38.3));
   o.settings.bond_modulus = 5e7;
   const auto slide = released_slide(o);
@@ -132,4 +133,4 @@ TEST(SlideEnergy, BondsFarTooStiffForTheStepAreRefused) {
 }
 
 }  // namespace
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

@@ -1,11 +1,11 @@
 // Lack of memory with a slide: every allocation fails once in a run that entrains snow and loses
-// some over the edge of the terrain. Each failed call must leave the snow as it was, and the run
+// some over the edge of the terrain. Each failed call must leave the snow unchanged, and the run
 // must end with the same bits.
 #include "io/temporary_folder.hpp"
-#include "methods/fault_story.hpp"
+#include "methods/call_sequence.hpp"
 #include "methods/slide/slide_testing.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 namespace {
 
 std::unique_ptr<Solver> eroding_slide() {
@@ -15,8 +15,8 @@ std::unique_ptr<Solver> eroding_slide() {
   return make_solver(o);
 }
 
-struct SlideStory : FaultStory<Solver> {
-  explicit SlideStory(std::filesystem::path file) : FaultStory(eroding_slide(), std::move(file)) {
+struct SlideCalls : CallSequence<Solver> {
+  explicit SlideCalls(std::filesystem::path file) : CallSequence(eroding_slide(), std::move(file)) {
     call([](Solver& m) { m.add(m.seed()); });
     take_steps(60);
     save();
@@ -27,35 +27,35 @@ struct SlideStory : FaultStory<Solver> {
   }
 };
 
-/// Compares all that callers can read of a slide. The order of storage may differ.
-void expect_same_slide(const Solver& now, const Solver& wanted) {
-  const ParticleState a = now.state(), b = wanted.state();
+/// Compares what callers can read of a slide. The order in memory may differ.
+void expect_same_slide(const Solver& actual, const Solver& expected) {
+  const ParticleState a = actual.state(), b = expected.state();
   ASSERT_EQ(a.ids, b.ids);
   EXPECT_TRUE(a.positions == b.positions);
   EXPECT_TRUE(a.velocities == b.velocities);
   EXPECT_EQ(a.masses, b.masses);
-  EXPECT_EQ(now.time(), wanted.time());
-  EXPECT_EQ(now.counters().steps, wanted.counters().steps);
-  EXPECT_EQ(now.peaks().speed, wanted.peaks().speed);
-  EXPECT_EQ(now.bonds().rest_length, wanted.bonds().rest_length);
-  EXPECT_EQ(now.mass_balance().entrained, wanted.mass_balance().entrained);
-  EXPECT_EQ(now.mass_balance().left_terrain, wanted.mass_balance().left_terrain);
+  EXPECT_EQ(actual.time(), expected.time());
+  EXPECT_EQ(actual.counters().steps, expected.counters().steps);
+  EXPECT_EQ(actual.peaks().speed, expected.peaks().speed);
+  EXPECT_EQ(actual.bonds().rest_length, expected.bonds().rest_length);
+  EXPECT_EQ(actual.mass_balance().entrained, expected.mass_balance().entrained);
+  EXPECT_EQ(actual.mass_balance().left_terrain, expected.mass_balance().left_terrain);
 }
 
-class SlideFaults : public TemporaryFolder {};
+class SlideFaultInjection : public io::TemporaryFolder {};
 
-TEST_F(SlideFaults, LeaveNoTrace) {
-  SlideStory whole(path("whole")), faulty(path("faulty"));
+TEST_F(SlideFaultInjection, FailedAllocationsLeaveTheStateUnchanged) {
+  SlideCalls reference(path("reference")), faulty(path("faulty"));
   double max_left = 0;
-  const int faults = fail_every_allocation(whole, faulty, expect_same_slide, [&](const Solver& m) {
-    max_left = std::max(max_left, m.mass_balance().left_terrain);
-  });
+  const int faults = fail_every_allocation(
+      reference, faulty, expect_same_slide,
+      [&](const Solver& m) { max_left = std::max(max_left, m.mass_balance().left_terrain); });
   if (HasFailure()) return;
-  EXPECT_GT(whole.method->mass_balance().entrained, 0);
+  EXPECT_GT(reference.method->mass_balance().entrained, 0);
   EXPECT_GT(max_left, 0);
   RecordProperty("faults", faults);
   EXPECT_GE(faults, 500);
 }
 
 }  // namespace
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

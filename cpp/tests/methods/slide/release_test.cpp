@@ -7,7 +7,7 @@
 #include "methods/slide/slide_testing.hpp"
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 namespace {
 
 double mass_of(const std::vector<ParticleBatch>& batches) {
@@ -29,7 +29,7 @@ std::vector<ParticleBatch> seed_on_slope(Settings settings, const Area& area, do
   return seed_release(settings, terrain, {area});
 }
 
-TEST(SlideRelease, MassIsThatOfTheThicknessOverTheSlopingArea) {
+TEST(SlideRelease, MassIsDensityTimesThicknessTimesSlopingArea) {
   const double sloping = 30.0 * 24.0 / std::cos(radians(35));
   for (const double thickness : {0.01, 0.2, 0.5, 3.0}) {
     const auto batches = seed_on_slope({}, rectangle(20.3, 18.3, 50.3, 42.3, thickness));
@@ -37,7 +37,7 @@ TEST(SlideRelease, MassIsThatOfTheThicknessOverTheSlopingArea) {
   }
 }
 
-TEST(SlideRelease, CompatibleMassIsThatOfWholeParticlesAndThinLayersAreRefused) {
+TEST(SlideRelease, CompatibleModeRoundsTheMassAndRefusesThinLayers) {
   Settings s;
   s.mode = Mode::compatible;
   const double exact = 30.0 * 24.0 / std::cos(radians(35)) * 0.5 * 300;
@@ -49,12 +49,12 @@ TEST(SlideRelease, ParticlesLieOnTheGroundWithinTheArea) {
   const Area area = rectangle(20.3, 18.3, 50.3, 42.3);
   for (const ParticleBatch& batch : seed_on_slope({}, area))
     for (const Vec3& x : batch.positions) {
-      EXPECT_TRUE(contains(area.polygon, {x.x(), x.y()}));
+      EXPECT_TRUE(geometry::contains(area.polygon, {x.x(), x.y()}));
       EXPECT_NEAR(x.z(), 200 - std::tan(radians(35)) * x.x(), 1e-9);
     }
 }
 
-TEST(SlideRelease, ARequestToStopIsHeardAndLeavesTheSlideAsItWas) {
+TEST(SlideRelease, StoppingLeavesTheSlideUnchanged) {
   for (const Mode mode : {Mode::improved, Mode::compatible}) {
     Options options = slide_on(inclined(35), rectangle(20.3, 18.3, 50.3, 42.3));
     options.settings.layer_thickness = 0.01;
@@ -70,13 +70,13 @@ TEST(SlideRelease, ARequestToStopIsHeardAndLeavesTheSlideAsItWas) {
   }
 }
 
-TEST(SlideRelease, MoreParticlesThanCanBeSetUpAreRefusedBeforeAnyIsMade) {
+TEST(SlideRelease, TooManyParticlesAreRefusedBeforeSeeding) {
   Options options = slide_on(inclined(35), rectangle(20.3, 18.3, 50.3, 42.3));
   options.settings.layer_thickness = 1e-12;
   EXPECT_THROW(make_solver(options), InputError);
   options.settings.layer_thickness = 2e-4;  // some 450 000 particles
   EXPECT_NO_THROW(make_solver(options));
-  Ring& outline = options.areas.release[0].polygon.outline;
+  geometry::Ring& outline = options.areas.release[0].polygon.outline;
   outline.clear();
   for (int i = 0; i < 20000; ++i) {
     const double turn = radians(360) * i / 20000;
@@ -95,7 +95,7 @@ TEST(SlideRelease, FinerLayersMakeMoreParticles) {
               0.3);
 }
 
-TEST(SlideRelease, AnAreaThatIsSmallerThanAParticleIsRefused) {
+TEST(SlideRelease, AreasWithoutAParticleAreRefused) {
   // A small area has a particle at its centre. A ring has none, because its centre lies in the
   // hole.
   Area ring = rectangle(20, 20, 20.2, 20.2);
@@ -105,17 +105,17 @@ TEST(SlideRelease, AnAreaThatIsSmallerThanAParticleIsRefused) {
 
 /// Gives an area a raster of thickness with cells of 4 m, which begins at (20, 20) m.
 Area with_thickness_raster(Area area, std::vector<double> heights, int columns = 4) {
-  HeightField map;
+  geometry::HeightField map;
   map.columns = columns;
   map.rows = int(heights.size()) / columns;
   map.cell = 4;
   map.west = map.south = 22;  // the middle of the first cell
   map.heights = std::move(heights);
-  area.map = std::make_shared<const HeightField>(std::move(map));
+  area.map = std::make_shared<const geometry::HeightField>(std::move(map));
   return area;
 }
 
-TEST(SlideRelease, ARasterOfThicknessGivesEachCellItsSnow) {
+TEST(SlideRelease, AThicknessRasterGivesEachCellItsSnow) {
   // The raster has two rows of four cells; the area covers only half of the western column.
   const Area area =
       with_thickness_raster(rectangle(22, 20, 36, 28), {0.2, 0.4, 0.6, 0.8, 1.0, 0.8, 0.6, 0.4});
@@ -131,7 +131,7 @@ TEST(SlideRelease, ARasterOfThicknessGivesEachCellItsSnow) {
   EXPECT_NEAR(thick / thin, 2, 1e-9);
 }
 
-TEST(SlideRelease, ARasterThatDoesNotSayTheThicknessEverywhereIsRefused) {
+TEST(SlideRelease, InvalidThicknessRastersAreRefused) {
   const Area area = rectangle(22, 20, 36, 28);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double bad : {nan, 0.0, -0.5, 1e4})
@@ -162,4 +162,4 @@ TEST(SlideRelease, AreasMayTouchButNotOverlap) {
 }
 
 }  // namespace
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

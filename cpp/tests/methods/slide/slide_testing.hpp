@@ -8,12 +8,14 @@
 #include "snowshed/core/angles.hpp"
 #include "snowshed/methods/slide/solver.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 
 /// A plane that falls toward the east.
-inline HeightField inclined(double degrees, int columns = 60, int rows = 30, double cell = 2) {
+inline geometry::HeightField inclined(double degrees, int columns = 60, int rows = 30,
+                                      double cell = 2) {
   const double slope = std::tan(radians(degrees));
-  return terrain_of(columns, rows, cell, [=](double x, double) { return 200 - slope * x; });
+  return geometry::terrain_of(columns, rows, cell,
+                              [=](double x, double) { return 200 - slope * x; });
 }
 
 inline Area rectangle(double west, double south, double east, double north,
@@ -21,7 +23,7 @@ inline Area rectangle(double west, double south, double east, double north,
   return {"area", {{{west, south}, {east, south}, {east, north}, {west, north}}, {}}, thickness};
 }
 
-inline Options slide_on(HeightField terrain, Area release) {
+inline Options slide_on(geometry::HeightField terrain, Area release) {
   Options o;
   o.terrain = std::move(terrain);
   o.areas.release = {std::move(release)};
@@ -57,4 +59,4 @@ inline Vec3 mean_slide_velocity(const Method& method) {
   return momentum / mass;
 }
 
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

@@ -7,7 +7,7 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/io/binary_archive.hpp"
 
-namespace snowshed::slide {
+namespace snowshed::methods::slide {
 namespace {
 
 constexpr double gravity = 9.81;
@@ -19,7 +19,7 @@ Options slab(double degrees, double friction, FrictionLaw law = FrictionLaw::cou
   return o;
 }
 
-TEST(Slide, ABlockWithCoulombFrictionAcceleratesAsNewtonSays) {
+TEST(SlideSolver, ABlockWithCoulombFrictionFollowsNewton) {
   for (const double friction : {0.0, 0.2, 0.5}) {
     const auto slide = released_slide(slab(35, friction));
     step(*slide, 200);
@@ -29,7 +29,7 @@ TEST(Slide, ABlockWithCoulombFrictionAcceleratesAsNewtonSays) {
   }
 }
 
-TEST(Slide, ABlockWithVoellmyFrictionFollowsItsOrdinaryDifferentialEquation) {
+TEST(SlideSolver, ABlockWithVoellmyFrictionFollowsItsEquationOfMotion) {
   Options fine = slab(35, 0.325, FrictionLaw::voellmy);
   fine.areas.release = {rectangle(20.3, 18.3, 48.3, 46.3)};
   fine.settings.layer_thickness = 0.02;  // many particles, so that the thickness is even
@@ -52,7 +52,7 @@ TEST(Slide, ABlockWithVoellmyFrictionFollowsItsOrdinaryDifferentialEquation) {
   EXPECT_NEAR(speed / count / expected, 1, 0.005);
 }
 
-TEST(Slide, PeakSpeedIsThatOfTheSnowAndFadesBeyondItsRim) {
+TEST(SlideSolver, PeakSpeedMatchesTheSnowAndFadesBeyondItsRim) {
   Options o = slide_on(inclined(35), rectangle(20.3, 18.3, 50.3, 42.3, 1.0));
   o.settings.bonds = false;
   o.settings.layer_thickness = 0.1;
@@ -75,7 +75,7 @@ TEST(Slide, PeakSpeedIsThatOfTheSnowAndFadesBeyondItsRim) {
   EXPECT_EQ(at(29), 0);
 }
 
-TEST(Slide, SnowBelowTheAngleOfFrictionStaysExactlyWhereItIs) {
+TEST(SlideSolver, SnowBelowTheAngleOfFrictionDoesNotMove) {
   Options o = slab(20, 0.6);
   o.settings.artificial_viscosity = 0;
   const auto slide = released_slide(o);
@@ -89,8 +89,8 @@ TEST(Slide, SnowBelowTheAngleOfFrictionStaysExactlyWhereItIs) {
   EXPECT_GT(double(still) / double(before.positions.size()), 0.7);
 }
 
-TEST(Slide, PressureMovesNoCentreOfMass) {
-  Options o = slide_on(terrain_of(60, 60, 2, [](double, double) { return 0.0; }),
+TEST(SlideSolver, PressureDoesNotMoveTheCenterOfMass) {
+  Options o = slide_on(geometry::terrain_of(60, 60, 2, [](double, double) { return 0.0; }),
                        rectangle(40.3, 42.3, 70.3, 72.3));
   o.settings.friction = 0;
   o.settings.friction_law = FrictionLaw::coulomb;
@@ -102,7 +102,7 @@ TEST(Slide, PressureMovesNoCentreOfMass) {
   EXPECT_LT(mean_slide_velocity(*slide).norm(), 1e-9 * slide->motion(0).rms_speed);
 }
 
-TEST(Slide, MassIsKeptAndWhatLeavesTheTerrainIsCounted) {
+TEST(SlideSolver, MassIsConservedAndLeavingMassIsCounted) {
   Options o = slide_on(inclined(40, 40, 30), rectangle(20.3, 18.3, 50.3, 40.3));
   const auto slide = released_slide(o);
   const double released_mass = total_mass(*slide);
@@ -113,7 +113,7 @@ TEST(Slide, MassIsKeptAndWhatLeavesTheTerrainIsCounted) {
   EXPECT_NEAR(m.released / released_mass, 1, 1e-12);
 }
 
-TEST(Slide, EntrainedMassIsWhatTheParticlesGain) {
+TEST(SlideSolver, EntrainedMassEqualsTheGainOfTheParticles) {
   Options o = slide_on(inclined(38, 100, 30), rectangle(20.3, 18.3, 50.3, 40.3));
   o.areas.entrainment = {rectangle(60, 6, 120, 52, 0.3)};
   const auto slide = released_slide(o);
@@ -124,7 +124,7 @@ TEST(Slide, EntrainedMassIsWhatTheParticlesGain) {
   EXPECT_NEAR((total_mass(*slide) + m.left_terrain - m.entrained) / released_mass, 1, 1e-12);
 }
 
-TEST(Slide, ForestHoldsSnowBack) {
+TEST(SlideSolver, ForestSlowsSnowDown) {
   Options open = slide_on(inclined(38, 100, 30), rectangle(20.3, 18.3, 50.3, 40.3));
   Options forest = open;
   forest.settings.resistance = 0.5;
@@ -141,28 +141,28 @@ bool are_equal(const Method& a, const Method& b) {
          s.ids == t.ids;
 }
 
-TEST(Slide, TheNumberOfThreadsChangesNoBit) {
+TEST(SlideSolver, ThreadsDoNotChangeTheBits) {
   Options o = slide_on(inclined(38, 100, 60), rectangle(20.3, 18.3, 80.3, 98.3));
   o.settings.layer_thickness = 0.1;
-  const auto one = released_slide(o);
+  const auto single = released_slide(o);
   o.settings.threads = 3;
   const auto three = released_slide(o);
-  step(*one, 60);
+  step(*single, 60);
   step(*three, 60);
-  EXPECT_TRUE(are_equal(*one, *three));
+  EXPECT_TRUE(are_equal(*single, *three));
 }
 
-class SlideCheckpoint : public TemporaryFolder {};
+class SlideCheckpoint : public io::TemporaryFolder {};
 
 TEST_F(SlideCheckpoint, ResumesToTheSameBits) {
   const Options o = slide_on(inclined(38, 100, 40), rectangle(20.3, 18.3, 50.3, 58.3));
   const auto slide = released_slide(o);
   step(*slide, 45);  // between two sorts
-  BinaryWriter out;
+  io::BinaryWriter out;
   slide->save(out);
   out.save(path("c.bin"), [](const std::filesystem::path&) {});
   const auto resumed = make_solver(o);
-  resumed->load(BinaryReader::load(path("c.bin")));
+  resumed->load(io::BinaryReader::load(path("c.bin")));
   step(*slide, 60);
   step(*resumed, 60);
   EXPECT_TRUE(are_equal(*slide, *resumed));
@@ -170,7 +170,7 @@ TEST_F(SlideCheckpoint, ResumesToTheSameBits) {
   EXPECT_EQ(slide->bonds().rest_length, resumed->bonds().rest_length);
 }
 
-TEST(Slide, ExtremeGroundGivesNoNumberThatIsNone) {
+TEST(SlideSolver, ExtremeTerrainGivesFinitePositions) {
   const auto cliff = [](double x, double) { return x < 60 ? 300.0 : 200.0; };
   const auto pit = [](double x, double y) {
     return std::hypot(x - 60, y - 40) < 8 ? 0.0 : 100 - 0.7 * x;
@@ -179,8 +179,9 @@ TEST(Slide, ExtremeGroundGivesNoNumberThatIsNone) {
     return 200 - 0.7 * x - (std::abs(y - 40) < 1 ? 6 : 0);
   };
   const auto flat = [](double, double) { return 10.0; };
-  for (const auto& f : {terrain_of(90, 40, 2, cliff), terrain_of(90, 40, 2, pit),
-                        terrain_of(90, 40, 2, gully), terrain_of(90, 40, 2, flat)})
+  for (const auto& f :
+       {geometry::terrain_of(90, 40, 2, cliff), geometry::terrain_of(90, 40, 2, pit),
+        geometry::terrain_of(90, 40, 2, gully), geometry::terrain_of(90, 40, 2, flat)})
     for (const double thickness : {0.001, 0.5, 10.0}) {
       const auto slide = released_slide(slide_on(f, rectangle(30.3, 24.3, 50.3, 52.3, thickness)));
       for (int i = 0; i < 120 && slide->size() > 0; ++i) slide->step();
@@ -188,13 +189,13 @@ TEST(Slide, ExtremeGroundGivesNoNumberThatIsNone) {
     }
 }
 
-TEST(Slide, AreasThatReachBeyondTheTerrainAreRefused) {
+TEST(SlideSolver, AreasBeyondTheTerrainAreRefused) {
   EXPECT_THROW(make_solver(slide_on(inclined(35), rectangle(20, 20, 500, 40))), InputError);
 }
 
-TEST(Slide, HolesOfTheTerrainAreRefusedWhereSnowIsReleased) {
+TEST(SlideSolver, TerrainHolesWithinReleaseAreasAreRefused) {
   for (const int node : {10, 15, 20}) {  // at a corner of the area, within, and at another corner
-    HeightField holed = inclined(35);
+    geometry::HeightField holed = inclined(35);
     holed.heights[holed.index(node, node)] = std::nan("");
     EXPECT_THROW(make_solver(slide_on(holed, rectangle(20.3, 20.3, 39.7, 39.7))), InputError);
     EXPECT_NO_THROW(make_solver(slide_on(holed, rectangle(60, 20, 80, 40))));
@@ -202,4 +203,4 @@ TEST(Slide, HolesOfTheTerrainAreRefusedWhereSnowIsReleased) {
 }
 
 }  // namespace
-}  // namespace snowshed::slide
+}  // namespace snowshed::methods::slide

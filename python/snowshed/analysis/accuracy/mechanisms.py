@@ -95,19 +95,19 @@ class Mechanisms:
 
     @property
     def calibration_note(self) -> str:
-        """A clause on the other scheme with which the calibrated snow was found; empty for its own.
+        """A clause on the scheme with which the snow was calibrated; empty for that scheme.
 
         Examples
         --------
         >>> Mechanisms("objective").calibration_note
-        'the calibrated snow was found with scheme thesis on cells of 1 cm, which stacks it higher'
+        'the snow was calibrated with scheme thesis on cells of 1 cm, which stacks it higher'
         >>> Mechanisms().calibration_note
         ''
         """
         if self.scheme == FIRST_SCHEME:
             return ""
-        found_with = f"scheme {FIRST_SCHEME} on cells of 1 cm"
-        return f"the calibrated snow was found with {found_with}, which stacks it higher"
+        calibrated_with = f"scheme {FIRST_SCHEME} on cells of 1 cm"
+        return f"the snow was calibrated with {calibrated_with}, which stacks it higher"
 
     def lengths_note(self, recorded: float, thickness: float) -> str:
         """Return a clause if the scheme's lengths are other shares of the slab than recorded.

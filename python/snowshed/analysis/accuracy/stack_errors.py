@@ -78,15 +78,15 @@ class StackError:
         scatter = " and ".join(f"{100 * self.scatter[name]:.0f} %" for name in self.scatter)
         cells = f"{number(self.recorded_cells, 2)} cell{'' if self.recorded_cells == 1 else 's'}"
         mechanisms = Mechanisms.of_settings(self.settings)
-        mine = (
+        own_cells = (
             ""
             if abs(self.cells / self.recorded_cells - 1) < 0.01
             else f"; this scene has {number(self.cells, 2)}"
         )
         return _clauses(
             f"error of the stack in recorded runs ({_where(self.settings)}, {cells} in the "
-            f"slab{mine}): {bias}, against the finest recorded grid of this scheme, which "
-            "has not converged either",
+            f"slab{own_cells}): {bias}, relative to the finest recorded grid of this scheme, "
+            "which is itself not converged",
             f"single runs scatter by {scatter}" if scatter else "",
             mechanisms.calibration_note,
             mechanisms.lengths_note(PRESET_THICKNESS, self.thickness),
@@ -198,8 +198,8 @@ def recorded_bias(dimension: int, events: int, mechanisms: Optional[Mechanisms] 
     low, high = 100 * min(resolved.values()), 100 * max(resolved.values())
     return _clauses(
         f"stacks of {_where(stacks[0].settings)} were {_span(low, high)} with "
-        f"{_numbers(min(resolved), max(resolved))} cells in the slab, against the finest recorded "
-        "grid of this scheme",
+        f"{_numbers(min(resolved), max(resolved))} cells in the slab, relative to the finest "
+        "recorded grid of this scheme",
         mechanisms.calibration_note,
     )
 

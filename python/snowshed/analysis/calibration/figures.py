@@ -19,7 +19,7 @@ from snowshed.analysis.calibration.surrogate import EXTRA
 from snowshed.base.arrays import Booleans
 from snowshed.base.extras import require
 from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, STYLE, blank_figure, headline
-from snowshed.plot.labels import label
+from snowshed.scene.labels import label
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -28,7 +28,7 @@ def calibration_study(
     quick
         Whether to use the 12 corners of the grid, in 2D and coarse, for a trial.
     seeds
-        Seedings of each triplet and tilt; by default 2, which show the noise.
+        Random seeds per triplet and tilt; 2 by default, which show the noise.
 
     Raises
     ------

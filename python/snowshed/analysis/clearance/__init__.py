@@ -1,1 +1,5 @@
 """The height of a panel's lower edge that its shed snow does not reach."""
+
+import lazy_loader as _lazy
+
+__getattr__, __dir__, __all__ = _lazy.attach_stub(__name__, __file__)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Optional
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.analysis.clearance.panel_design import Design, Ranges
+from snowshed.analysis.clearance.panel_design import PanelDesign, SnowRanges
 from snowshed.analysis.clearance.seasons import SeasonCase, SeasonOutcome, cases_of
 from snowshed.analysis.clearance.statistics import CauseShare, Level, levels_of, shares_of
 from snowshed.analysis.clearance.winters import Winter
@@ -24,9 +24,10 @@ from snowshed.base.formatting import plural
 from snowshed.base.json_values import JsonValue
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
-from snowshed.season.season_record import WinterList
 from snowshed.season.settings import SeasonSettings
-from snowshed.study.session import compute_runs, expected_duration
+from snowshed.season.weather.season_record import WinterList
+from snowshed.study.session import compute_runs
+from snowshed.study.session import expected_duration as duration_of_runs
 from snowshed.study.table import read_table
 
 if TYPE_CHECKING:
@@ -59,7 +60,7 @@ class ClearanceResult:
         All winters of the file, with the quality of their snow data, if given.
     """
 
-    design: Design
+    design: PanelDesign
     heights: Sequence[float]
     cases: Sequence[SeasonCase]
     outcomes: Sequence[Sequence[SeasonOutcome]]
@@ -157,7 +158,7 @@ def required_height(outcomes: Sequence[SeasonOutcome]) -> float:
 
     Examples
     --------
-    >>> from snowshed.season.clearance import PanelContact
+    >>> from snowshed.season.panel_contact import PanelContact
     >>> touched = PanelContact("2024-12-24", 1, "crest")
     >>> required_height([SeasonOutcome(1.0, -0.1, touched), SeasonOutcome(2.0, 0.9, None)])
     1.1
@@ -175,12 +176,12 @@ def required_height(outcomes: Sequence[SeasonOutcome]) -> float:
 
 
 def required_clearance(
-    design: Design,
+    design: PanelDesign,
     winters: Sequence[Winter],
     heights: Sequence[float],
     folder: PathLike,
     *,
-    ranges: Optional[Ranges] = None,
+    ranges: Optional[SnowRanges] = None,
     settings: Optional[SeasonSettings] = None,
     scene: Optional[Mapping[str, JsonValue]] = None,
     winter_list: Optional[WinterList] = None,
@@ -200,7 +201,7 @@ def required_clearance(
     folder
         Folder of the store of runs; an interrupted answer resumes there.
     ranges
-        Ranges of the uncertain snow parameters. [default: `Ranges()`]
+        Ranges of the uncertain snow parameters. [default: `SnowRanges()`]
     settings
         Settings of the seasons, except those that vary. [default: `SeasonSettings()`]
     scene
@@ -222,7 +223,7 @@ def required_clearance(
     candidates = sorted(set(heights))
     if not candidates or not 0.0 < candidates[0] <= candidates[-1] <= 100.0:
         raise InputError(f"heights: {candidates}; needed: at least one from 0 to 100 m")
-    values = (ranges or Ranges()).draw(len(winters))
+    values = (ranges or SnowRanges()).draw(len(winters))
     cases = cases_of(design, winters, values, settings or SeasonSettings(), scene or {})
     search = _Search(cases, candidates)
     while search.undecided():
@@ -243,12 +244,12 @@ def required_clearance(
     )
 
 
-def forecast(
-    design: Design,
+def expected_duration(
+    design: PanelDesign,
     winters: Sequence[Winter],
     heights: Sequence[float],
     *,
-    ranges: Optional[Ranges] = None,
+    ranges: Optional[SnowRanges] = None,
     settings: Optional[SeasonSettings] = None,
     scene: Optional[Mapping[str, Any]] = None,
     jobs: Optional[int] = None,
@@ -257,11 +258,11 @@ def forecast(
 
     The parameters are those of `required_clearance`.
     """
-    values = (ranges or Ranges()).draw(len(winters))
+    values = (ranges or SnowRanges()).draw(len(winters))
     cases = cases_of(design, winters, values, settings or SeasonSettings(), scene or {})
     search = _Search(cases, sorted(set(heights)))
     scenes = [run.scene for run in search.runs().values()]
-    seconds = expected_duration(scenes, jobs=jobs)[0] if scenes else 0.0
+    seconds = duration_of_runs(scenes, jobs=jobs)[0] if scenes else 0.0
     return seconds * search.rounds, round(len(scenes) * search.rounds)
 
 

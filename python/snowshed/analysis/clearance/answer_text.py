@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from snowshed.analysis.accuracy.mechanisms import Mechanisms
 from snowshed.analysis.accuracy.stack_errors import recorded_bias
 from snowshed.analysis.clearance.answer import ClearanceResult
-from snowshed.analysis.clearance.panel_design import MEANING, Ranges
+from snowshed.analysis.clearance.panel_design import UNCERTAIN, SnowRanges
 from snowshed.base.formatting import plural
-from snowshed.season.season_record import whole_percent
 from snowshed.season.settings import SeasonSettings
+from snowshed.season.weather.season_record import whole_percent
 
 FIRST_PROBABILITY = 0.9  # of the answer's first sentence
 #: Number of slide-offs in a typical winter, for which recorded runs give the error of the grid.
@@ -36,12 +36,12 @@ def cause_label(cause: str) -> str:
     """Return the label of a cause of variance."""
     if cause == "winter":
         return "the winter's weather"
-    return CHANCE if cause == "chance" else MEANING[cause]
+    return CHANCE if cause == "chance" else UNCERTAIN[cause].meaning
 
 
 def advice(answer: ClearanceResult) -> str:
     """Return which measurement would reduce the uncertainty of the required height most."""
-    shares = [share for share in answer.shares if share.cause in MEANING]
+    shares = [share for share in answer.shares if share.cause in UNCERTAIN]
     if not shares:
         return (
             "There are too few seasons to separate the causes. Use more winters, or more --draws."
@@ -49,8 +49,9 @@ def advice(answer: ClearanceResult) -> str:
     largest = shares[0]
     winter = next((share.part for share in answer.shares if share.cause == "winter"), 0.0)
     return (
-        f"Measuring the {MEANING[largest.cause]} would reduce the uncertainty most: it causes "
-        f"{100 * largest.part:.0f} % of the variance. The winter causes {100 * winter:.0f} %, "
+        f"Measuring the {UNCERTAIN[largest.cause].meaning} would reduce the uncertainty most: it "
+        f"causes {100 * largest.part:.0f} % of the variance. The winter causes "
+        f"{100 * winter:.0f} %, "
         "which no measurement reduces."
     )
 
@@ -127,6 +128,9 @@ def _strength(season: SeasonSettings) -> str:
     return f"Strength and stiffness of a slab follow from its density ({season.strength})."
 
 
-def range_rows(ranges: Ranges) -> list[tuple[str, str, str]]:
+def range_rows(ranges: SnowRanges) -> list[tuple[str, str, str]]:
     """Return the uncertain parameters, each with its lowest and highest value."""
-    return [(MEANING[name], f"{low:g}", f"{high:g}") for name, (low, high) in ranges.spans.items()]
+    return [
+        (UNCERTAIN[name].meaning, f"{low:g}", f"{high:g}")
+        for name, (low, high) in ranges.spans.items()
+    ]

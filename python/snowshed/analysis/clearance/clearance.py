@@ -6,16 +6,16 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Optional
 
 from snowshed.analysis.clearance.answer import ClearanceResult, required_clearance
-from snowshed.analysis.clearance.panel_design import Design, Ranges
+from snowshed.analysis.clearance.panel_design import PanelDesign, SnowRanges
 from snowshed.analysis.clearance.winters import counted_winters
 from snowshed.base.json_values import JsonValue
 from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
-from snowshed.season.quality import COVERAGE
 from snowshed.season.settings import SeasonSettings
-from snowshed.season.source import AUTO
-from snowshed.season.weather import Season, read_record
+from snowshed.season.weather.quality import COVERAGE
+from snowshed.season.weather.reading import Season, read_record
+from snowshed.season.weather.source import AUTO
 
 if TYPE_CHECKING:
     import pandas as pd  # noqa: F401 - of `Season`
@@ -28,7 +28,7 @@ def clearance(
     slope_length: float,
     tilt: float,
     heights: Sequence[float] = (1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0),
-    ranges: Optional[Ranges] = None,
+    ranges: Optional[SnowRanges] = None,
     settings: Optional[SeasonSettings] = None,
     scene: Optional[Mapping[str, JsonValue]] = None,
     coverage: float = COVERAGE,
@@ -53,7 +53,7 @@ def clearance(
     heights
         Candidates for the height of the lower edge above the ground, m.
     ranges
-        Ranges of the uncertain snow parameters. [default: `Ranges()`]
+        Ranges of the uncertain snow parameters. [default: `SnowRanges()`]
     settings
         Settings of the seasons, except those that vary. [default: `SeasonSettings()`]
     scene
@@ -93,7 +93,7 @@ def clearance(
     ...     file = Path(base) / "weather.csv"
     ...     _ = file.write_text("\n".join(["date,snowfall_m,temperature_c", *rows]))
     ...     answer = clearance(file, f"{base}/runs", slope_length=0.5, tilt=60, heights=[0.5],
-    ...                        ranges=Ranges(draws=1), scene={"numerics.dx": 0.05})
+    ...                        ranges=SnowRanges(draws=1), scene={"numerics.dx": 0.05})
     >>> answer.at(0.9).height < 0.5
     True
     """
@@ -102,7 +102,7 @@ def clearance(
     for note in (*record.notes, *winter_list.notes):
         issue_note(note)
     return required_clearance(
-        Design(slope_length, tilt),
+        PanelDesign(slope_length, tilt),
         counted_winters(winter_list),
         heights,
         folder,

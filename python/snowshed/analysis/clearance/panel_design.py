@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, Optional
 
 import numpy as np
 
@@ -14,35 +14,63 @@ from snowshed.scene.components import Ground, Panel, Slab
 from snowshed.scene.scene import ResolvedScene, Scene
 from snowshed.season.settings import SeasonSettings
 
-MIN_CELL, MAX_CELL, CELLS = 0.04, 0.1, 40  # m, m, cells along the slope
+MIN_CELL, MAX_CELL = 0.04, 0.1  # m
+CELLS = 40  # cells along the slope
 
 Span = tuple[float, float]
 
-#: The uncertain snow parameters, and their default ranges.
-DEFAULT_RANGES: Mapping[str, Span] = {
-    "friction": (0.3, 0.7),
-    "adhesion": (0.0, 150.0),
-    "sliding": (0.1, 0.4),
-    "strength": (0.5, 2.0),
+
+@dataclass(frozen=True)
+class UncertainParameter:
+    """A property of the snow that varies from winter to winter, or is not known.
+
+    Attributes
+    ----------
+    meaning
+        Its meaning, with the unit.
+    limits
+        Smallest and largest allowed value.
+    default
+        Its range where none is given; None: it does not vary then.
+    is_factor
+        Whether it is a factor; its logarithm is then drawn evenly, not its value.
+    """
+
+    meaning: str
+    limits: Span
+    default: Optional[Span] = None
+    is_factor: bool = False
+
+
+#: The uncertain parameters by name.
+UNCERTAIN: Mapping[str, UncertainParameter] = {
+    "friction": UncertainParameter(
+        "static friction of snow on the panel", (0.0, 10.0), default=(0.3, 0.7)
+    ),
+    "adhesion": UncertainParameter(
+        "adhesion of snow to the panel, Pa", (0.0, 1e5), default=(0.0, 150.0)
+    ),
+    "sliding_friction": UncertainParameter(
+        "friction of sliding snow", (0.0, 10.0), default=(0.1, 0.4)
+    ),
+    "strength": UncertainParameter(
+        "strength of the snow, as a multiple of that for its density",
+        (0.01, 100.0),
+        default=(0.5, 2.0),
+        is_factor=True,
+    ),
+    "catch": UncertainParameter("share of the snowfall that the panel catches", (0.0, 1.0)),
 }
-MEANING: Mapping[str, str] = {
-    "friction": "static friction of snow on the panel",
-    "adhesion": "adhesion of snow to the panel, Pa",
-    "sliding": "friction of sliding snow",
-    "strength": "strength of the snow, as a multiple of that for its density",
-    "catch": "share of the snowfall that the panel catches",
-}
-LIMITS: Mapping[str, Span] = {
-    "friction": (0.0, 10.0),
-    "adhesion": (0.0, 1e5),
-    "sliding": (0.0, 10.0),
-    "strength": (0.01, 100.0),
-    "catch": (0.0, 1.0),
-}
+
+
+def default_ranges() -> dict[str, Span]:
+    """Return the ranges of the parameters that vary by default."""
+    ranges = {name: parameter.default for name, parameter in UNCERTAIN.items()}
+    return {name: span for name, span in ranges.items() if span is not None}
 
 
 @dataclass(frozen=True)
-class Design:
+class PanelDesign:
     """A panel whose lower edge needs a height.
 
     Attributes
@@ -69,13 +97,14 @@ class Design:
 
 
 @dataclass(frozen=True)
-class Ranges:
+class SnowRanges:
     """Ranges of the uncertain snow parameters.
 
     Attributes
     ----------
     spans
-        Smallest and largest value by names in `MEANING`; the same value twice if it is known.
+        Smallest and largest value of ``friction``, ``adhesion`` [Pa], ``sliding_friction``,
+        ``strength`` (a factor) and ``catch`` (a share); the same value twice if it is known.
     draws
         Number of simulations of each winter, each with other values.
     seed
@@ -83,12 +112,12 @@ class Ranges:
 
     Examples
     --------
-    >>> ranges = Ranges({"friction": (0.4, 0.4), "adhesion": (0.0, 0.0)}, draws=1)
+    >>> ranges = SnowRanges({"friction": (0.4, 0.4), "adhesion": (0.0, 0.0)}, draws=1)
     >>> ranges.draw(2)[0]["friction"], len(ranges.draw(3))
     (0.4, 3)
     """
 
-    spans: Mapping[str, Span] = field(default_factory=lambda: dict(DEFAULT_RANGES))
+    spans: Mapping[str, Span] = field(default_factory=default_ranges)
     draws: int = 3
     seed: int = 1
 
@@ -96,9 +125,9 @@ class Ranges:
         if not 1 <= self.draws <= 1000:
             raise InputError(f"draws: {self.draws}; allowed: 1 to 1000")
         for name, (low, high) in self.spans.items():
-            if name not in MEANING:
-                raise InputError(f"range of {name!r}; allowed: {', '.join(MEANING)}")
-            least, most = LIMITS[name]
+            if name not in UNCERTAIN:
+                raise InputError(f"range of {name!r}; allowed: {', '.join(UNCERTAIN)}")
+            least, most = UNCERTAIN[name].limits
             if not (math.isfinite(low) and math.isfinite(high) and least <= low <= high <= most):
                 raise InputError(
                     f"{name}: {low:g} to {high:g} is not allowed; needed: two values, the smaller "
@@ -117,7 +146,7 @@ class Ranges:
         for name, (low, high) in sorted(self.spans.items()):
             shares = (random.permutation(count) + random.random(count)) / count
             for draw, share in zip(values, shares):
-                if name == "strength":  # a factor: as many below one as above
+                if UNCERTAIN[name].is_factor:
                     draw[name] = float(low * (high / low) ** share)
                 else:
                     draw[name] = float(low + (high - low) * share)
@@ -125,15 +154,19 @@ class Ranges:
 
 
 def season_settings(base: SeasonSettings, values: Mapping[str, float], dx: float) -> SeasonSettings:
-    """Return a season's settings with drawn values; releases below 1.5 cells slide together."""
+    """Return a season's settings with drawn values; releases thinner than 1.5 cells are pooled."""
     drawn: dict[str, Any] = {
         name: values[name] for name in ("friction", "adhesion", "catch") if name in values
     }
     return replace(base, **drawn, pool_below=max(base.pool_below, 1.5 * dx))
 
 
-def scene_of(
-    design: Design, height: float, values: Mapping[str, float], seed: int, base: Mapping[str, Any]
+def panel_scene(
+    design: PanelDesign,
+    height: float,
+    values: Mapping[str, float],
+    seed: int,
+    base: Mapping[str, Any],
 ) -> ResolvedScene:
     """Return the scene of a panel at a height, without its slabs.
 
@@ -154,7 +187,7 @@ def scene_of(
             "panel.height": height,
             "panel.length": design.slope_length,
             "panel.tilt": design.tilt,
-            "panel.friction": values.get("sliding", 0.3),
+            "panel.friction": values.get("sliding_friction", 0.3),
             "numerics.dx": design.dx,
             "seeding.particles_per_voxel": 4,
             "seeding.seed": seed,

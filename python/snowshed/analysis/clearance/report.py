@@ -9,17 +9,17 @@ from typing import Any, Optional
 
 from snowshed.analysis.clearance import answer_text
 from snowshed.analysis.clearance.answer import ClearanceResult
-from snowshed.analysis.clearance.panel_design import Ranges
+from snowshed.analysis.clearance.panel_design import SnowRanges
 from snowshed.analysis.clearance.statistics import burial_interval
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
 from snowshed.plot.clearance_figure import burial_figure, causes_figure, design_figure
 from snowshed.plot.html_page import HtmlTable, Picture, template
-from snowshed.season.quality_table import ALIGN, HEAD, quality_rows, title
+from snowshed.season.weather.quality_table import ALIGN, HEAD, quality_rows, title
 
 
 def write_report(
-    answers: Sequence[ClearanceResult], ranges: Ranges, folder: Path, notes: Sequence[str] = ()
+    answers: Sequence[ClearanceResult], ranges: SnowRanges, folder: Path, notes: Sequence[str] = ()
 ) -> None:
     """Write clearance.html, clearance.csv and clearance.json into a folder.
 
@@ -59,7 +59,7 @@ def write_report(
 
 
 def summary(
-    answers: Sequence[ClearanceResult], ranges: Ranges, notes: Sequence[str] = ()
+    answers: Sequence[ClearanceResult], ranges: SnowRanges, notes: Sequence[str] = ()
 ) -> dict[str, Any]:
     """Return the answer as JSON data; the parameters are those of `write_report`."""
     record = answers[0].winter_list

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 
-from snowshed.analysis.clearance.panel_design import Design, scene_of, season_settings
+from snowshed.analysis.clearance.panel_design import PanelDesign, panel_scene, season_settings
 from snowshed.analysis.clearance.winters import Winter
 from snowshed.scene.scene import ResolvedScene
 from snowshed.season.accumulation import WinterDay, accumulate, stack_ageing
-from snowshed.season.clearance import PanelContact, first_contact
+from snowshed.season.panel_contact import PanelContact, first_contact
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.slabs import season_scene
 from snowshed.season.table import season_table
@@ -64,7 +64,7 @@ class SeasonCase:
         Values of the scene that replace the defaults.
     """
 
-    design: Design
+    design: PanelDesign
     winter: Winter
     values: Mapping[str, float]
     seed: int
@@ -88,7 +88,7 @@ class SeasonCase:
 
     def panel_scene(self, height: float) -> ResolvedScene:
         """Return the scene of the panel at a height, without slabs."""
-        return scene_of(self.design, height, self.values, self.seed, self.base)
+        return panel_scene(self.design, height, self.values, self.seed, self.base)
 
     def run_key(self, height: float) -> RunKey:
         """Return the slide-offs of the season as a run of a study."""
@@ -119,7 +119,7 @@ class SeasonCase:
 
 
 def cases_of(
-    design: Design,
+    design: PanelDesign,
     winters: Sequence[Winter],
     values: Sequence[Mapping[str, float]],
     settings: SeasonSettings,

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from snowshed._core import InputError
 from snowshed.base.notes import issue_note
-from snowshed.season.quality import COVERAGE
-from snowshed.season.season_record import SeasonRecord, WinterList, whole_percent
-from snowshed.season.weather_row import Weather
+from snowshed.season.weather.quality import COVERAGE
+from snowshed.season.weather.row import Weather
+from snowshed.season.weather.season_record import SeasonRecord, WinterList, whole_percent
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ def split_winters(season: Sequence[Weather], coverage: float = COVERAGE) -> list
 
     Examples
     --------
-    >>> from snowshed.season.generator import EXAMPLE_CLIMATE
+    >>> from snowshed.season.weather.generator import EXAMPLE_CLIMATE
     >>> [winter.name for winter in split_winters(EXAMPLE_CLIMATE.winters(2, seed=1))]
     ['2001/02', '2002/03']
     """

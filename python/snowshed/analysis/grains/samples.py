@@ -59,13 +59,13 @@ class LabelledSample:
         voxel_size
             Edge of a voxel, m; None: as the folder says.
         split_labels
-            Whether each piece of a label that lies in several places is a grain.
+            Whether each connected piece of a label is a grain.
 
         Raises
         ------
         InputError
-            If there are no labels, the voxel size is unknown, or the grains are implausibly large
-            or small.
+            If the file is not a label image, the voxel size is unknown, or the grains are
+            implausibly large or small.
         OSError
             If the file cannot be read.
         """
@@ -76,7 +76,7 @@ class LabelledSample:
         positive("voxel size", size)
         opened = open_npy(sample.file)
         if opened.dtype.kind not in "iu":
-            raise InputError(f"{sample.file}: no labels; they are whole numbers (nz, ny, nx)")
+            raise InputError(f"{sample.file}: not a label image, which holds integers (nz, ny, nx)")
         labels = opened.layers(0, opened.shape[0])
         labels = _checked_labels(sample.file, labels, split_labels)
         _check_voxel_size(sample.file, labels, size)
@@ -183,7 +183,9 @@ class LabelledSample:
 def _checked_labels(file: Path, labels: AnyIntegers, split: bool) -> Labels:
     """Return labels as the core takes them; a note reports labels in several pieces."""
     if int(labels.min()) < 0 or int(labels.max()) > MAX_LABEL:
-        raise InputError(f"{file}: no labels; 0 is air, grains are 1 to {MAX_LABEL:,}")
+        raise InputError(
+            f"{file}: not a label image, in which 0 is air and grains are 1 to {MAX_LABEL:,}"
+        )
     labelled = labels.astype(np.int32)
     try:
         note = _core.label_note(labelled, split)

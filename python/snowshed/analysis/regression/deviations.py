@@ -12,8 +12,10 @@ from snowshed._core import InputError
 
 #: Stands for all deviations together.
 ALL = "all"
-#: Frames of an event, and frames in a second; the latter is not published, but usual.
-FRAMES, FRAME_RATE = 100, 24.0
+#: Frames of an event.
+FRAMES = 100
+#: Frames in a second, which is not published, but usual.
+FRAME_RATE = 24.0
 #: Settings by dotted paths. The trimming changes only how stacks are measured.
 DEVIATIONS: Mapping[str, Mapping[str, object]] = {
     "slip": {"panel.condition": "slip"},

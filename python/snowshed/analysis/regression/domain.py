@@ -12,7 +12,7 @@ from scipy import optimize, spatial
 from snowshed.analysis.regression.rows import INPUTS
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.base.arrays import Floats
-from snowshed.plot.labels import label, settings
+from snowshed.scene.labels import label, settings_text
 
 #: Digits of values in messages; a value just beyond a range must differ from its end.
 DIGITS = 7
@@ -54,17 +54,19 @@ class DataDomain:
         ['panel height 3 m is outside the data, which reach from 1 to 2 m']
         """
         questions = np.atleast_2d(questions)
-        objections = [text for question in questions for text in self._ranges(question)]
+        objections = [text for question in questions for text in self._range_objections(question)]
         if not objections:
             # Most events have the same panels, which are checked once.
             cases: dict[tuple[bytes, bytes], tuple[Floats, Floats]] = {}
             for question in questions:
                 panels = self._by_event.get(question[0], self.inputs[:0, 1:])
                 cases.setdefault((question[1:].tobytes(), panels.tobytes()), (question, panels))
-            objections = [text for group in cases.values() for text in self._misplaced(*group)]
+            objections = [
+                text for group in cases.values() for text in self._hull_objections(*group)
+            ]
         return list(dict.fromkeys(objections))
 
-    def _ranges(self, question: Floats) -> list[str]:
+    def _range_objections(self, question: Floats) -> list[str]:
         objections = []
         low, high = self.inputs.min(axis=0), self.inputs.max(axis=0)
         for name, value, least, most in zip(self.names, question, low, high):
@@ -77,18 +79,23 @@ class DataDomain:
                 objections.append(f"{parameter.name} {given} is outside the data, which {reach}")
         return objections
 
-    def _misplaced(self, question: Floats, panels: Floats) -> list[str]:
-        """Return the place of a question within all ranges among the panels that have its event."""
+    def _hull_objections(self, question: Floats, panels: Floats) -> list[str]:
+        """Return the objections to a question within all ranges, among the panels of its event.
+
+        It may lie outside their convex hull, or in a gap between them.
+        """
         event, panel = question[0], question[1:]
         if not len(panels):
             return [f"event {event:g} is not in the data"]
         scaling = Scaling.of(panels)
-        points, place = scaling.scaled(panels), scaling.scaled(panel)
-        distances = np.linalg.norm(points - place, axis=1)
+        points, query = scaling.scaled(panels), scaling.scaled(panel)
+        distances = np.linalg.norm(points - query, axis=1)
         where = f"the nearest panel in the data has {self._panel_text(panels[distances.argmin()])}"
-        if len(panels) < self._known:
-            where = f"only {len(panels)} of {self._known} panels have event {event:g}; {where}"
-        if not _in_hull(points, place):
+        if len(panels) < self._panel_count:
+            where = (
+                f"only {len(panels)} of {self._panel_count} panels have event {event:g}; {where}"
+            )
+        if not _in_hull(points, query):
             return [
                 f"each input is within its range, but not together: {self._panel_text(panel)} is "
                 f"outside the convex hull of the data; {where}"
@@ -99,7 +106,7 @@ class DataDomain:
 
     def _panel_text(self, panel: Floats) -> str:
         """Return the inputs of a panel as text."""
-        return settings(dict(zip(self.names[1:], panel)))
+        return settings_text(dict(zip(self.names[1:], panel)))
 
     @cached_property
     def _by_event(self) -> dict[float, Floats]:
@@ -111,20 +118,20 @@ class DataDomain:
         }
 
     @cached_property
-    def _known(self) -> int:
+    def _panel_count(self) -> int:
         """Number of panels with any event."""
         return len(np.unique(self.inputs[:, 1:], axis=0))
 
 
-def _in_hull(points: Floats, place: Floats) -> bool:
-    """Return whether a place is a weighted mean of points, with weights from 0 that sum to 1."""
-    equal = np.vstack([points.T, np.ones(len(points))])
-    _, miss = optimize.nnls(equal, np.append(place, 1.0))
-    return bool(miss <= TOLERANCE)
+def _in_hull(points: Floats, query: Floats) -> bool:
+    """Return whether a query is a weighted mean of points, with weights from 0 that sum to 1."""
+    system = np.vstack([points.T, np.ones(len(points))])
+    _, residual = optimize.nnls(system, np.append(query, 1.0))
+    return bool(residual <= TOLERANCE)
 
 
 def _widest_gap(points: Floats) -> float:
-    """Return the largest distance from the nearest point at which a place is in no gap.
+    """Return the distance to the nearest point beyond which a query counts as lying in a gap.
 
     The middle of a cube is less than sqrt(dimension) of its edges away from the corners.
     """

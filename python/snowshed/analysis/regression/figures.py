@@ -18,7 +18,7 @@ from snowshed.analysis.regression.scaling import Scaling
 from snowshed.base.arrays import Floats
 from snowshed.plot import figure_style
 from snowshed.plot.figure_style import FAINT, INK, STYLE, blank_figure, headline
-from snowshed.plot.labels import label
+from snowshed.scene.labels import label
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -36,7 +36,7 @@ MAX_BARS = 12  # values of a hyper-parameter that get a bar each
 CURVE_POINTS = 80  # points of a predicted curve
 
 
-def selection(elected: Elected, titles: Titles, target: str) -> Figure:
+def selection_figure(elected: Elected, titles: Titles, target: str) -> Figure:
     """Draw the scores of the elected models over the rounds, as Figure 5.3.1."""
     with matplotlib.rc_context(STYLE):
         figure = blank_figure(7.5, 4.2)
@@ -64,7 +64,7 @@ def selection(elected: Elected, titles: Titles, target: str) -> Figure:
     return figure
 
 
-def hyperparameters(
+def hyperparameter_figure(
     elected: Elected, titles: Titles, target: str, inputs: Sequence[str] = INPUTS
 ) -> Figure:
     """Draw how often the search chose each value of each hyper-parameter, as Figure 5.3.2."""
@@ -76,7 +76,7 @@ def hyperparameters(
         for row, (kind, results) in zip(grid, elected.items()):
             for axes, name in zip(row, names[kind]):
                 values = np.array([result.parameters[name] for result in results])
-                _count(axes, values, COLOURS[kind])
+                _draw_histogram(axes, values, COLOURS[kind])
                 axes.set_title(_parameter_word(name, inputs), fontsize=9)
             for axes in row[len(names[kind]) :]:
                 axes.set_visible(False)
@@ -85,7 +85,7 @@ def hyperparameters(
     return figure
 
 
-def quantiles(elected: Elected, titles: Titles, values: Floats, target: str) -> Figure:
+def quantile_figure(elected: Elected, titles: Titles, values: Floats, target: str) -> Figure:
     """Draw sorted mean predictions over sorted data, with the models' deviation: Figure 5.3.3."""
     with matplotlib.rc_context(STYLE):
         figure = blank_figure(1 + 2.6 * len(elected), 3.4)
@@ -112,7 +112,7 @@ def quantiles(elected: Elected, titles: Titles, values: Floats, target: str) -> 
     return figure
 
 
-def predictions(
+def prediction_figure(
     members: Mapping[str, Member], titles: Titles, rows: StackRows, target: str
 ) -> Optional[Figure]:
     """Draw predictions and data while one input varies, the others at the reference: Figure 5.3.4.
@@ -131,13 +131,13 @@ def predictions(
         for row, (kind, member) in zip(grid, members.items()):
             for axes, number in zip(row, varying):
                 for shade, event in zip(_shades(len(events)), events):
-                    _vary(axes, member, rows, target, reference, number, event, shade)
+                    _draw_curve(axes, member, rows, target, reference, number, event, shade)
             row[0].set_ylabel(f"{titles[kind]}\n{_quantity(target)}")
         for axes, number in zip(grid[-1], varying):
             axes.set_xlabel(label(rows.names[number]).axis)
         for axes, number in zip(grid[0], varying):
             others = [other for other in numbers if other != number]
-            at = [_at(rows.names[other], reference[other - 1]) for other in others]
+            at = [_setting_text(rows.names[other], reference[other - 1]) for other in others]
             axes.set_title(",\n".join(map(", ".join, _in_threes(at))), fontsize=9)
         keys = [
             Line2D([], [], color=shade, marker="o", markersize=4, label=f"event {event:g}")
@@ -149,7 +149,7 @@ def predictions(
     return figure
 
 
-def cost(errors: pd.DataFrame, titles: Titles, target: str) -> Figure:
+def cost_figure(errors: pd.DataFrame, titles: Titles, target: str) -> Figure:
     """Draw the error on rows and panels that were not trained on, over fitting time."""
     with matplotlib.rc_context(STYLE):
         figure = blank_figure(6.5, 4.0)
@@ -200,7 +200,7 @@ def reference_panel(rows: StackRows) -> Floats:
     return np.asarray(panels[int(np.argmin((away**2).sum(axis=1)))])
 
 
-def _vary(
+def _draw_curve(
     axes: Axes,
     member: Member,
     rows: StackRows,
@@ -228,7 +228,7 @@ def _vary(
     axes.fill_between(questions[:, number], *band, color=shade, alpha=0.2, linewidth=0)
 
 
-def _count(axes: Axes, values: Floats, colour: str) -> None:
+def _draw_histogram(axes: Axes, values: Floats, colour: str) -> None:
     """Draw how often each value occurs; many different values are binned."""
     different, counts = np.unique(values, return_counts=True)
     if len(different) > min(MAX_BARS, 0.5 * len(values)):
@@ -237,13 +237,13 @@ def _count(axes: Axes, values: Floats, colour: str) -> None:
         axes.xaxis.set_major_formatter(lambda power, _: f"{10**power:.3g}")
     else:
         axes.bar(np.arange(len(different)), counts, color=colour, width=0.7)
-        axes.set_xticks(np.arange(len(different)), [_short(value) for value in different])
+        axes.set_xticks(np.arange(len(different)), [_shortest_number(value) for value in different])
         axes.set_xlim(-0.8, max(len(different), 3) - 0.2)
     axes.grid(visible=False, axis="x")
     axes.yaxis.set_major_locator(MaxNLocator(4, integer=True))
 
 
-def _short(value: float) -> str:
+def _shortest_number(value: float) -> str:
     """Return a number as briefly as it can be written."""
     return min(f"{value:.4g}", f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e"), key=len)
 
@@ -266,7 +266,7 @@ def _quantity(target: str) -> str:
     return f"{title}, {TARGETS[target]}" if TARGETS[target] else title
 
 
-def _at(name: str, value: float) -> str:
+def _setting_text(name: str, value: float) -> str:
     parameter = label(name)
     return f"{parameter.name.removeprefix('panel ')} {parameter.quantity(value)}"
 

@@ -1,4 +1,4 @@
-"""Gradient boosted trees whose smaller ensembles come with the largest one."""
+"""Gradient boosted trees, fitted once for all sizes of the ensemble."""
 
 from __future__ import annotations
 

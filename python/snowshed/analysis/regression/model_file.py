@@ -177,7 +177,7 @@ class _ModelReader:
         measure_named(measure)
         settings = _entry(facts, "settings", dict)
         if not all(isinstance(value, str) for value in settings.values()):
-            raise InputError("settings: not texts")
+            raise InputError("settings: must be strings")
         settings = {FORMER_NAMES.get(key, key): value for key, value in settings.items()}
         settings.setdefault("trimming", FORMER_TRIMMING)
         title = _entry(facts, "title", str)

@@ -15,9 +15,9 @@ from snowshed.analysis.regression.kinds import Kind
 from snowshed.analysis.regression.rows import StackRows
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.task import FoldTask, compute
+from snowshed.analysis.regression.threads import one_thread
 from snowshed.base.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.base.pool.pool import Pool, TaskEnd
-from snowshed.base.pool.threads import one_thread
 from snowshed.base.progress import Progress, Reporter
 from snowshed.io.atomic import remove_leftovers
 from snowshed.io.folders import claim_folder

@@ -1,4 +1,4 @@
-"""A grid search that fits all values of some hyper-parameters for little more than one."""
+"""A grid search in which all values of some hyper-parameters cost little more than one."""
 
 from __future__ import annotations
 

@@ -18,10 +18,10 @@ from snowshed.analysis.regression.nested import Results, cross_validate
 from snowshed.analysis.regression.published import compare_with_published, published
 from snowshed.analysis.regression.rows import INPUTS, TARGETS, StackRows
 from snowshed.analysis.regression.spread import predict_unseen_panels, stack_spread
+from snowshed.analysis.regression.threads import one_thread
 from snowshed.base.arrays import Floats
 from snowshed.base.paths import PathLike
 from snowshed.base.pool.pool import available_cores
-from snowshed.base.pool.threads import one_thread
 from snowshed.base.progress import Reporter
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
@@ -227,13 +227,13 @@ class _Output:
         target, titles = report.target, self._titles
         values = self._rows.targets[target]
         drawings: dict[str, Optional[Figure]] = {
-            "selection.png": figures.selection(elected, titles, target),
-            "hyperparameters.png": figures.hyperparameters(
+            "selection.png": figures.selection_figure(elected, titles, target),
+            "hyperparameters.png": figures.hyperparameter_figure(
                 elected, titles, target, self._rows.names
             ),
-            "qq.png": figures.quantiles(elected, titles, values, target),
-            "predictions.png": figures.predictions(members, titles, self._rows, target),
-            "cost.png": figures.cost(report.errors, titles, target),
+            "qq.png": figures.quantile_figure(elected, titles, values, target),
+            "predictions.png": figures.prediction_figure(members, titles, self._rows, target),
+            "cost.png": figures.cost_figure(report.errors, titles, target),
         }
         for name, figure in drawings.items():
             if figure is not None:

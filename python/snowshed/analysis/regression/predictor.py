@@ -17,7 +17,7 @@ from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.spread import INTERVAL_SHARE, SPREAD_SHARE
 from snowshed.base.arrays import Floats
 from snowshed.base.paths import PathLike
-from snowshed.plot.labels import settings
+from snowshed.scene.labels import settings_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -161,7 +161,7 @@ def predict(
     table = _answers(model, kind, questions)
     table["extrapolated"] = np.isin(table["panel"], [questions.labels[n] for n in outside])
     reasons = tuple(text for number in outside for text in _reasons(outside, number, questions))
-    asked = settings(dict(zip(model.names[1:], questions.inputs[0, 1:])))
+    asked = settings_text(dict(zip(model.names[1:], questions.inputs[0, 1:])))
     return Prediction(table, kind, model.title, model.measure, model.settings, reasons, asked)
 
 

@@ -110,7 +110,7 @@ def _table_columns(table: pd.DataFrame, allowed: Sequence[str]) -> dict[str, Opt
             raise InputError(f"column {name!r} occurs twice")
     if not table.index.is_unique:
         twice = table.index[table.index.duplicated()][0]
-        raise InputError(f"the table's index holds {twice} twice, which must tell panels apart")
+        raise InputError(f"the table's index must be unique; it holds {twice} twice")
     return {name: table.get(name) for name in allowed}
 
 

@@ -19,8 +19,8 @@ from snowshed.analysis.regression.rows import StackRows
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.base.arrays import Floats
 
-#: Shares of the cases that lie within the spread, and within the interval.
-SPREAD_SHARE, INTERVAL_SHARE = 0.68, 0.90
+SPREAD_SHARE = 0.68  # share of the cases within the spread
+INTERVAL_SHARE = 0.90  # share of the cases within the interval
 MIN_SCALE = 1e-9  # smallest scale, relative to the standard deviation of the predictions
 
 

@@ -1,1 +1,5 @@
 """Sensitivity of the stack to the parameters of the snow (chapter 3 of the thesis)."""
+
+import lazy_loader as _lazy
+
+__getattr__, __dir__, __all__ = _lazy.attach_stub(__name__, __file__)

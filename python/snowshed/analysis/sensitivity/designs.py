@@ -22,7 +22,7 @@ class Size:
     Attributes
     ----------
     seeds
-        Seedings of each point, for methods that repeat points.
+        Random seeds per point, for methods that repeat points.
     samples
         Base points (Sobol) or trajectories (Morris).
     """
@@ -80,7 +80,7 @@ def sensitivity_study(
         Whether to use 2D, a coarse grid and two events, for a trial whose numbers are not
         meaningful.
     seeds
-        Seedings of each point, for "s" and "fixation".
+        Random seeds per point, for "s" and "fixation".
     samples
         Base points of "sobol" (a power of two), trajectories of "morris".
 

@@ -16,7 +16,7 @@ from snowshed.analysis.sensitivity.single_parameter import STANDARD_ERRORS_95
 from snowshed.analysis.sensitivity.stored import TARGETS
 from snowshed.base.arrays import Floats
 from snowshed.plot.figure_style import COLOURS, FAINT, INK, STYLE, blank_figure, headline
-from snowshed.plot.labels import label
+from snowshed.scene.labels import label
 from snowshed.study.factors import SEED
 
 if TYPE_CHECKING:
@@ -83,7 +83,7 @@ def fixation_figure(table: pd.DataFrame, group: str) -> Figure:
     Parameters
     ----------
     table
-        From `fixation`.
+        From `fixation_table`.
     group
         The group of parameters to draw.
     """

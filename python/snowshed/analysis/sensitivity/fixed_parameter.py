@@ -40,7 +40,7 @@ def groups_of(stored: StudyRuns) -> dict[str, list[str]]:
     return {name: paths for name, paths in groups.items() if paths}
 
 
-def fixation(stored: StudyRuns) -> pd.DataFrame:
+def fixation_table(stored: StudyRuns) -> pd.DataFrame:
     """Return mean and deviation at each value of each parameter, over all values of the others.
 
     While a group of parameters varies, the parameters of the other groups are fixed at the values

@@ -46,7 +46,7 @@ def sobol_indices(stored: StudyRuns) -> pd.DataFrame:
         If the points are not Saltelli's design, or fewer than two blocks are complete.
     """
     analyzer = require("SALib.analyze.sobol", EXTRA, "Sobol indices")
-    design = _Design.of(stored, 2, _is_saltelli, "a sample after Saltelli")
+    design = _Design.of(stored, 2, _is_saltelli, "a Saltelli sample")
 
     def analyze(chosen: Booleans, values: Floats) -> dict[str, Floats]:
         if np.ptp(values[chosen]) == 0:  # no variance to share out
@@ -71,11 +71,11 @@ def sobol_indices(stored: StudyRuns) -> pd.DataFrame:
 
 
 def morris_effects(stored: StudyRuns) -> pd.DataFrame:
-    """Return elementary effects after Morris per parameter and event.
+    """Return Morris's elementary effects per parameter and event.
 
-    An effect is the change of the stack, relative to its mean over the sample, per sampled range of
-    the parameter, or of its logarithm if that has even steps. A seed has no range. Its steps count
-    as the mean step of the parameters, so that its strength is the noise in their strengths.
+    An effect is the change of the stack, relative to its mean over the sample, over the sampled
+    range of the parameter (of its logarithm if only that has equal steps). A seed has no range. Its
+    step is set to the mean step of the parameters, so that its strength measures their noise.
 
     Returns
     -------
@@ -92,7 +92,7 @@ def morris_effects(stored: StudyRuns) -> pd.DataFrame:
         than two trajectories are complete.
     """
     analyzer = require("SALib.analyze.morris", EXTRA, "elementary effects")
-    design = _Design.of(stored, 1, _is_trajectory, "trajectories after Morris")
+    design = _Design.of(stored, 1, _is_trajectory, "Morris trajectories")
     unit, steps = _even_steps(design.names, design.points)
     scale = LEVELS / (2 * (LEVELS - 1)) / steps  # SALib assumes the steps of its own levels
 
@@ -136,7 +136,7 @@ class _Design:
 
     @classmethod
     def of(
-        cls, stored: StudyRuns, more: int, is_block: Callable[[Booleans], bool], unit: str
+        cls, stored: StudyRuns, extra_points: int, is_block: Callable[[Booleans], bool], unit: str
     ) -> _Design:
         """Return the design of a study's points.
 
@@ -144,7 +144,7 @@ class _Design:
         ----------
         stored
             The study.
-        more
+        extra_points
             Number of points of a block beyond the number of inputs.
         is_block
             Function that returns whether points are a block, from the changes between neighbours.
@@ -153,8 +153,9 @@ class _Design:
         """
         names = list(stored.axes)
         points = stored.points[names].to_numpy(float)
-        _check_blocks(points, len(names) + more, is_block, unit)
-        return cls(names, points, len(names) + more)
+        size = len(names) + extra_points
+        _check_blocks(points, size, is_block, unit)
+        return cls(names, points, size)
 
 
 def _index_table(
@@ -184,7 +185,7 @@ def _index_table(
         columns = analyze(np.repeat(complete, design.size), values)
         for number, name in enumerate(design.names):
             row = {"parameter": name, "event": event, "target": target}
-            row.update({column: float(of[number]) for column, of in columns.items()})
+            row.update({column: float(values[number]) for column, values in columns.items()})
             table_rows.append({**row, "blocks": int(complete.sum())})
     return pd.DataFrame(table_rows)
 
@@ -203,8 +204,8 @@ def _check_blocks(
     """Raise an InputError unless the points consist of such blocks."""
     if len(points) % size or len(points) == 0:
         raise InputError(
-            f"its {len(points)} points are not {design}: for {size - 1} or fewer inputs these come "
-            f"in blocks of {size}; see `snowshed sensitivity --method`"
+            f"its {len(points)} points are not {design}: with {points.shape[1]} inputs, their "
+            f"number is a multiple of {size}; see `snowshed sensitivity --method`"
         )
     for start in range(0, len(points), size):
         if not is_block(np.diff(points[start : start + size], axis=0) != 0):
@@ -234,7 +235,7 @@ def _even_steps(names: Sequence[str], points: Floats) -> tuple[Floats, Floats]:
             if np.ptp(sizes) <= SAME_STEP * sizes.max():
                 break
         else:
-            raise InputError(f"{name}: its steps differ; in trajectories after Morris they do not")
+            raise InputError(f"{name}: its steps differ; those of Morris trajectories are equal")
         unit[:, number], steps[number] = scaled.ravel(), sizes.mean()
     seeds = np.isnan(steps)
     steps[seeds] = 1.0 if seeds.all() else steps[~seeds].mean()

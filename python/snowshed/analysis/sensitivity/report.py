@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
 from snowshed._core import InputError
-from snowshed.analysis.sensitivity.fixed_parameter import fixation
+from snowshed.analysis.sensitivity.fixed_parameter import fixation_table
 from snowshed.analysis.sensitivity.global_indices import morris_effects, sobol_indices
 from snowshed.analysis.sensitivity.noise import seeding_noise
 from snowshed.analysis.sensitivity.single_parameter import local_index
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 EVALUATIONS: Mapping[str, Callable[[StudyRuns], pd.DataFrame]] = {
     "s": local_index,
-    "fixation": fixation,
+    "fixation": fixation_table,
     "sobol": sobol_indices,
     "morris": morris_effects,
 }
@@ -58,7 +58,8 @@ def evaluate_sensitivity(
     Returns
     -------
     pandas.DataFrame
-        The method's table; see `local_index`, `fixation`, `sobol_indices`, `morris_effects`.
+        The method's table; see `local_index`, `fixation_table`, `sobol_indices`,
+        `morris_effects`.
 
     Raises
     ------

@@ -84,7 +84,7 @@ class Adjacency:
 def find_adjacency(labels: Labels, distance: Optional[SingleFloats] = None) -> Adjacency:
     """Return the adjacency of labels.
 
-    Labels touch where their voxels have a common face.
+    Labels touch at the faces that their voxels share.
 
     Parameters
     ----------

@@ -15,10 +15,12 @@ from snowshed.base.formatting import number
 
 BINS = 1024  # of a histogram, except for small whole numbers
 MAX_VALUES = 1 << 16  # whole numbers with a bin each
-#: Labels of grains have at least so many different numbers above 0, no number has more than this
-#: share of the ice, and at least this share of neighbouring ice voxels have equal numbers. Grey
-#: values of neighbours are rarely equal.
-MIN_LABELS, MAX_SHARE_OF_LABEL, SAME_NEIGHBOURS = 8, 0.5, 0.75
+#: Minimum number of different values above 0 in an image of labels.
+MIN_LABELS = 8
+#: Maximum share of the ice with the same label.
+MAX_SHARE_OF_LABEL = 0.5
+#: Minimum share of neighbouring ice voxels with equal labels; grey values are rarely equal.
+MIN_EQUAL_NEIGHBOURS = 0.75
 
 Parts = Callable[[], Iterable[NDArray[Any]]]
 
@@ -52,13 +54,13 @@ def automatic_threshold(name: str, parts: Parts) -> tuple[float, str]:
         )
     histogram = _Histogram.between(name, lowest, highest)
     neighbours = _Neighbours()
-    two = True
+    only_two_values = True
     for part in parts():
-        two = two and bool(((part == lowest) | (part == highest)).all())
+        only_two_values &= bool(((part == lowest) | (part == highest)).all())
         histogram.add(part)
-        if not two and lowest == 0 and part.dtype.kind in "iu":
+        if not only_two_values and lowest == 0 and part.dtype.kind in "iu":
             neighbours.add(part)
-    if two:
+    if only_two_values:
         return 0.5 * lowest + 0.5 * highest, "two values"
     if neighbours.are_same and histogram.has_many_values:
         raise InputError(
@@ -109,14 +111,15 @@ class _Histogram:
     def has_many_values(self) -> bool:
         """Whether many values occur above 0, and none of them dominates."""
         above = self.counts[1:] if self.is_integer else self.counts
-        seen = int(np.count_nonzero(above))
-        return seen >= MIN_LABELS and above.max() < MAX_SHARE_OF_LABEL * above.sum()
+        distinct_values = int(np.count_nonzero(above))
+        is_shared = above.max() < MAX_SHARE_OF_LABEL * above.sum()
+        return bool(distinct_values >= MIN_LABELS and is_shared)
 
     def otsu(self) -> float:
         """Return Otsu's threshold, which is searched in bins, so that values may have any size."""
         filters = require("skimage.filters", "images", "Otsu's threshold")
-        place = float(filters.threshold_otsu(hist=(self.counts, np.arange(float(self.bins)))))
-        return float(self.lowest) + self.width * (place + (0.0 if self.is_integer else 0.5))
+        bin_index = float(filters.threshold_otsu(hist=(self.counts, np.arange(float(self.bins)))))
+        return float(self.lowest) + self.width * (bin_index + (0.0 if self.is_integer else 0.5))
 
 
 @dataclass
@@ -135,4 +138,4 @@ class _Neighbours:
     @property
     def are_same(self) -> bool:
         """Whether most of the neighbours have the same value."""
-        return self.same > SAME_NEIGHBOURS * max(self.pairs, 1)
+        return self.same > MIN_EQUAL_NEIGHBOURS * max(self.pairs, 1)

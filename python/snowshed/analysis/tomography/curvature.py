@@ -2,8 +2,8 @@
 
 The image is smoothed; the surface is a level of the smooth image. Where the smaller principal
 curvature is negative the surface is concave in a direction, as around a neck. The rest of the
-surface falls apart into convex zones, a layer of voxels thick, whose voxels have common faces. The
-ice is labelled by the nearest zone.
+surface, with the layer of voxels below it, consists of convex zones, its face-connected components.
+The ice is labelled by the nearest zone.
 
 The segmentation by curvature and contiguity is published (Hagenmuller, Chambon and Naaim 2015). The
 steps that find and extend the zones are inferred.
@@ -48,7 +48,7 @@ def curvature_basins(
     necks = smaller <= neck_curvature
     convex = np.zeros(ice.shape, dtype=bool)
     convex[tuple(axis[~necks] for axis in surface)] = True
-    # Voxels of a slanted surface have only edges in common; with the layer below they have faces.
+    # Voxels of a slanted surface share edges only; the layer below connects them by faces.
     convex = ndimage.binary_dilation(convex, NEIGHBOURS)
     convex &= ice
     convex[tuple(axis[necks] for axis in surface)] = False
@@ -135,5 +135,5 @@ def _curvatures(smooth: SingleFloats, at: list[Integers]) -> tuple[Floats, Float
         + 2 * gz * gx * (hzy * hyx - hzx * hyy)
         + 2 * gy * gx * (hzy * hzx - hyx * hzz)
     ) / squared**2  # fmt: skip
-    apart = np.sqrt(np.maximum(mean**2 - gauss, 0.0))
-    return mean - apart, mean + apart
+    half_difference = np.sqrt(np.maximum(mean**2 - gauss, 0.0))
+    return mean - half_difference, mean + half_difference

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from snowshed.analysis.tomography.segmentation import known_grains
-from snowshed.analysis.tomography.sphere_snow import sphere_snow
+from snowshed.analysis.tomography.sphere_packing import sphere_snow
 from snowshed.base.paths import PathLike
 from snowshed.io.atomic import replacing
 from snowshed.methods.grains.sample_folder import LABELS

@@ -77,7 +77,7 @@ def measure_microstructure(image: IceImage) -> Microstructure:
 
     Examples
     --------
-    >>> from snowshed.analysis.tomography.gaussian_snow import gaussian_snow
+    >>> from snowshed.analysis.tomography.gaussian_field import gaussian_snow
     >>> snow = gaussian_snow((48, 48, 48), 5e-5, density=300, specific_surface=15, seed=1)
     >>> abs(measure_microstructure(snow).specific_surface_m2_kg - 15) < 0.2
     True

@@ -4,7 +4,7 @@
 snow.npy           the ice (nz, ny, nx): 1, and 0 for air
 labels.npy         the grains (nz, ny, nx): 1, 2, ..., and 0 for air
 grains.csv         the grains: volume, diameter, surface, contacts
-                   (`snowshed.analysis.tomography.grain_table.grain_table`)
+                   (`snowshed.analysis.tomography.grain_tables.grain_table`)
 contacts.csv       the contacts between them
 microstructure.json  numbers of the ice and the grains, and how they were found
 slices.png         three slices with a colour for each grain
@@ -25,7 +25,7 @@ import numpy as np
 
 import snowshed._core as _core
 from snowshed._core import InputError
-from snowshed.analysis.tomography.grain_table import (
+from snowshed.analysis.tomography.grain_tables import (
     GrainStatistics,
     contact_table,
     grain_statistics,
@@ -126,7 +126,7 @@ def write_grains(
     --------
     >>> from tempfile import TemporaryDirectory
     >>> from snowshed.analysis.tomography.segmentation import known_grains
-    >>> from snowshed.analysis.tomography.sphere_snow import sphere_snow
+    >>> from snowshed.analysis.tomography.sphere_packing import sphere_snow
     >>> snow = sphere_snow((24, 24, 24), 1e-4, diameter=8e-4, density=200, seed=1)
     >>> with TemporaryDirectory() as folder:
     ...     numbers = write_grains(folder, known_grains(snow), {})

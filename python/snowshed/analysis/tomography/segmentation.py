@@ -121,7 +121,7 @@ def segment(
 
     Examples
     --------
-    >>> from snowshed.analysis.tomography.sphere_snow import sphere_snow
+    >>> from snowshed.analysis.tomography.sphere_packing import sphere_snow
     >>> snow = sphere_snow((40, 40, 40), 5e-5, diameter=6e-4, density=200, seed=1)
     >>> found = segment(snow)
     >>> abs(found.count - int(snow.labels.max())) <= 2
@@ -149,7 +149,7 @@ def segment(
     if len(touching.air) == 2:
         raise InputError(
             f"{image.source}: all ice is one grain; is the voxel size or the threshold wrong, or "
-            "the image smaller than a grain? A larger contiguity tells more grains apart"
+            "the image smaller than a grain? A larger contiguity separates more grains"
         )
     return Segmentation(image, chosen, labels, touching)
 
@@ -163,7 +163,7 @@ def known_grains(image: IceImage) -> Segmentation:
         If the image does not know its grains.
     """
     if image.labels is None:
-        raise InputError(f"{image.source}: its grains are not known; they must be found")
+        raise InputError(f"{image.source}: its grains are not known; segment it")
     return Segmentation(image, None, image.labels, find_adjacency(image.labels))
 
 

@@ -22,11 +22,12 @@ from snowshed.base.paths import PathLike
 from snowshed.base.progress import Progress, Reporter
 from snowshed.io.voxels.voxel_file import VoxelFile
 
-#: Memory, bytes: per voxel of the file, and per voxel of the segmentation.
-BYTES_READ, BYTES_SEGMENTED = 2, 45
+BYTES_READ = 2  # memory per voxel of the file
+BYTES_SEGMENTED = 45  # memory per voxel of the segmentation
 #: Time on one core of a desktop computer, s per voxel.
 SECONDS_PER_VOXEL = 1e-6
-READ_SHARE, FOUND_SHARE = 0.1, 0.85  # finished shares of the work after these steps
+READ_SHARE = 0.1  # share of the work that is finished after reading
+FOUND_SHARE = 0.85  # share of the work that is finished after the segmentation
 
 
 def segmentation_plan(file: VoxelFile, settings: ImageSettings) -> tuple[int, float]:

@@ -15,11 +15,12 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from snowshed.analysis.tomography.grain_table import GrainStatistics
+    from snowshed.analysis.tomography.grain_tables import GrainStatistics
 
 AIR = (1.0, 1.0, 1.0)
 LINE = (0.13, 0.19, 0.24)  # between grains
-HUES, TURN = 64, 0.381966  # number of hues; step in turns, so that successive hues differ much
+HUES = 64
+TURN = 0.381966  # turns from hue to hue, so that successive hues differ much
 MAX_PIXELS = 1000  # along an edge of a slice
 
 

@@ -39,7 +39,7 @@ class ImageSettings:
     crop
         First voxel, and the one after the last, along z, y and x; None: all.
     downscale
-        Number of voxels along an edge to merge. The ice fraction stays.
+        Number of voxels along an edge to merge; keeps the ice fraction.
     connected
         Whether only the largest connected part of the ice is kept.
     synthetic_source

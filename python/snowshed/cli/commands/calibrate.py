@@ -15,8 +15,8 @@ from snowshed.cli.commands.designed_study import (
     compute_missing_runs,
     design_options,
 )
-from snowshed.cli.common_options import PATH
-from snowshed.cli.terminal import plain_table, say, wide_console
+from snowshed.cli.options.common import PATH
+from snowshed.cli.output.terminal import plain_table, say, wide_console
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -43,7 +43,7 @@ OPEN_RANGES = {
     metavar="NAME",
     help="Quantity to fit: height, length, head or tail. Repeatable.  [default: height, length]",
 )
-@design_options
+@design_options("2")
 @click.pass_context
 def calibrate(
     context: click.Context,
@@ -122,7 +122,7 @@ def print_calibration(calibration: Calibration) -> None:
 
 def _ranking(calibration: Calibration) -> Table:
     from snowshed.analysis.calibration.misfit import RANKING_QUANTITIES
-    from snowshed.plot.labels import label
+    from snowshed.scene.labels import label
 
     paths = calibration.stacks.parameters
     measured = [q for q in RANKING_QUANTITIES if f"{q}_rmse_m" in calibration.ranked]
@@ -140,7 +140,7 @@ def _ranking(calibration: Calibration) -> Table:
 
 
 def _ranges(calibration: Calibration) -> Table:
-    from snowshed.plot.labels import label
+    from snowshed.scene.labels import label
 
     headings = ["parameter", "best set", "median", "68 %", "95 %"]
     table = plain_table("Parameters that the measurements allow", headings, padding=(0, 1))

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, Optional
 import click
 
 from snowshed.base.formatting import about, plural
-from snowshed.cli.common_options import (
+from snowshed.cli.exit_codes import Stopped
+from snowshed.cli.options.common import (
     PATH,
     ResultsFolder,
     dry_run_option,
@@ -17,19 +18,20 @@ from snowshed.cli.common_options import (
     quiet_option,
     resume_option,
 )
-from snowshed.cli.exit_codes import Stopped
-from snowshed.cli.number_texts import named_span, numbers
-from snowshed.cli.terminal import plain_table, say, wide_console
-from snowshed.cli.weather_options import weather_options
-from snowshed.cli.winters_table import print_quality
+from snowshed.cli.options.number_texts import named_span, numbers
+from snowshed.cli.options.weather import weather_options
+from snowshed.cli.output.terminal import plain_table, say, wide_console
+from snowshed.cli.output.winters_table import print_quality
 
 if TYPE_CHECKING:
     from snowshed.analysis.clearance.answer import ClearanceResult
-    from snowshed.analysis.clearance.panel_design import Design, Ranges
+    from snowshed.analysis.clearance.panel_design import PanelDesign, SnowRanges
     from snowshed.analysis.clearance.winters import Winter
-    from snowshed.season.season_record import SeasonRecord, WinterList
+    from snowshed.season.weather.season_record import SeasonRecord, WinterList
 
 EXAMPLE = "example"  # this word instead of a file: synthetic winters
+#: Names of `--range` that are shorter than those in Python.
+SHORT_NAMES = {"sliding": "sliding_friction"}
 
 
 @click.command()
@@ -93,14 +95,14 @@ def clearance(
     Example:
       snowshed clearance winters.csv --slope-length 4 --tilt 60 --heights 1.5:4:0.5 -o answer
     """  # noqa: D301 - click wants the control character
-    from snowshed.analysis.clearance.answer import forecast
-    from snowshed.analysis.clearance.panel_design import DEFAULT_RANGES, Design, Ranges
+    from snowshed.analysis.clearance.answer import expected_duration
+    from snowshed.analysis.clearance.panel_design import PanelDesign, SnowRanges, default_ranges
     from snowshed.analysis.clearance.report import write_report
     from snowshed.analysis.clearance.winters import counted_winters
 
-    ranges = Ranges({**DEFAULT_RANGES, **dict(map(_span, spans))}, draws, seed)
+    ranges = SnowRanges({**default_ranges(), **dict(map(_span, spans))}, draws, seed)
     designs = [
-        Design(length, angle)
+        PanelDesign(length, angle)
         for length in _numbers("--slope-length", slope_length)
         for angle in _numbers("--tilt", tilt)
     ]
@@ -113,7 +115,8 @@ def clearance(
     winters = counted_winters(winter_list)
     if dry_run or not quiet:
         costs = [
-            forecast(design, winters, candidates, ranges=ranges, jobs=jobs) for design in designs
+            expected_duration(design, winters, candidates, ranges=ranges, jobs=jobs)
+            for design in designs
         ]
         seconds, seasons = (sum(values) for values in zip(*costs))
         say(
@@ -129,18 +132,18 @@ def clearance(
 
 
 def _answers(
-    designs: list[Design],
+    designs: list[PanelDesign],
     winter_list: WinterList,
     winters: list[Winter],
     heights: list[float],
-    ranges: Ranges,
+    ranges: SnowRanges,
     folder: Path,
     jobs: Optional[int],
     *,
     quiet: bool,
 ) -> list[ClearanceResult]:
     from snowshed.analysis.clearance.answer import required_clearance
-    from snowshed.cli.progress import progress_bar
+    from snowshed.cli.output.progress import progress_bar
     from snowshed.study.errors import StudyInterrupted
 
     folder.mkdir(parents=True, exist_ok=True)
@@ -161,9 +164,9 @@ def _answers(
 
 
 def _record(weather: tuple[Path, ...], snow_from: str, temperature: Optional[Path]) -> SeasonRecord:
-    from snowshed.season.generator import EXAMPLE_CLIMATE
-    from snowshed.season.season_record import SeasonRecord
-    from snowshed.season.weather import read_record
+    from snowshed.season.weather.generator import EXAMPLE_CLIMATE
+    from snowshed.season.weather.reading import read_record
+    from snowshed.season.weather.season_record import SeasonRecord
 
     if [str(file) for file in weather] != [EXAMPLE]:
         return read_record(weather, snow_from, temperature)
@@ -178,7 +181,8 @@ def _numbers(option: str, text: str) -> list[float]:
 
 
 def _span(text: str) -> tuple[str, tuple[float, float]]:
-    return named_span("--range", text, example="friction=0.3:0.6", single=True)
+    name, span = named_span("--range", text, example="friction=0.3:0.6", single=True)
+    return SHORT_NAMES.get(name, name), span
 
 
 def print_answers(answers: Sequence[ClearanceResult], folder: Path) -> None:

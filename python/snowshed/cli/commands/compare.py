@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from snowshed.cli.common_options import PATH
-from snowshed.cli.terminal import plain_table, wide_console
+from snowshed.cli.options.common import PATH
+from snowshed.cli.output.terminal import plain_table, wide_console
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -22,7 +22,7 @@ def compare(first: Path, second: Path) -> None:
 
     For a 3D and a 2D run, the thesis's rule of thumb is printed beside the ratio.
     """
-    from snowshed.results.dimension_ratio import compare_folders, height_ratio, same_dimension
+    from snowshed.analysis.stack_ratios import compare_folders, height_ratio, same_dimension
 
     if same_dimension(first, second):
         print_heights(height_ratio(first, second), first.name, second.name)
@@ -32,7 +32,7 @@ def compare(first: Path, second: Path) -> None:
 
 def print_ratios(ratios: pd.DataFrame) -> None:
     """Print the ratio of 3D to 2D heights beside the thesis's rule of thumb."""
-    from snowshed.results.dimension_ratio import RULE_OF_THUMB
+    from snowshed.analysis.stack_ratios import RULE_OF_THUMB
 
     headings = ("event", "3D, m", "2D, m", "3D/2D", "rule of thumb")
     table = plain_table("Stack height in 3D and in 2D", headings, padding=0)

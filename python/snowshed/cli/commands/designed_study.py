@@ -12,14 +12,14 @@ from typing import Any, Optional, TypeVar
 
 import click
 
-from snowshed.cli.common_options import (
+from snowshed.cli.compute_study import compute_study, print_study_cost
+from snowshed.cli.options.common import (
     PATH,
     dry_run_option,
     jobs_option,
     quiet_option,
     resume_option,
 )
-from snowshed.cli.compute_study import compute_study, print_study_cost
 from snowshed.snow.stack.quantities import MEASURES
 from snowshed.study.definition import Study
 
@@ -39,9 +39,25 @@ def measure_help() -> str:
     return " or ".join(f"{measure.name} ({measure.label})" for measure in MEASURES.values()) + "."
 
 
-def design_options(command: Command) -> Command:
-    """Add the options of commands that design a study and evaluate it."""
-    for option in (
+def design_options(default_seeds: str) -> Callable[[Command], Command]:
+    """Return a decorator that adds the options of commands which design and evaluate a study.
+
+    Parameters
+    ----------
+    default_seeds
+        The default of ``--seeds`` in the help.
+    """
+
+    def with_options(command: Command) -> Command:
+        for option in _options(default_seeds):
+            command = option(command)
+        return command
+
+    return with_options
+
+
+def _options(default_seeds: str) -> Sequence[Callable[[Command], Command]]:
+    return (
         quiet_option,
         jobs_option("Runs"),
         click.option(
@@ -57,14 +73,14 @@ def design_options(command: Command) -> Command:
         click.option("--study", "file", type=PATH, help="Study file to compute instead."),
         resume_option,
         dry_run_option("Print the number of runs and their estimated time and exit."),
-        click.option("--seeds", type=int, help="Seedings of each point.  [default: see the docs]"),
+        click.option(
+            "--seeds", type=int, help=f"Random seeds per point.  [default: {default_seeds}]"
+        ),
         click.option(
             "--quick", is_flag=True, help="A small study on a coarse 2D grid: minutes, not days."
         ),
         click.option("-o", "--output", "folder", type=PATH, help="Results folder, old or new."),
-    ):
-        command = option(command)
-    return command
+    )
 
 
 def check_options(context: click.Context) -> Path:

@@ -7,8 +7,8 @@ from typing import Optional
 
 import click
 
-from snowshed.cli.common_options import PATH, quiet_option
 from snowshed.cli.exit_codes import Stopped
+from snowshed.cli.options.common import PATH, quiet_option
 
 
 @click.command()
@@ -36,13 +36,13 @@ def extend(
       snowshed extend results --snow reference --thickness 0.03 -o other
     """  # noqa: D301 - click wants the control character
     from snowshed.base.interrupt import Interrupted
-    from snowshed.cli.progress import progress_bar
-    from snowshed.cli.run_output import print_events
+    from snowshed.cli.output.progress import progress_bar
+    from snowshed.cli.output.results import print_events
     from snowshed.results.reader import Results
     from snowshed.running.extension import extend_run
     from snowshed.scene.components import Snow
 
-    other = None if snow is None else Snow.named(snow)
+    other = None if snow is None else Snow.preset_or_file(snow)
     try:
         with progress_bar(quiet=quiet) as progress:
             extend_run(results, folder, events, snow=other, thickness=thickness, progress=progress)

@@ -11,8 +11,8 @@ from click.core import ParameterSource
 
 from snowshed.analysis.regression.deviations import ALL, DEVIATIONS
 from snowshed.analysis.regression.geometry import FRICTION
-from snowshed.cli.common_options import PATH, quiet_notes_option
-from snowshed.cli.terminal import write_out
+from snowshed.cli.options.common import PATH, quiet_notes_option
+from snowshed.cli.output.terminal import write_out
 
 
 @click.command()
@@ -40,8 +40,8 @@ from snowshed.cli.terminal import write_out
     type=click.IntRange(1, 1000),
     default=1,
     show_default=True,
-    help="Stacks for each panel up to 1 m, whose means are regressed; panels up to 2 m have a "
-    "third of them, up to 4 m a sixth, longer ones a sixteenth, rounded up.",
+    help="Seeds of each panel up to 1 m long; the regression uses the mean of their stacks. Longer "
+    "panels get fewer: a third up to 2 m, a sixth up to 4 m, a sixteenth beyond (rounded up).",
 )
 @click.option(
     "--deviation",

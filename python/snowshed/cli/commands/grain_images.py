@@ -15,9 +15,9 @@ from snowshed._core import InputError
 from snowshed.analysis.tomography.segmentation import SegmentationSettings
 from snowshed.base.formatting import number, percent
 from snowshed.base.messages import quoted
-from snowshed.cli.common_options import PATH, given_values, quiet_option
-from snowshed.cli.run_output import print_rows
-from snowshed.cli.terminal import PlainConsole
+from snowshed.cli.options.common import PATH, given_values, quiet_option
+from snowshed.cli.output.results import print_rows
+from snowshed.cli.output.terminal import PlainConsole
 
 if TYPE_CHECKING:
     from snowshed.analysis.tomography.sample import SampleNumbers
@@ -128,10 +128,10 @@ def synthetic(
       snowshed grains synthetic --density 300 --specific-surface 15 -o snow
       snowshed grains synthetic --density 300 --spheres 5e-4 --neck 0.4 -o spheres
     """  # noqa: D301 - click wants the control character
-    from snowshed.analysis.tomography.gaussian_snow import gaussian_snow
+    from snowshed.analysis.tomography.gaussian_field import gaussian_snow
     from snowshed.analysis.tomography.sample import check_new, write_grains, write_ice
     from snowshed.analysis.tomography.segmentation import known_grains
-    from snowshed.analysis.tomography.sphere_snow import sphere_snow
+    from snowshed.analysis.tomography.sphere_packing import sphere_snow
 
     check_new(folder)
     nx, ny, nz = shape
@@ -178,7 +178,7 @@ def synthetic(
     type=int,
     default=1,
     show_default=True,
-    help="Number of voxels along an edge to merge; the ice fraction stays.",
+    help="Merge this many voxels per edge into one; keeps the ice fraction.",
 )
 @click.option("--all-parts", is_flag=True, help="Keep disconnected ice, too.")
 @click.option(
@@ -209,7 +209,7 @@ def segment_command(
     from snowshed.analysis.tomography.sample import check_new
     from snowshed.analysis.tomography.segmented_file import plan_text, segment_image
     from snowshed.analysis.tomography.threshold import ImageSettings
-    from snowshed.cli.progress import progress_bar
+    from snowshed.cli.output.progress import progress_bar
     from snowshed.io.voxels.open_voxels import open_voxels
     from snowshed.methods.grains.sample_folder import SNOW, find_sample
 

@@ -11,10 +11,10 @@ import click
 
 from snowshed.cli.commands.grain_images import segment_command, split_labels_option, synthetic
 from snowshed.cli.commands.grains_studies import material, sensitivity
-from snowshed.cli.common_options import PATH, given_values, run_options
-from snowshed.cli.dry_run import print_cost
+from snowshed.cli.options.common import PATH, given_values, run_options
+from snowshed.cli.options.settings import settings_options
+from snowshed.cli.output.dry_run import print_cost
 from snowshed.cli.run_scene import run_or_cost, run_scene
-from snowshed.cli.settings_options import settings_options
 from snowshed.methods.grains.sample_folder import LABELS
 from snowshed.methods.grains.settings import GrainsSettings
 from snowshed.scene.builders.grains import grains_scene

@@ -10,7 +10,7 @@ import click
 
 from snowshed.base.formatting import MISSING
 from snowshed.cli.commands.grain_images import VOXEL, split_labels_option
-from snowshed.cli.common_options import (
+from snowshed.cli.options.common import (
     PATH,
     dry_run_option,
     given_values,
@@ -18,8 +18,8 @@ from snowshed.cli.common_options import (
     quiet_option,
     resume_option,
 )
-from snowshed.cli.settings_options import settings_options
-from snowshed.cli.terminal import plain_table, say, wide_console
+from snowshed.cli.options.settings import settings_options
+from snowshed.cli.output.terminal import plain_table, say, wide_console
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 SAMPLES, RUNS = "samples", "runs"
-#: Default inertia of the tests of a study: the largest that does not change stresses.
+#: Default `density_scaling` of studies: fewer time steps, but the same stresses.
 DENSITY_SCALING = 10.0
 #: Parameters of a fitted snow: title, unit, and the unit in SI units.
 PARAMETERS = {
@@ -55,8 +55,8 @@ def study_options(command: Command) -> Command:
         click.option("--voxel", type=float, help=VOXEL),
         split_labels_option,
         click.option("--coarser", type=click.IntRange(1, 64), default=1, show_default=True,
-                     help="Voxels of the samples along the edge of a sphere; the ice fraction "
-                          "stays."),
+                     help="Merge this many voxels per edge into one sphere; keeps the ice "
+                          "fraction."),
         click.option("--turned", is_flag=True,
                      help="Load each sample along x and y, too, as further samples of the same "
                           "snow."),
@@ -84,7 +84,7 @@ def sensitivity(
     turned: bool, speed: float, strain: float, finer: bool, folder: Path, jobs: Optional[int],
     dry_run: bool, quiet: bool, **values: Any,
 ) -> None:  # fmt: skip
-    """Find the parameters that matter for the compressive strength, beside the samples' scatter.
+    """Compare each parameter's effect on compressive strength with the scatter of samples.
 
     LABELS are samples of one snow. Friction, elastic modulus, strength of bonds, density of ice
     (by density_scaling), speed, sphere size and volume vary one at a time. After an interruption,

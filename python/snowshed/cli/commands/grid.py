@@ -7,8 +7,8 @@ from typing import Optional
 
 import click
 
-from snowshed.cli.common_options import PATH, quiet_option
-from snowshed.cli.terminal import say
+from snowshed.cli.options.common import PATH, quiet_option
+from snowshed.cli.output.terminal import say
 
 
 @click.command()

@@ -10,10 +10,10 @@ from typing import Optional
 import click
 
 from snowshed._core import InputError
-from snowshed.cli.common_options import PATH, run_options
-from snowshed.cli.dry_run import print_cost
+from snowshed.cli.options.common import PATH, run_options
+from snowshed.cli.output.dry_run import print_cost
+from snowshed.cli.output.terminal import say
 from snowshed.cli.run_scene import run_scene
-from snowshed.cli.terminal import say
 from snowshed.io.folders import check_empty
 from snowshed.scene.lua.builder import LuaRun
 from snowshed.scene.lua.loading import load_lua

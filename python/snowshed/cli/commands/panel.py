@@ -7,12 +7,12 @@ from typing import Any, Optional
 
 import click
 
-from snowshed.cli.accuracy import accuracy_option
-from snowshed.cli.check import check_option
-from snowshed.cli.common_options import run_options
-from snowshed.cli.resolve_options import resolve_options
+from snowshed.cli.options.accuracy import accuracy_option
+from snowshed.cli.options.check import check_option
+from snowshed.cli.options.common import run_options
+from snowshed.cli.options.resolve import resolve_options
+from snowshed.cli.options.scene import scene_options
 from snowshed.cli.run_scene import run_or_cost
-from snowshed.cli.scene_options import scene_options
 
 
 @click.command()

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Optional
 import click
 
 from snowshed._core import InputError
-from snowshed.cli.common_options import PATH
-from snowshed.cli.terminal import narrow_table, say, wide_console, write_out
+from snowshed.cli.options.common import PATH
+from snowshed.cli.output.terminal import narrow_table, say, wide_console, write_out
 
 if TYPE_CHECKING:
     from snowshed.analysis.regression.predictor import Prediction

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Optional
 import click
 
 from snowshed.cli.commands.designed_study import measure_help
-from snowshed.cli.common_options import PATH, jobs_option, quiet_option, resume_option
 from snowshed.cli.exit_codes import Stopped
-from snowshed.cli.terminal import narrow_table, say, wide_console
+from snowshed.cli.options.common import PATH, jobs_option, quiet_option, resume_option
+from snowshed.cli.output.terminal import narrow_table, say, wide_console
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -106,7 +106,7 @@ def regress(
     from snowshed.analysis.regression.pipeline import MODEL
     from snowshed.analysis.regression.pipeline import regress as run
     from snowshed.analysis.regression.rows import INPUTS, read_rows
-    from snowshed.cli.progress import LONG_PERIOD_S, progress_bar
+    from snowshed.cli.output.progress import LONG_PERIOD_S, progress_bar
 
     where = dict(map(_condition, conditions))
     rows = read_rows(table, measure, where, inputs or INPUTS[1:])

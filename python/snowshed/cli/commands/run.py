@@ -7,11 +7,11 @@ from typing import Optional
 
 import click
 
-from snowshed.cli.accuracy import accuracy_option
-from snowshed.cli.check import check_option
-from snowshed.cli.common_options import PATH, run_options
-from snowshed.cli.dry_run import print_cost
-from snowshed.cli.resolve_options import with_accuracy
+from snowshed.cli.options.accuracy import accuracy_option
+from snowshed.cli.options.check import check_option
+from snowshed.cli.options.common import PATH, run_options
+from snowshed.cli.options.resolve import with_accuracy
+from snowshed.cli.output.dry_run import print_cost
 from snowshed.cli.run_scene import run_or_cost
 from snowshed.scene.scene import ResolvedScene, Scene
 

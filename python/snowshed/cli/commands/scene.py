@@ -8,12 +8,12 @@ from typing import Any, Optional
 import click
 
 import snowshed._core as _core
-from snowshed.cli.accuracy import accuracy_option
-from snowshed.cli.common_options import PATH, quiet_option
-from snowshed.cli.dry_run import issue_notes
-from snowshed.cli.resolve_options import resolve_options
-from snowshed.cli.scene_options import scene_options
-from snowshed.cli.terminal import write_out
+from snowshed.cli.options.accuracy import accuracy_option
+from snowshed.cli.options.common import PATH, quiet_option
+from snowshed.cli.options.resolve import resolve_options
+from snowshed.cli.options.scene import scene_options
+from snowshed.cli.output.dry_run import issue_notes
+from snowshed.cli.output.terminal import write_out
 
 
 @click.command()

@@ -11,24 +11,24 @@ import click
 
 from snowshed._core import InputError
 from snowshed.base.interrupt import Interrupted
-from snowshed.cli.common_options import (
+from snowshed.cli.exit_codes import Stopped
+from snowshed.cli.options.common import (
     PATH,
     ResultsFolder,
     dry_run_option,
     quiet_option,
     resume_flag,
 )
-from snowshed.cli.dry_run import print_cost
-from snowshed.cli.exit_codes import Stopped
-from snowshed.cli.scene_options import (
+from snowshed.cli.options.scene import (
     in_terms_of_options,
     path_of,
     scene_from_options,
     scene_options,
 )
-from snowshed.cli.terminal import plain_table, say, wide_console
-from snowshed.cli.weather_options import weather_options
-from snowshed.cli.winters_table import print_quality
+from snowshed.cli.options.weather import weather_options
+from snowshed.cli.output.dry_run import print_cost
+from snowshed.cli.output.terminal import plain_table, say, wide_console
+from snowshed.cli.output.winters_table import print_quality
 from snowshed.scene.scene import Scene
 from snowshed.season.settings import SeasonSettings
 
@@ -75,7 +75,8 @@ SETTLED_COLUMN = {"settled\nheight, m": ("settled_height_m", "{:.2f}")}
     type=float,
     default=DEFAULTS.friction,
     show_default=True,
-    help="Static Coulomb coefficient between snow and panel: snow slides above it.",
+    help="Static friction coefficient of snow on the panel; without adhesion, snow is released if "
+    "tan(tilt) exceeds it.",
 )
 @click.option(
     "--adhesion",
@@ -117,7 +118,7 @@ SETTLED_COLUMN = {"settled\nheight, m": ("settled_height_m", "{:.2f}")}
     metavar="HOURS",
     default=DEFAULTS.strength_age,
     show_default=True,
-    help="Age at which bonds have the strength of the sliding snow.",
+    help="Age at which bonds reach the strength of the sliding snow [h].",
 )
 @click.option(
     "--strength",
@@ -243,7 +244,7 @@ def _run(
     resume: bool,
     quiet: bool,
 ) -> SeasonResult:
-    from snowshed.cli.progress import progress_bar
+    from snowshed.cli.output.progress import progress_bar
     from snowshed.season.driver import run_season
 
     options = {**reading, "resume": resume}

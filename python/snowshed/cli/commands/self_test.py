@@ -10,7 +10,7 @@ import click
 
 import snowshed._core as _core
 from snowshed.base.formatting import number
-from snowshed.cli.terminal import plain_table, say, wide_console
+from snowshed.cli.output.terminal import plain_table, say, wide_console
 
 if TYPE_CHECKING:
     from snowshed.cli.self_test import Result
@@ -37,7 +37,7 @@ def self_test(context: click.Context) -> int:
             "self-test takes no options; the validation, a larger suite of problems, comes with "
             f"the source of snowshed: run `{suite}` there"
         )
-    from snowshed.cli.progress import progress_bar
+    from snowshed.cli.output.progress import progress_bar
     from snowshed.cli.self_test import CHECKS, run_checks
 
     print_facts()

@@ -15,7 +15,7 @@ from snowshed.cli.commands.designed_study import (
     compute_missing_runs,
     design_options,
 )
-from snowshed.cli.terminal import plain_table, say, wide_console
+from snowshed.cli.output.terminal import plain_table, say, wide_console
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -33,7 +33,7 @@ MAX_INTERVAL_HALF_WIDTH = 0.25
 @click.option(
     "--samples", type=int, help="Base points of sobol (a power of two), trajectories of morris."
 )
-@design_options
+@design_options("s: 4, with --quick 3; fixation: 2; sobol and morris vary the seed")
 @click.pass_context
 def sensitivity(
     context: click.Context,
@@ -133,7 +133,7 @@ def print_indices(method: str, table: pd.DataFrame) -> None:
 
 
 def _name(key: Any) -> str:
-    from snowshed.plot.labels import label
+    from snowshed.scene.labels import label
 
     path, *values = key
     parameter = label(path)

@@ -19,19 +19,19 @@ from snowshed.cli.commands.slide_ranges import (
     run_project_ranges,
     run_ranges,
 )
-from snowshed.cli.common_options import PATH, given_values, run_options
-from snowshed.cli.number_texts import numbers
-from snowshed.cli.run_scene import run_or_cost
-from snowshed.cli.settings_options import settings_options
-from snowshed.cli.slide_files import (
+from snowshed.cli.options.common import PATH, given_values, run_options
+from snowshed.cli.options.number_texts import numbers
+from snowshed.cli.options.settings import settings_options
+from snowshed.cli.options.slide_files import (
     INPUTS,
     SlideFiles,
     file_options,
     notes_for_summary,
     refuse_changed_areas,
 )
+from snowshed.cli.run_scene import run_or_cost
 from snowshed.cli.slide_project import print_project_cost, run_project, write_particles
-from snowshed.scene.builders.terrain_copy import removing_copies
+from snowshed.scene.builders.terrain_copy import copies_removed_on_failure
 from snowshed.scene.scene import ResolvedScene
 
 
@@ -92,7 +92,7 @@ def slide(
             _check_project_files(files, example=example)
             _run_or_cost_project(avaframe, results, files.thickness, options)
             return
-        with removing_copies(results):
+        with copies_removed_on_failure(results):
             resolved = _run_or_cost_files(files, results, options)
         if options.steps and resolved is not None:
             write_particles(resolved, results, options.steps)

@@ -11,13 +11,13 @@ import click
 
 from snowshed._core import InputError
 from snowshed.base.messages import suggestion
-from snowshed.cli.common_options import jobs_option
 from snowshed.cli.compute_study import compute_study, print_study_cost
 from snowshed.cli.exit_codes import Failed, Stopped
-from snowshed.cli.number_texts import named_span, numbers
-from snowshed.cli.terminal import PlainConsole, say
+from snowshed.cli.options.common import jobs_option
+from snowshed.cli.options.number_texts import named_span, numbers
+from snowshed.cli.output.terminal import PlainConsole, say
 from snowshed.methods.slide.settings import SlideSettings
-from snowshed.scene.builders.terrain_copy import removing_copies, terrain_copy
+from snowshed.scene.builders.terrain_copy import copies_removed_on_failure, terrain_copy
 from snowshed.scene.scene import Scene
 from snowshed.scene.schema import scene_parameters
 from snowshed.study.definition import Study
@@ -138,9 +138,9 @@ def run_project_ranges(
     max_time: Optional[float],
 ) -> None:
     """Run many slides of the first simulation of an AvaFrame project, and map probabilities."""
-    from snowshed.scene.builders.avaframe import avaframe_simulations
+    from snowshed.scene.builders.avaframe.project import avaframe_simulations
 
-    with removing_copies(folder):
+    with copies_removed_on_failure(folder):
         first, *others = avaframe_simulations(
             project, settings=settings, thickness=thickness, ascii_copy=terrain_copy(folder)
         )

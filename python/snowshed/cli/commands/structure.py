@@ -14,9 +14,9 @@ from typing import Any, NamedTuple, Optional, get_args
 import click
 
 from snowshed._core import InputError
-from snowshed.cli.common_options import PATH, given_values, quiet_option
-from snowshed.cli.parameter_docs import parameter_docs
-from snowshed.cli.terminal import say
+from snowshed.cli.options.common import PATH, given_values, quiet_option
+from snowshed.cli.options.parameter_docs import parameter_docs
+from snowshed.cli.output.terminal import say
 from snowshed.scene.builders.meshes import mesh_structure
 from snowshed.scene.builders.panels import panel_rows, panel_table
 from snowshed.scene.builders.roofs import gable_roof, shed_roof

@@ -11,15 +11,6 @@ import click
 
 from snowshed._core import InputError
 from snowshed.base.formatting import plural
-from snowshed.cli.common_options import (
-    PATH,
-    ResultsFolder,
-    dry_run_option,
-    jobs_option,
-    quiet_notes_option,
-    quiet_option,
-    resume_option,
-)
 from snowshed.cli.compute_study import (
     compute_study,
     outcome_as_exit_code,
@@ -28,7 +19,16 @@ from snowshed.cli.compute_study import (
     print_study_cost,
     study_progress,
 )
-from snowshed.cli.terminal import PlainConsole, say, write_out
+from snowshed.cli.options.common import (
+    PATH,
+    ResultsFolder,
+    dry_run_option,
+    jobs_option,
+    quiet_notes_option,
+    quiet_option,
+    resume_option,
+)
+from snowshed.cli.output.terminal import PlainConsole, say, write_out
 from snowshed.io.atomic import write_text
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS
 from snowshed.study.definition import Study

@@ -11,15 +11,16 @@ from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 
 FALL_S = 0.1
-FRICTION, TILT, SLAB = 0.3, 40.0, (0.5, 0.05)  # m: length and thickness
+FRICTION = 0.3
+TILT = 40.0  # degrees
+SLAB = (0.5, 0.05)  # m, length and thickness
 #: Beginning and end of the averaging of the acceleration, s; before, contact sets in.
 WINDOW = (0.1, 0.2)
 
 HEIGHT, WIDTH = 0.2, 0.08  # m, of the column
 DENSITY, YOUNGS_MODULUS, POISSONS_RATIO = 210.0, 1e5, 0.3  # kg/m3, Pa
-#: Duration of the column's damping, in radians of its slowest oscillation, and number of steps
-#: between dampings.
-SETTLING, STEPS = 20.0, 4
+SETTLING = 20.0  # radians of the column's slowest oscillation, for which it is damped
+STEPS = 4  # steps between dampings
 
 
 def fall_error() -> float:

@@ -16,8 +16,8 @@ from snowshed.cli.self_test.drive import EventDriver
 from snowshed.io.vtk.vtp import read_particles
 from snowshed.scene.scene import Scene
 
-#: Cell sizes, m: one with enough particles for two threads, and one with few particles.
-FINE, COARSE = 0.0025, 0.02
+FINE = 0.0025  # m, cells that give enough particles for two threads
+COARSE = 0.02  # m, cells that give few particles
 STEPS = 200
 #: Limit on the run time of the executable, far beyond the usual time, s.
 TIME_LIMIT_S = 120.0

@@ -16,7 +16,9 @@ from snowshed.methods.slide.settings import SlideSettings
 from snowshed.scene.components import Area, Terrain
 from snowshed.scene.scene import Scene
 
-TILT, FRICTION, TURBULENCE = 35.0, 0.325, 300.0  # degrees, 1, m/s2
+TILT = 35.0  # degrees
+FRICTION = 0.325
+TURBULENCE = 300.0  # m/s2
 CELL, THICKNESS = 2.0, 0.5  # m
 EAST, NORTH = 84.0, 48.0  # m, the terrain
 SLAB = ((9.0, 9.0), (39.0, 9.0), (39.0, 39.0), (9.0, 39.0))  # m

@@ -181,8 +181,8 @@ def _crs(content: Mapping[str, Any], farthest: Floats, path: Path) -> str:
     if "crs" not in content:
         if farthest[0] > 180 or farthest[1] > 90:
             raise InputError(
-                f"{path}: has no coordinate system; its numbers are not degrees, which GeoJSON "
-                f"requires without one; {REMEDY}"
+                f"{path}: has no coordinate system; its numbers are not degrees, the unit of "
+                f"GeoJSON without one; {REMEDY}"
             )
         return DEGREES
     system = content["crs"]

@@ -173,8 +173,8 @@ class _Package:
             )
         if len(every) > 1:
             issue_note(
-                f"{self.path}: of its layers {names} the only one that may hold polygons is read, "
-                f"{quoted(str(of_polygons[0][0]))}"
+                f"{self.path}: layer {quoted(str(of_polygons[0][0]))} is read, the only one that "
+                f"may hold polygons; the layers are {names}"
             )
         return str(of_polygons[0][0]), str(of_polygons[0][1]), of_polygons[0][3]
 

@@ -17,7 +17,7 @@ class PolygonLayer:
     Attributes
     ----------
     shapes
-        Geometries of shapely, one for each feature; None for features without.
+        One shapely geometry per feature; None if the feature has none.
     records
         Values of the requested fields, by field; one for each feature.
     fields

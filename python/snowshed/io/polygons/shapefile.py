@@ -86,7 +86,7 @@ def _check_sizes(path: Path, companions: dict[str, Path]) -> None:
     """Refuse files without polygons, or with too many, before GDAL reads them."""
     content = np.memmap(path, dtype=np.uint8, mode="r")
     if len(content) < HEAD:
-        raise InputError(f"{path}: not a file of polygons: cut off")
+        raise InputError(f"{path}: not a file of polygons: truncated")
     kind = int(content[32:36].view("<i4")[0])
     if int(content[28:32].view("<i4")[0]) != 1000 or kind not in OF_POLYGONS:
         raise InputError(f"{path}: not a file of polygons: {KINDS.get(kind, 'other shapes')}")

@@ -20,7 +20,7 @@ def count_corners(wkb: bytes, where: str) -> int:
     Raises
     ------
     InputError
-        If it is another geometry, or is cut off.
+        If it is another geometry, or is truncated.
 
     Examples
     --------

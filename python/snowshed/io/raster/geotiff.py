@@ -174,7 +174,7 @@ def _checked_band(source: Any, path: Path, band: Optional[int]) -> int:
         )
     chosen = bands[0] if band is None else band
     if source.colorinterp[chosen - 1].name == "palette":
-        raise InputError(f"{path}: its values are numbers of colours: a picture, not a raster")
+        raise InputError(f"{path}: its values are palette colours: an image, not a raster")
     if np.dtype(source.dtypes[chosen - 1]).kind not in "iuf":
         raise InputError(f"{path}: holds {source.dtypes[chosen - 1]} values, which are not heights")
     if len(bands) > 1:
@@ -274,7 +274,7 @@ def _in_metres(values: Any, facts: BandFacts, factor: float, path: Path) -> Floa
              + (f", and {offset:.10g} added" if offset else ""))  # fmt: skip
     if factor != 1.0:
         heights *= factor
-        issue_note(f"{path.name}: its values were turned into metres; one unit is {factor:.10g} m")
+        issue_note(f"{path.name}: its values were converted to metres; one unit is {factor:.10g} m")
     return heights
 
 

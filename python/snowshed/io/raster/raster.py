@@ -141,7 +141,7 @@ def _read_ascii(path: Path) -> Raster:
     if metres_per_unit in (None, 1.0):
         return replace(raster, crs=system)
     issue_note(
-        f"{path.name}: its values were turned into metres; one unit is {metres_per_unit:.10g} m"
+        f"{path.name}: its values were converted to metres; one unit is {metres_per_unit:.10g} m"
     )
     return replace(raster, crs=system, heights=heights * metres_per_unit, plain=False)
 

@@ -60,7 +60,7 @@ class HeaderFields:
             if not separator or (end < 0 and len(head) == MAX_HEADER):
                 raise InputError(f"{path}: damaged: no line {LAST} = ... in its header")
             if name in fields:
-                raise InputError(f"{path}: {quoted(name)} stands twice in its header")
+                raise InputError(f"{path}: {quoted(name)} occurs twice in its header")
             fields[name] = value
             position = end + 1 if end >= 0 else len(head)
             if position >= len(head) and LAST not in fields:

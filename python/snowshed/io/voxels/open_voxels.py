@@ -11,7 +11,7 @@ from snowshed.base.notes import record_notes
 from snowshed.base.paths import PathLike
 from snowshed.io.voxels.array_files import open_npy, open_raw
 from snowshed.io.voxels.metaimage import open_metaimage
-from snowshed.io.voxels.pictures import open_slices, open_stack
+from snowshed.io.voxels.stacks import open_slices, open_stack
 from snowshed.io.voxels.voxel_file import VoxelFile
 
 READERS = {

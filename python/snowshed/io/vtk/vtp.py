@@ -28,9 +28,10 @@ TYPES = MappingProxyType(
     }
 )
 APPENDED_HEAD = b'<AppendedData encoding="raw">\n_'
-#: End of a file, with and without a checksum of the content before.
+#: End of a file with a checksum of the content before; files of earlier versions have none.
 END = re.compile(rb"  <!-- crc32 ([0-9a-f]{8}) -->\n</VTKFile>\n\Z")
-OLD_END, MAX_END_LENGTH = b"\n  </AppendedData>\n</VTKFile>\n", 64
+OLD_END = b"\n  </AppendedData>\n</VTKFile>\n"
+MAX_END_LENGTH = 64  # bytes
 LENGTH_BYTES = 8  # before each block
 
 

@@ -52,8 +52,14 @@ ACIS: Mapping[str, tuple[str, Quantity]] = {
 SUMMARIES = ("sum", "average", "normal")  # rows at the end of a month of NOWData
 BARE_TITLE = re.compile(r'"?[A-Za-z0-9 .&()/-]{1,60}"?')
 BARE_ROW = re.compile(r"\d{4}-\d{2}-\d{2}(,[MTS]?-?[0-9.]*A?){2,}")
-#: Flags of ACIS: a trace; missing values; an amount that a later one contains, and that later one.
-TRACE, LACKING, PART, GATHERED = "T", ("M", "", "S"), "S", "A"
+#: Flag of ACIS for a trace.
+TRACE = "T"
+#: Flags of ACIS for missing values.
+LACKING = ("M", "", "S")
+#: Flag of ACIS for an amount that a later one contains.
+PART = "S"
+#: Flag of ACIS for an amount that contains earlier ones.
+GATHERED = "A"
 
 
 def is_dly(lines: Sequence[str]) -> bool:
@@ -82,7 +88,7 @@ def read_dly(name: str, lines: Sequence[str]) -> Station:
             raise InputError(f"{place}, column month: {line[15:17]!r}; allowed: 01 to 12")
         for day in range(1, calendar.monthrange(year, month)[1] + 1):
             start = DLY_LINE + DLY_CELL * (day - 1)
-            if len(line) < start + 5:  # flags at the end may be cut off
+            if len(line) < start + 5:  # trailing flags may be missing
                 raise InputError(
                     f"{place}, column day {day}: the line ends after {len(line)} characters; "
                     f"needed: {DLY_LINE + DLY_CELL * DLY_DAYS}"

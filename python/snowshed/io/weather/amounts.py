@@ -1,4 +1,4 @@
-"""Amounts of water and snow in files, and the part of them between two readings.
+"""Amounts per interval from the totals and counters in weather files.
 
 Totals may overlap (1, 3, 6 and 24 hours), a counter may only rise, and every row may hold the sum
 of the last day. The resulting amounts do not overlap, so that they can be summed.
@@ -16,9 +16,11 @@ from snowshed.io.weather.observation import DAY
 
 HOUR = timedelta(hours=1)
 EPOCH = datetime(1, 1, 1)
-#: A total is an error of its sensor if it exceeds the totals within it, which cover half of its
-#: time and more, by this factor and by this many mm.
-FACTOR, EXCESS = 20.0, 50.0
+#: A total contradicts the shorter totals that cover at least half of its time, and is a sensor
+#: error, if it exceeds their sum by more than this multiple of the sum...
+SENSOR_FACTOR = 20.0
+#: ... and by more than this, mm.
+SENSOR_EXCESS_MM = 50.0
 MAX_STEPS = 400  # of a total: a year of days, half a month of hours
 
 
@@ -51,33 +53,34 @@ def without_overlap(
     >>> without_overlap([hour, longer], 1.0, "mm of precipitation")[0]
     [4.0, 6.0]
     """
-    known: dict[int, float] = {}
+    amount_by_slot: dict[int, float] = {}
     amounts = [0.0] * len(totals)
-    contained, refused = 0, []
+    contained, contradicting = 0, []
     for i in sorted(range(len(totals)), key=lambda i: totals[i].hours):
         total = totals[i]
         last = math.ceil((total.end - EPOCH) / HOUR / step - 1e-6)
         span = range(last - min(max(round(total.hours / step), 1), MAX_STEPS) + 1, last + 1)
-        inside = [known[slot] for slot in span if slot in known]
-        rest = max(total.amount - math.fsum(inside), 0.0)
-        if 2 * len(inside) >= len(span) and rest > max(EXCESS, FACTOR * math.fsum(inside)):
-            refused.append(rest)
+        inside = [amount_by_slot[slot] for slot in span if slot in amount_by_slot]
+        remainder = max(total.amount - math.fsum(inside), 0.0)
+        max_remainder = max(SENSOR_EXCESS_MM, SENSOR_FACTOR * math.fsum(inside))
+        if 2 * len(inside) >= len(span) and remainder > max_remainder:
+            contradicting.append(remainder)
             continue
         contained += bool(inside) and total.amount > 0.0
-        free = [slot for slot in span if slot not in known] or list(span)
-        for slot in free:
-            known[slot] = known.get(slot, 0.0) + rest / len(free)
-        amounts[i] = round(rest, 6)
+        open_slots = [slot for slot in span if slot not in amount_by_slot] or list(span)
+        for slot in open_slots:
+            amount_by_slot[slot] = amount_by_slot.get(slot, 0.0) + remainder / len(open_slots)
+        amounts[i] = round(remainder, 6)
     notes = []
     if contained:
         notes.append(
-            f"{contained} totals contain shorter ones; {math.fsum(amounts):g} {what} are left of "
-            f"{math.fsum(total.amount for total in totals):g}, since nothing counts twice"
+            f"{contained} totals overlap shorter ones; counted once, {math.fsum(amounts):g} of "
+            f"{math.fsum(total.amount for total in totals):g} {what} remain"
         )
-    if refused:
+    if contradicting:
         notes.append(
-            f"{len(refused)} totals contradict the totals within them, and are left out with "
-            f"{math.fsum(refused):g} {what}"
+            f"{len(contradicting)} totals contradict the totals within them, and are left out with "
+            f"{math.fsum(contradicting):g} {what}"
         )
     return amounts, notes
 

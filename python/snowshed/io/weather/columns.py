@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, Optional
 from snowshed.io.weather.observation import Observation, Quantity
 
 HOURS = {"precipitation": "precipitation_hours", "snowfall": "snowfall_hours"}
-MIN_COLUMN_SHARE = 0.9  # of the values of the fullest column; a column with more is taken
+MIN_COLUMN_SHARE = 0.9  # share of the fullest column's values that a column needs
 MAX_REMEMBERED = 50_000  # parsed texts of a column that are kept
 WORDS = {
     "temperature": "the temperature",

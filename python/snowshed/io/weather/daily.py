@@ -145,7 +145,9 @@ class Days:
                 f"{several} amounts of several days ({names.days}), {gathered:.4g} {names.unit} in "
                 "all, are spread over their days"
                 + (
-                    f"; {counted} do not tell how many, and count since the last" if counted else ""
+                    f"; {counted} without a number of days count since the last amount"
+                    if counted
+                    else ""
                 ),
             )
         return by_day, notes

@@ -49,11 +49,14 @@ TMY3_NAMES = {
 }
 TMY3_DATE, TMY3_TIME = "Date (MM/DD/YYYY)", "Time (HH:MM)"
 EPW_PERIOD = "liquid precipitation quantity"
-#: Columns of the name, latitude, longitude, altitude and time zone in the first line.
-EPW_PLACE, TMY3_PLACE = (1, 6, 7, 9, 8), (1, 4, 5, 6, 3)
+#: Columns of name, latitude, longitude, altitude and time zone in the first line of an EPW file.
+EPW_PLACE = (1, 6, 7, 9, 8)
+#: The same of a TMY3 file.
+TMY3_PLACE = (1, 4, 5, 6, 3)
 NUMBERS = (("latitude", 90.0), ("longitude", 360.0), ("elevation", 9000.0), ("time zone", 15.0))
 TMY3_PERIOD = "Lprecip quantity (hr)"
-UNKNOWN, MISSING_TMY3 = 99.0, -9900.0  # hours of totals that stand for a missing value
+UNKNOWN = 99.0  # hours of a total that stand for a missing value in EPW
+MISSING_TMY3 = -9900.0  # hours of a total that stand for a missing value in TMY3
 MINUTE = timedelta(minutes=1)
 
 

@@ -17,8 +17,12 @@ AMOUNTS = (
     ("snowfall", "snowfall_hours", "m", "new snow"),
 )
 MIN_RISES = 8  # rises of a counter; snow or rain of a storm has fewer
-#: Noise of a counter and its value after emptying, relative to its value; rises per reset.
-COUNTER_NOISE, EMPTIED_SHARE, MIN_RISES_PER_RESET = 0.02, 0.2, 10
+#: Noise of a counter, relative to its value.
+COUNTER_NOISE = 0.02
+#: Largest value of a counter after emptying, relative to its value before.
+EMPTIED_SHARE = 0.2
+#: Smallest number of rises of a counter per reset.
+MIN_RISES_PER_RESET = 10
 MIN_FILLED_SHARE = 0.5  # share of the rows, from the first amount on, in which a counter is above 0
 MINUTE = 1.0 / 60.0
 

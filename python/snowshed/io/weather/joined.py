@@ -17,8 +17,10 @@ from snowshed.io.weather.plain import read_plain
 from snowshed.io.weather.recognise import read_station
 
 MAX_FILES = 200
-#: Largest distance and difference of altitude between the files of one station, km and m.
-MAX_STATION_DISTANCE_KM, MAX_STATION_HEIGHT_M = 2.0, 100.0
+#: Largest distance between the files of a station, km.
+MAX_STATION_DISTANCE_KM = 2.0
+#: Largest difference of altitude between the files of a station, m.
+MAX_STATION_HEIGHT_M = 100.0
 DEGREE = 111.2  # km of latitude
 TEMPERATURE, DEPTH = "temperature", "snow_depth"
 
@@ -102,8 +104,8 @@ def _on_common_clock(files: Sequence[_File]) -> tuple[list[_File], list[str]]:
         clocked.append(_File(name, _on_clock(station, first.station.utc_offset)))
         if clocked[-1].station is not station:
             notes.append(
-                f"{name} is moved from UTC{station.utc_offset:+g} h to the clock of {first.name}, "
-                f"UTC{first.station.utc_offset:+g} h"
+                f"{name} is converted from UTC{station.utc_offset:+g} h to the clock of "
+                f"{first.name}, UTC{first.station.utc_offset:+g} h"
             )
     return clocked, notes
 
@@ -166,7 +168,7 @@ def _days(row: Observation, name: str) -> set[date]:
 
 
 def _series_of_depth(files: Sequence[_File]) -> list[int]:
-    """Return for each file the first of the same series of depths: one sensor, year by year.
+    """Return, for each file, the first file of its series of depths: one sensor, year by year.
 
     Files of one series have the same station and column, and equal values at common times.
     """

@@ -16,19 +16,27 @@ from snowshed.io.weather.columns import WORDS
 from snowshed.io.weather.observation import DAY, Observation, Station
 
 MIN_VALUES = 5  # number of values whose median can reveal a unit
-#: Largest plausible medians of the daily change of the snow depth and of new snow, m.
-MAX_MEDIAN_CHANGE, MAX_MEDIAN_NEW_SNOW = 0.5, 0.7
+#: Largest plausible median of the daily change of the snow depth, m.
+MAX_MEDIAN_CHANGE = 0.5
+#: Largest plausible median of new snow, m.
+MAX_MEDIAN_NEW_SNOW = 0.7
 #: Smallest and largest plausible median of the air's temperature during snowfall, degrees C.
 MIN_MEDIAN_TEMPERATURE, MAX_MEDIAN_TEMPERATURE = -40.0, 12.0
-#: Smallest snowfall and smallest rise of the depth that are compared with temperatures, m.
-MIN_SNOWFALL, MIN_RISE = 0.01, 0.1
-#: Largest plausible medians of the amounts of a wet day, and of a shorter time, mm.
-MAX_MEDIAN_WET_DAY, MAX_MEDIAN_WET_HOURS = 100.0, 50.0
+#: Smallest snowfall that is compared with temperatures, m.
+MIN_SNOWFALL = 0.01
+#: Smallest rise of the snow depth that is compared with temperatures, m.
+MIN_RISE = 0.1
+#: Largest plausible median of the amounts of a wet day, mm.
+MAX_MEDIAN_WET_DAY = 100.0
+#: Largest plausible median of the amounts of shorter times, mm.
+MAX_MEDIAN_WET_HOURS = 50.0
 #: The largest amount of rain measured in D hours is 491 D^0.452 mm (WMO 2009, Manual on Estimation
 #: of Probable Maximum Precipitation, WMO-No. 1045).
 MAX_RAIN, EXPONENT = 491.0, 0.452
-#: Largest plausible density of new snow on cold days, kg/m3, and their limit, degrees C.
-MAX_DENSITY, COLD_DAY_LIMIT = 600.0, -2.0
+#: Largest plausible density of new snow on cold days, kg/m3.
+MAX_DENSITY = 600.0
+#: Temperature below which a day is cold, degrees C.
+COLD_DAY_LIMIT = -2.0
 MAX_SHALLOW_DEPTH = 0.15  # m
 
 

@@ -172,7 +172,7 @@ def _by_units(header: _Header, fields: Sequence[str], separator: str) -> dict[in
         ):
             raise InputError(
                 f"{header.where('units')}: {quoted(unit)} of {field}, and a factor {factor:g} that "
-                f"is none of {unit} to {si}; correct one of them"
+                f"does not convert {unit} to {si}; correct one of them"
             )
     return quantities
 

@@ -13,4 +13,8 @@ METHOD = Method(
         "curve": "snowshed.methods.grains.curve:read_curve",
         "forces": "snowshed.methods.grains.contacts:read_forces",
     },
+    in_memory={
+        "curve": "snowshed.methods.grains.curve:present_curve",
+        "forces": "snowshed.methods.grains.contacts:present_forces",
+    },
 )

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from snowshed._core import InputError
+import snowshed._core as _core
 from snowshed.base.arrays import Booleans, Floats, Integers
 from snowshed.base.core_simulation import AnySimulation, core_of
-from snowshed.base.units import unit_of_column
+from snowshed.base.missing_result import MissingResultError
+from snowshed.base.units import with_units
 from snowshed.io.csv_table import read_csv
 from snowshed.io.run_files import check_run_file
 
@@ -73,6 +75,16 @@ class GrainContacts:
         length = np.maximum(np.linalg.norm(line, axis=1), 1e-300)
         return np.asarray(np.einsum("ij,ij->i", self.forces, line) / length)
 
+    def table(self) -> pd.DataFrame:
+        """Return the contacts as a table, a row each; ``attrs["units"]`` has the units."""
+        import pandas as pd
+
+        columns: dict[str, Any] = {"grain": self.grains[:, 0], "other": self.grains[:, 1]}
+        columns.update({f"{axis}_m": self.points[:, k] for k, axis in enumerate("xyz")})
+        columns.update({f"force_{axis}_n": self.forces[:, k] for k, axis in enumerate("xyz")})
+        columns["bonded"] = self.bonded.astype(int)
+        return with_units(pd.DataFrame(columns))
+
     def text(self) -> str:
         """Return the contacts as CSV."""
         lines = ["grain,other,x_m,y_m,z_m,force_x_n,force_y_n,force_z_n,bonded"]
@@ -111,14 +123,18 @@ def read_forces(folder: Path) -> pd.DataFrame:
 
     Raises
     ------
+    MissingResultError
+        If they are missing.
     InputError
-        If they are not there, or damaged.
+        If they are damaged.
     """
     file = folder / CONTACTS
     if not file.is_file():
-        raise InputError(f"{file}: missing; a run writes it at its end")
+        raise MissingResultError(f"{file}: missing; a run writes it at its end")
     check_run_file(file)
-    table = read_csv(file)
-    units = {str(name): unit_of_column(str(name)) for name in table}
-    table.attrs["units"] = {name: unit for name, unit in units.items() if unit}
-    return table
+    return with_units(read_csv(file))
+
+
+def present_forces(core: _core.Simulation, scene: Mapping[str, Any]) -> pd.DataFrame:
+    """Return the contacts of a loading test now, as `read_forces` does."""
+    return grain_contacts(core).table()

@@ -5,15 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.arrays import Floats
 from snowshed.base.core_simulation import AnySimulation, core_of
+from snowshed.base.missing_result import MissingResultError
 from snowshed.base.paths import PathLike
-from snowshed.base.units import unit_of_column
+from snowshed.base.units import with_units
 from snowshed.io.csv_table import parse_csv, read_csv
 from snowshed.io.run_files import check_run_file
 
@@ -131,9 +133,8 @@ class LoadingCurve:
             If it cannot be read.
         """
         check_run_file(Path(path))
-        return cls._from_table(
-            read_csv(Path(path), as_text=True), str(path)
-        )  # pandas rounds its numbers
+        table = read_csv(Path(path), as_text=True)  # pandas rounds numbers
+        return cls.from_table(table, str(path))
 
     @classmethod
     def parse(cls, text: str, where: str) -> LoadingCurve:
@@ -144,10 +145,17 @@ class LoadingCurve:
         InputError
             If it is not such a table.
         """
-        return cls._from_table(parse_csv(text, where, as_text=True), where)
+        return cls.from_table(parse_csv(text, where, as_text=True), where)
 
     @classmethod
-    def _from_table(cls, table: pd.DataFrame, where: str) -> LoadingCurve:
+    def from_table(cls, table: pd.DataFrame, where: str = "the table") -> LoadingCurve:
+        """Return the curve from a table, such as `snowshed.Results.curve`; errors name `where`.
+
+        Raises
+        ------
+        InputError
+            If a column is missing, or holds texts.
+        """
         missing = [name for name in COLUMNS if name not in table]
         if missing:
             raise InputError(
@@ -157,6 +165,12 @@ class LoadingCurve:
             return cls({str(name): table[name].to_numpy().astype(np.float64) for name in table})
         except ValueError as error:
             raise InputError(f"{where}: {error}") from None
+
+    def table(self) -> pd.DataFrame:
+        """Return the columns as a table; ``attrs["units"]`` has their units."""
+        import pandas as pd
+
+        return with_units(pd.DataFrame(dict(self.columns)))
 
     def text(self) -> str:
         """Return the table as CSV; a number that is read back has the same bits."""
@@ -194,18 +208,20 @@ def read_curve(folder: Path) -> pd.DataFrame:
 
     Raises
     ------
+    MissingResultError
+        If it is missing.
     InputError
-        If it is not there, or damaged.
+        If it is damaged.
     """
-    import pandas as pd
-
     file = folder / CURVE
     if not file.is_file():
-        raise InputError(f"{file}: missing; a run writes it while it advances")
-    table = pd.DataFrame(dict(LoadingCurve.read(file).columns))
-    units = {name: unit_of_column(str(name)) for name in table}
-    table.attrs["units"] = {name: unit for name, unit in units.items() if unit}
-    return table
+        raise MissingResultError(f"{file}: missing; a run writes it while it advances")
+    return LoadingCurve.read(file).table()
+
+
+def present_curve(core: _core.Simulation, scene: Mapping[str, Any]) -> pd.DataFrame:
+    """Return the curve of a loading test so far, as `read_curve` does."""
+    return loading_curve(core).table()
 
 
 def stage_stress(curve: LoadingCurve, kind: str) -> Floats:

@@ -43,7 +43,7 @@ class GrainsRun(MethodRun):
     def begin(self) -> None:
         """Issue the notes on the sample."""
         self.stages = self.scene.data["loading"]
-        self.sample_notes = [note] if (note := self.simulation.label_note()) else []
+        self.sample_notes = [note] if (note := self.simulation.input_note()) else []
         for note in self.sample_notes:
             record_note(self.sequence, note)
         self.written = time.monotonic()

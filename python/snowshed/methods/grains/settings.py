@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, Literal, Optional
 
+from snowshed.base.record import default
 from snowshed.methods.settings import MethodSettings
 
 GrainSides = Literal["walls", "periodic"]
@@ -36,7 +37,7 @@ class GrainsSettings(MethodSettings):
         Local damping: share of the unbalanced force that opposes the motion. 0 <= value < 1;
         default 0.2.
     courant_factor : float
-        Time step over the root of mass over stiffness. 0 < value <= 1; default 0.3.
+        Time step relative to sqrt(m/k), the smallest of all grains. 0 < value <= 1; default 0.3.
     sides : {"walls", "periodic"}
         The vertical sides: rigid and frictionless, or periodic. Default "walls".
     bonded_plates : bool
@@ -45,18 +46,18 @@ class GrainsSettings(MethodSettings):
         Threads; 0: all. 0 <= value <= 4096; default 0.
     """
 
-    elastic_modulus: Optional[float] = None
-    stiffness_ratio: Optional[float] = None
-    tensile_strength: Optional[float] = None
-    shear_strength: Optional[float] = None
-    friction: Optional[float] = None
-    density: Optional[float] = None
-    density_scaling: Optional[float] = None
-    damping: Optional[float] = None
-    courant_factor: Optional[float] = None
-    sides: Optional[GrainSides] = None
-    bonded_plates: Optional[bool] = None
-    threads: Optional[int] = None
+    elastic_modulus: Optional[float] = default(1e9)
+    stiffness_ratio: Optional[float] = default(0.3)
+    tensile_strength: Optional[float] = default(1e6)
+    shear_strength: Optional[float] = default(1e6)
+    friction: Optional[float] = default(0.2)
+    density: Optional[float] = default(917.0)
+    density_scaling: Optional[float] = default(1.0)
+    damping: Optional[float] = default(0.2)
+    courant_factor: Optional[float] = default(0.3)
+    sides: Optional[GrainSides] = default("walls")
+    bonded_plates: Optional[bool] = default(False)
+    threads: Optional[int] = default(0)
 
     RESOLUTION: ClassVar[str] = ""  # that of the sample's image
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar, Literal, Optional
 
-from snowshed.base.record import Alias
+from snowshed.base.record import Alias, default
 from snowshed.methods.settings import MethodSettings
 
 Precision = Literal["float", "double"]
@@ -65,7 +65,8 @@ class MpmSettings(MethodSettings):
     basis : {"quadratic", "cubic"}
         B-spline of the grid. Default "quadratic".
     courant_factor : float
-        Time step over the largest stable one. 0 < value <= 1; default 0.9; also step_factor.
+        Time step relative to the largest stable time step. 0 < value <= 1; default 0.9; also
+        step_factor.
     strain_limit : float
         Largest ``|dt grad v|`` that a step may impose on a particle. 0 < value <= 0.5; default
         0.2.
@@ -79,25 +80,25 @@ class MpmSettings(MethodSettings):
         Threads; 0: all. 0 <= value <= 4096; default 0.
     """
 
-    dx: Optional[float] = None
-    scheme: Optional[Scheme] = None
-    precision: Optional[Precision] = None
-    transfer: Optional[Transfer] = None
-    flip_ratio: Optional[float] = None
+    dx: Optional[float] = default(0.01)
+    scheme: Optional[Scheme] = default("thesis")
+    precision: Optional[Precision] = default("float")
+    transfer: Optional[Transfer] = default("flip")
+    flip_ratio: Optional[float] = default(0.99)
     damping_rate: Optional[float] = None
-    damping_length: Optional[float] = None
-    crack_band_length: Optional[float] = None
-    relaxation_time: Optional[float] = None
-    contact: Optional[Contact] = None
-    contact_radius: Optional[float] = None
-    fields: Optional[Fields] = None
-    event_friction: Optional[float] = None
-    basis: Optional[Basis] = None
-    courant_factor: Optional[float] = None
-    strain_limit: Optional[float] = None
-    sleep_speed: Optional[float] = None
-    sleep_time: Optional[float] = None
-    threads: Optional[int] = None
+    damping_length: Optional[float] = default(0.0)
+    crack_band_length: Optional[float] = default(0.0)
+    relaxation_time: Optional[float] = default(0.0)
+    contact: Optional[Contact] = default("kernel")
+    contact_radius: Optional[float] = default(0.6)
+    fields: Optional[Fields] = default("one")
+    event_friction: Optional[float] = default(1.0)
+    basis: Optional[Basis] = default("quadratic")
+    courant_factor: Optional[float] = default(0.9)
+    strain_limit: Optional[float] = default(0.2)
+    sleep_speed: Optional[float] = default(0.02)
+    sleep_time: Optional[float] = default(0.04)
+    threads: Optional[int] = default(0)
 
     RESOLUTION: ClassVar[str] = "dx"
     INSTEAD_OF: ClassVar[Mapping[str, str]] = {"damping_rate": "flip_ratio"}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, Literal, Optional
 
+from snowshed.base.record import default
 from snowshed.methods.settings import MethodSettings
 
 MpsRheology = Literal["newtonian", "bingham", "bingham_dilatant"]
@@ -39,7 +40,7 @@ class MpsSettings(MethodSettings):
     rheology : {"newtonian", "bingham", "bingham_dilatant"}
         Law of the shear stress. Default "bingham_dilatant".
     regularisation : {"papanastasiou", "bi_viscous"}
-        Approach of the yield stress at small shear rates. Default "papanastasiou".
+        Form of the yield stress at small shear rates. Default "papanastasiou".
     viscosity : float
         Plastic viscosity [Pa s]. 0 <= value <= 1e+06; default 0.012.
     cohesion : float
@@ -51,10 +52,10 @@ class MpsSettings(MethodSettings):
         Coefficient m with which the yield stress is approached [s]. 0 < value <= 1e+06; default
         10000.
     dilatant_rate : float
-        Shear rate above which the stress grows as a power of it [1/s]. 0 < value <= 1e+09; default
-        100.
+        Shear rate above which the stress grows as a power of the rate [1/s]. 0 < value <= 1e+09;
+        default 100.
     dilatant_exponent : float
-        Exponent of that power. 1 <= value <= 5; default 1.5.
+        Exponent of the stress above dilatant_rate. 1 <= value <= 5; default 1.5.
     yield_iterations : int
         Largest number of iterations for the apparent viscosity in a step. 1 <= value <= 1000;
         default 50.
@@ -66,7 +67,8 @@ class MpsSettings(MethodSettings):
     erosion_pressure : float
         Pressure above which erodible snow begins to move [Pa]. 0 <= value <= 1e+09; default 50.
     erosion_speed : float
-        Speed that a neighbour of eroded snow must have [m/s]. 0 <= value <= 10000; default 0.1.
+        Speed of a neighbour above which erodible snow begins to move [m/s]. 0 <= value <= 10000;
+        default 0.1.
     deposition_pressure : float
         Pressure below which moving snow is deposited [Pa]. 0 <= value <= 1e+09; default 25.
     deposition_speed : float
@@ -106,41 +108,41 @@ class MpsSettings(MethodSettings):
         Threads; 0: all. 0 <= value <= 4096; default 0.
     """
 
-    spacing: Optional[float] = None
-    radius: Optional[float] = None
-    max_time_step: Optional[float] = None
-    courant_factor: Optional[float] = None
-    density: Optional[float] = None
-    rheology: Optional[MpsRheology] = None
-    regularisation: Optional[MpsYield] = None
-    viscosity: Optional[float] = None
-    cohesion: Optional[float] = None
-    friction_angle: Optional[float] = None
-    stress_growth: Optional[float] = None
-    dilatant_rate: Optional[float] = None
-    dilatant_exponent: Optional[float] = None
-    yield_iterations: Optional[int] = None
-    erosion: Optional[bool] = None
-    erodible_thickness: Optional[float] = None
-    erosion_pressure: Optional[float] = None
-    erosion_speed: Optional[float] = None
-    deposition_pressure: Optional[float] = None
-    deposition_speed: Optional[float] = None
-    walls: Optional[MpsWalls] = None
-    source: Optional[MpsSource] = None
-    compensation: Optional[float] = None
-    gradient: Optional[MpsGradient] = None
-    splitting: Optional[MpsSplitting] = None
-    coupling: Optional[MpsCoupling] = None
-    surface: Optional[MpsSurface] = None
-    surface_ratio: Optional[float] = None
-    order: Optional[MpsOrder] = None
-    spacing_law: Optional[MpsSpacing] = None
-    preconditioner: Optional[MpsPreconditioner] = None
-    pressure_tolerance: Optional[float] = None
-    viscosity_tolerance: Optional[float] = None
-    max_iterations: Optional[int] = None
-    threads: Optional[int] = None
+    spacing: Optional[float] = default(0.01)
+    radius: Optional[float] = default(2.1)
+    max_time_step: Optional[float] = default(0.01)
+    courant_factor: Optional[float] = default(0.2)
+    density: Optional[float] = default(200.0)
+    rheology: Optional[MpsRheology] = default("bingham_dilatant")
+    regularisation: Optional[MpsYield] = default("papanastasiou")
+    viscosity: Optional[float] = default(0.012)
+    cohesion: Optional[float] = default(0.0)
+    friction_angle: Optional[float] = default(24.0)
+    stress_growth: Optional[float] = default(10000.0)
+    dilatant_rate: Optional[float] = default(100.0)
+    dilatant_exponent: Optional[float] = default(1.5)
+    yield_iterations: Optional[int] = default(50)
+    erosion: Optional[bool] = default(False)
+    erodible_thickness: Optional[float] = default(0.0)
+    erosion_pressure: Optional[float] = default(50.0)
+    erosion_speed: Optional[float] = default(0.1)
+    deposition_pressure: Optional[float] = default(25.0)
+    deposition_speed: Optional[float] = default(0.05)
+    walls: Optional[MpsWalls] = default("mirrors")
+    source: Optional[MpsSource] = default("compensated")
+    compensation: Optional[float] = default(0.1)
+    gradient: Optional[MpsGradient] = default("corrected")
+    splitting: Optional[MpsSplitting] = default("pressure_first")
+    coupling: Optional[MpsCoupling] = default("stiff")
+    surface: Optional[MpsSurface] = default("mirrored")
+    surface_ratio: Optional[float] = default(0.97)
+    order: Optional[MpsOrder] = default("single_move")
+    spacing_law: Optional[MpsSpacing] = default("shifting")
+    preconditioner: Optional[MpsPreconditioner] = default("multigrid")
+    pressure_tolerance: Optional[float] = default(0.0001)
+    viscosity_tolerance: Optional[float] = default(0.0001)
+    max_iterations: Optional[int] = default(1000)
+    threads: Optional[int] = default(0)
 
     RESOLUTION: ClassVar[str] = "spacing"
     ELEMENTS: ClassVar[str] = "spacings"

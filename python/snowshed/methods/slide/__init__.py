@@ -12,4 +12,5 @@ METHOD = Method(
         "summary": "snowshed.methods.slide.summary:SlideSummary.read",
         "maps": "snowshed.methods.slide.maps:read_maps",
     },
+    in_memory={"maps": "snowshed.methods.slide.maps:present_maps"},
 )

@@ -11,11 +11,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.arrays import Floats
 from snowshed.base.core_simulation import AnySimulation, core_of
 from snowshed.base.damage import DAMAGED
 from snowshed.base.extras import require
+from snowshed.base.missing_result import MissingResultError
 from snowshed.io.array_archive import open_archive
 from snowshed.io.raster.raster import Raster, read_raster
 
@@ -34,8 +36,8 @@ MEANINGS = {
     "peak_thickness": ("m", "Largest thickness of the snow, normal to the ground"),
     "peak_speed": ("m/s", "Largest speed of the snow"),
     "peak_pressure": ("kPa", "Largest pressure, density times the square of the speed"),
-    "thickness": ("m", "Thickness of the snow at the end, normal to the ground"),
-    "speed": ("m/s", "Speed of the snow at the end"),
+    "thickness": ("m", "Thickness of the snow, normal to the ground"),
+    "speed": ("m/s", "Speed of the snow"),
 }
 Singles = NDArray[np.float32]
 PEAKS_FILE = "peaks.npz"  # in the results folder of a compact run
@@ -119,15 +121,32 @@ def read_maps(folder: Path) -> xarray.Dataset:
 
     Raises
     ------
+    MissingResultError
+        If the maps are missing.
     InputError
-        If the maps are not there, or xarray (extra ``study``) is not installed.
+        If they are damaged, or xarray (extra ``study``) is not installed.
     """
-    library = require("xarray", "study", "a Dataset of maps")
     rasters = {}
     for name, file in RASTERS.items():
         if not (folder / file).is_file():
-            raise InputError(f"{folder / file}: missing; a run that is not compact writes it")
+            raise MissingResultError(
+                f"{folder / file}: missing; a run that is not compact writes it"
+            )
         rasters[name] = read_raster(folder / file)
+    dataset = _maps_dataset(rasters)
+    for name in ("thickness", "speed"):
+        dataset[name].attrs["long_name"] += ", at the end"
+    return dataset
+
+
+def present_maps(core: _core.Simulation, scene: Mapping[str, Any]) -> xarray.Dataset:
+    """Return the maps of a slide up to now, as `read_maps` does."""
+    maps, crs = slide_maps(core), str(scene["terrain"].get("crs", ""))
+    return _maps_dataset({name: maps.raster(getattr(maps, name), crs) for name in RASTERS})
+
+
+def _maps_dataset(rasters: Mapping[str, Raster]) -> xarray.Dataset:
+    library = require("xarray", "study", "a Dataset of maps")
     first = rasters["peak_thickness"]
     rows, columns = first.heights.shape
     dataset: xarray.Dataset = library.Dataset(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, Literal, Optional
 
+from snowshed.base.record import default
 from snowshed.methods.settings import MethodSettings
 
 SlideMode = Literal["improved", "compatible"]
@@ -39,7 +40,8 @@ class SlideSettings(MethodSettings):
     explicit_friction : bool
         Friction from the speed before the step; in the compatible mode only. Default False.
     resistance : float
-        Coefficient within the areas of resistance. 0 <= value <= 1e+09; default 30000.
+        Drag coefficient within resistance areas (forest, buildings). 0 <= value <= 1e+09; default
+        30000.
     artificial_viscosity : float
         Strength with which particles are drawn to the mean velocity around them. 0 <= value <=
         1e+06; default 100.
@@ -69,27 +71,27 @@ class SlideSettings(MethodSettings):
         Threads; 0: all. 0 <= value <= 4096; default 0.
     """
 
-    mode: Optional[SlideMode] = None
-    cell: Optional[float] = None
-    time_step: Optional[float] = None
-    density: Optional[float] = None
-    layer_thickness: Optional[float] = None
-    friction_law: Optional[SlideFriction] = None
-    friction: Optional[float] = None
-    turbulence: Optional[float] = None
-    explicit_friction: Optional[bool] = None
-    resistance: Optional[float] = None
-    artificial_viscosity: Optional[float] = None
-    bonds: Optional[bool] = None
-    max_strain: Optional[float] = None
-    bond_modulus: Optional[float] = None
-    min_bond_length: Optional[float] = None
-    entrained_density: Optional[float] = None
-    erosion_energy: Optional[float] = None
-    entrainment_shear: Optional[float] = None
-    entrainment_work: Optional[float] = None
-    split_ratio: Optional[float] = None
-    stop_ratio: Optional[float] = None
-    threads: Optional[int] = None
+    mode: Optional[SlideMode] = default("improved")
+    cell: Optional[float] = default(0.0)
+    time_step: Optional[float] = default(0.01)
+    density: Optional[float] = default(300.0)
+    layer_thickness: Optional[float] = default(0.25)
+    friction_law: Optional[SlideFriction] = default("voellmy")
+    friction: Optional[float] = default(0.325)
+    turbulence: Optional[float] = default(58.0)
+    explicit_friction: Optional[bool] = default(False)
+    resistance: Optional[float] = default(30000.0)
+    artificial_viscosity: Optional[float] = default(100.0)
+    bonds: Optional[bool] = default(True)
+    max_strain: Optional[float] = default(0.2)
+    bond_modulus: Optional[float] = default(50000.0)
+    min_bond_length: Optional[float] = default(0.001)
+    entrained_density: Optional[float] = default(100.0)
+    erosion_energy: Optional[float] = default(5000.0)
+    entrainment_shear: Optional[float] = default(0.0)
+    entrainment_work: Optional[float] = default(0.0)
+    split_ratio: Optional[float] = default(1.5)
+    stop_ratio: Optional[float] = default(0.01)
+    threads: Optional[int] = default(0)
 
     RESOLUTION: ClassVar[str] = "cell"

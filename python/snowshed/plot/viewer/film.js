@@ -8,13 +8,13 @@ function bytesOfBase64(text) {
   return bytes;
 }
 
-/** Returns the bytes that zlib deflated. */
+/** Returns the uncompressed bytes of a zlib stream. */
 async function inflate(bytes) {
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-/** Takes numbers of seven bits a byte, the lowest first, off an array of bytes. */
+/** Reads LEB128 integers: seven bits per byte, lowest first. */
 class NumberReader {
   constructor(bytes) {
     this.bytes = bytes;
@@ -33,7 +33,7 @@ class NumberReader {
     const n = this.unsigned();
     return (n >>> 1) ^ -(n & 1);
   }
-  /** Each number is stored as its difference to the one before. */
+  /** Reads differences between neighbours, zigzag-coded, and returns their sums. */
   list(count, kind) {
     const values = new kind(count);
     for (let i = 0, before = 0; i < count; i++) values[i] = before = (before + this.signed()) | 0;
@@ -41,19 +41,19 @@ class NumberReader {
   }
 }
 
-/** Returns for each id its place among others, both rising; -1 where it is not there. */
-function placesAmong(ids, others) {
-  const places = new Int32Array(ids.length);
+/** Returns the index of each id in `others` (both sorted), or -1. */
+function indicesIn(ids, others) {
+  const indices = new Int32Array(ids.length);
   for (let i = 0, k = 0; i < ids.length; i++) {
     while (k < others.length && others[k] < ids[i]) k++;
-    places[i] = others[k] === ids[i] ? k : -1;
+    indices[i] = others[k] === ids[i] ? k : -1;
   }
-  return places;
+  return indices;
 }
 
 /**
  * The frames of a film. Each has time (s), event, ids, events, materials, radii (or null),
- * positions as parts of the bounds (Uint16, three a particle) and codes by quantity (Int16).
+ * positions (Uint16, three per particle; 0 and 65535 are the bounds) and codes by quantity (Int16).
  */
 class Film {
   constructor(bytes, bounds) {
@@ -70,7 +70,7 @@ class Film {
   async decode(progress) {
     const { view, bytes } = this;
     let at = this.start;
-    let rested = performance.now();
+    let yieldedAt = performance.now();
     while (at + 40 <= bytes.length && view.getUint32(at, true) === 0x4d415246) {
       const packed = view.getUint32(at + 32, true);
       const end = at + 40 + packed;
@@ -84,10 +84,10 @@ class Film {
       this.readFrame(frame, lists, new NumberReader(await inflate(bytes.subarray(at + 40, end))));
       this.frames.push(frame);
       at = end;
-      if (performance.now() > rested + 50) {
+      if (performance.now() > yieldedAt + 50) {
         progress(at / bytes.length);
         await new Promise((resume) => setTimeout(resume));
-        rested = performance.now();
+        yieldedAt = performance.now();
       }
     }
     this.last = this.steps = null;
@@ -99,7 +99,7 @@ class Film {
     if (lists || !previous) this.readParticles(frame, numbers);
     else for (const key of ["ids", "events", "materials", "radii"]) frame[key] = previous[key];
     const before = frame.ids === previous?.ids ? null
-      : placesAmong(frame.ids, previous ? previous.ids : []);
+      : indicesIn(frame.ids, previous ? previous.ids : []);
     this.readPositions(frame, before, numbers);
     frame.codes = this.header.quantities.map((_, q) => {
       const codes = new Int16Array(frame.count), earlier = previous?.codes[q];

@@ -194,7 +194,7 @@ function secondsText(time) {
 /** Returns the places and codes of the particles of `from` in `to`; of lost ones, their own. */
 function aligned(from, to, codesOf) {
   if (from.ids === to.ids) return [to.positions, codesOf(to)];
-  const among = placesAmong(from.ids, to.ids);
+  const among = indicesIn(from.ids, to.ids);
   const places = from.positions.slice(), codes = codesOf(from).slice(), theirs = codesOf(to);
   for (let i = 0; i < among.length; i++) {
     const k = among[i];

@@ -50,7 +50,7 @@ class Ageing:
     sintering
         A name in `SINTERING_LAWS`; None: broken bonds stay broken.
     strength_age
-        Age at which bonds have the strength of the slab's snow, hours.
+        Age at which bonds reach the strength of the slab's snow, hours.
 
     Raises
     ------

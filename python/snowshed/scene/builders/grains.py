@@ -74,7 +74,7 @@ def grains_scene(
         raise InputError(f"{file}: the edge of a voxel is not known; give it (--voxel) in m")
     if file.suffix.lower() != NPY:
         raise InputError(
-            f"{file}: no NPY file; labels are whole numbers in one, 0 for air (numpy.save)"
+            f"{file}: not an NPY file, which must hold integers, 0 for air (numpy.save)"
         )
     return Scene(
         method="grains",

@@ -28,7 +28,8 @@ from snowshed.scene.panel_edge import panel_edge
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 
-CELLS_BELOW, CELLS_ABOVE = 6, 3  # cells of the grid below the lowest and above the highest ground
+CELLS_BELOW = 6  # cells of the grid below the lowest ground
+CELLS_ABOVE = 3  # cells of the grid above the highest ground
 MAX_SAMPLES = 20_000_000
 
 Span = tuple[float, float]

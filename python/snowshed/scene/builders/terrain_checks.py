@@ -94,8 +94,8 @@ def check_terrain(terrain: Raster, max_slope: float = MAX_SLOPE) -> None:
 def _check_elevations(terrain: Raster) -> None:
     if terrain.numbers in ("uint8", "int8"):
         raise InputError(
-            f"{terrain.name}: numbers of 8 bits are those of a picture, such as a hillshade; give "
-            "the elevations (as other numbers: gdal_translate -ot Int16)"
+            f"{terrain.name}: 8-bit values are those of a picture, such as a hillshade; give the "
+            "elevations (as another type: gdal_translate -ot Int16)"
         )
     z = terrain.heights
     if np.isnan(z).all():
@@ -107,8 +107,8 @@ def _check_elevations(terrain: Raster) -> None:
         x, y = terrain.east + column * terrain.cell, terrain.north + row * terrain.cell
         raise InputError(
             f"{terrain.name}: elevations from {low:g} to {high:g} m do not occur on Earth "
-            f"({MIN_ELEVATION:g} to {MAX_ELEVATION:g} m), as that at ({x:.10g}, {y:.10g}); are "
-            "they in feet, or is it a missing value that the file does not declare as NODATA?"
+            f"({MIN_ELEVATION:g} to {MAX_ELEVATION:g} m), such as that at ({x:.10g}, {y:.10g}); "
+            "are they in feet, or is it a missing value that the file does not declare as NODATA?"
         )
 
 
@@ -116,8 +116,8 @@ def _check_cells(terrain: Raster) -> None:
     cell = terrain.cell
     if is_in_feet(terrain.crs):
         raise InputError(
-            f"{terrain.name}: its map is in feet ({terrain.crs}); bring it to a map in metres, for "
-            "example by gdalwarp -t_srs EPSG:..."
+            f"{terrain.name}: its coordinates are in feet ({terrain.crs}); reproject it to metres, "
+            "for example by gdalwarp -t_srs EPSG:..."
         )
     if not MIN_CELL <= cell <= MAX_CELL:
         raise InputError(
@@ -127,8 +127,8 @@ def _check_cells(terrain: Raster) -> None:
     for metres in METRE_CELLS:
         if math.isclose(cell, metres / FOOT, rel_tol=1e-5):
             raise InputError(
-                f"{terrain.name}: cells of {cell:g} are {metres:g} m in feet; bring the raster to "
-                "metres"
+                f"{terrain.name}: cells of {cell:g} are {metres:g} m in feet; reproject the raster "
+                "to metres"
             )
 
 
@@ -176,7 +176,7 @@ def common_system(named: Sequence[tuple[str, str]]) -> str:
         if not are_same(system, given[0][1]):
             raise InputError(
                 f"the files have different coordinate systems, {given[0][1]} ({given[0][0]}) and "
-                f"{system} ({file}); bring them to one first"
+                f"{system} ({file}); reproject them to one"
             )
     return given[0][1] if given else ""
 

@@ -13,7 +13,7 @@ def terrain_copy(folder: Path) -> Path:
 
 
 @contextmanager
-def removing_copies(folder: Path) -> Iterator[None]:
+def copies_removed_on_failure(folder: Path) -> Iterator[None]:
     """Remove new copies of files beside a results folder if no run begins there."""
     copy = terrain_copy(folder)
     copies = [copy, copy.with_name(f"{copy.stem}-thickness.asc")]

@@ -102,9 +102,10 @@ def _board_distance(simulation: _core.Simulation, positions: Floats) -> Floats:
     if frame is None:
         return np.full(len(positions), np.inf)
     away = positions - np.asarray(frame["center"])
+    half_board = 0.5 * frame["board_thickness"]
     outside = [
         np.abs(away @ np.asarray(frame["slope"])) - 0.5 * frame["length"],
-        np.abs(away @ np.asarray(frame["normal"]) + 0.5 * frame["board"]) - 0.5 * frame["board"],
+        np.abs(away @ np.asarray(frame["normal"]) + half_board) - half_board,
     ]
     if simulation.dimension == 3:
         outside.append(np.abs(away[:, 1]) - 0.5 * frame["width"])

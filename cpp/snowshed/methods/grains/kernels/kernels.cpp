@@ -1,7 +1,7 @@
 // The kernels of grains for one instruction set.
 #include "snowshed/methods/grains/kernels/pair_forces.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(grains)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::grains)
 namespace {
 
 void pair_forces(const View& s, std::size_t group) { group_forces(s, group); }
@@ -11,4 +11,4 @@ void pair_forces(const View& s, std::size_t group) { group_forces(s, group); }
 extern const Kernels kernel_table;
 const Kernels kernel_table{&pair_forces};
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

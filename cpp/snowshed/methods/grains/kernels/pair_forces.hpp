@@ -5,7 +5,7 @@
 #include "snowshed/methods/grains/bond_law.hpp"
 #include "snowshed/methods/grains/kernel_api.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(grains)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::grains)
 
 using QuadVec = SimdVec<Quad>;
 
@@ -44,16 +44,16 @@ SNOWSHED_INLINE void store_mask(std::uint8_t* flags, const QuadMask& mask) {
 struct PairedBodies {
   const BodyFrame &a, &b;
   // Offset (m) and velocity (m/s) of the second centre, at its periodic image, from the first.
-  double centre_offset[3], relative_velocity[3];
+  double center_offset[3], relative_velocity[3];
 
   SNOWSHED_INLINE PairedBodies(const View& s, const PairGroup& g)
       : a(s.bodies[g.first]), b(s.bodies[g.second]) {
     for (int i = 0; i < 3; ++i) {
-      centre_offset[i] = b.position[i] - a.position[i];
+      center_offset[i] = b.position[i] - a.position[i];
       relative_velocity[i] = b.velocity[i] - a.velocity[i];
     }
     for (int i = 0; i < 2; ++i) {
-      centre_offset[i] += g.shift[i] * s.period[i];
+      center_offset[i] += g.shift[i] * s.period[i];
       relative_velocity[i] += g.shift[i] * s.period_growth[i];
     }
   }
@@ -64,7 +64,7 @@ SNOWSHED_INLINE void group_forces(const View& s, std::size_t group) {
   const PairedBodies pair(s, g);
   const BondLaw law{s.normal_stiffness, s.shear_stiffness, s.tension_limit, s.shear_limit,
                     s.friction};
-  const QuadVec centre_offset = broadcast_vec(pair.centre_offset),
+  const QuadVec center_offset = broadcast_vec(pair.center_offset),
                 relative_velocity = broadcast_vec(pair.relative_velocity);
   const QuadVec spin_a = broadcast_vec(pair.a.spin), spin_b = broadcast_vec(pair.b.spin);
   const Quad dt = broadcast<Quad>(s.time_step);
@@ -74,7 +74,7 @@ SNOWSHED_INLINE void group_forces(const View& s, std::size_t group) {
   for (std::size_t p = g.begin; p < g.end; p += pairs_at_once) {
     const QuadVec from_a = rotated(pair.a.rotation, load_vec(s.ax, s.ay, s.az, p));
     const QuadVec from_b = rotated(pair.b.rotation, load_vec(s.bx, s.by, s.bz, p));
-    const QuadVec offset = centre_offset + from_b - from_a;
+    const QuadVec offset = center_offset + from_b - from_a;
     const Quad square = dot(offset, offset);
     QuadMask bonded = load_mask(s.bonded + p);
     const QuadMask near = square < s.diameter * s.diameter;
@@ -85,7 +85,7 @@ SNOWSHED_INLINE void group_forces(const View& s, std::size_t group) {
     const Quad distance = sqrt(max(square, broadcast<Quad>(1e-60)));
     const QuadVec normal = Quad(1.0 / distance) * offset;
     const QuadVec arm_a = from_a + Quad(0.5 * distance) * normal;
-    const QuadVec arm_b = arm_a - centre_offset;
+    const QuadVec arm_b = arm_a - center_offset;
     const QuadVec velocity = relative_velocity + cross(spin_b, arm_b) - cross(spin_a, arm_a);
     const Quad along = dot(velocity, normal);
     const ContactMotion<Quad> motion{Quad(distance - s.diameter), Quad(dt * along), normal,
@@ -118,4 +118,4 @@ SNOWSHED_INLINE void group_forces(const View& s, std::size_t group) {
   r.shear_breaks = count_of(shear);
 }
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

@@ -8,7 +8,7 @@
 #include "snowshed/methods/mpm/kernels/chunk.hpp"
 #include "snowshed/methods/mpm/kernels/node.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::mpm)
 
 template <class T, int D, Basis basis>
 class AverageStencil {
@@ -96,4 +96,4 @@ void scatter_average(const ParticleView<T>& p, int first, int count, const Avera
   }
 }
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

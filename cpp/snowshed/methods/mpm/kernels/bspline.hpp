@@ -4,7 +4,7 @@
 #include "snowshed/core/simd_pack.hpp"
 #include "snowshed/methods/mpm/settings.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::mpm)
 
 /// Weights and derivatives (per cell) at the nodes a particle touches along one direction; f in
 /// [0, 1) is the particle's fraction past its lowest node plus base_offset.
@@ -55,4 +55,4 @@ SNOWSHED_INLINE void weights_of_steps(const V (&w)[S], V (&r)[S - 1]) {
   for (int k = S - 3; k > 0; --k) r[k] = r[k + 1] + w[k + 1];
 }
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

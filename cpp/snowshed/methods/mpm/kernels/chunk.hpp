@@ -5,7 +5,7 @@
 #include "snowshed/core/simd_pack.hpp"
 #include "snowshed/methods/mpm/kernel_api.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::mpm)
 
 /// Positions of the nodes of a chunk's particles in the tile.
 template <class T, int D, Basis basis>
@@ -53,4 +53,4 @@ struct LaneWeights {
   SNOWSHED_INLINE T operator()(int d, int k, int lane) const { return weight[d][k][lane]; }
 };
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

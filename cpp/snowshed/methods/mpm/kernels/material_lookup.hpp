@@ -6,7 +6,7 @@
 #include "snowshed/material/elastic.hpp"
 #include "snowshed/methods/mpm/kernel_api.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::mpm)
 
 template <template <class> class Law, class C>
 struct ChunkMaterial {
@@ -16,7 +16,7 @@ struct ChunkMaterial {
 };
 
 template <class C>
-SNOWSHED_INLINE ChunkMaterial<Elastic, C> elastic_snow(const MaterialConstants<C>& k) {
+SNOWSHED_INLINE ChunkMaterial<material::Elastic, C> elastic_snow(const MaterialConstants<C>& k) {
   return {{{k.lambda, k.mu, k.bulk}}, k.specific_volume};
 }
 template <template <class> class Law, class C>
@@ -66,7 +66,7 @@ struct MaterialPerParticle {
                                          gather_constants(own, &K::specific_volume),
                                          {},
                                          {}};
-    if constexpr (std::is_same_v<Law<T>, RegularisedCamClay<T>>) {
+    if constexpr (std::is_same_v<Law<T>, material::RegularisedCamClay<T>>) {
       lanes.softening = gather_constants(own, &K::softening);
       lanes.band_begin = gather_constants(own, &K::band_begin);
     }
@@ -83,4 +83,4 @@ struct MaterialPerParticle {
   const MaterialConstants<T>* snows;
 };
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

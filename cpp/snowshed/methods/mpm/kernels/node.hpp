@@ -6,7 +6,7 @@
 #include "snowshed/core/simd_pack.hpp"
 #include "snowshed/methods/mpm/kernel_api.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::mpm)
 
 template <class T>
 struct NodeTypes;
@@ -150,4 +150,4 @@ SNOWSHED_INLINE Node<T> scaled(T weight, const Node<T>& node) {
   return r;
 }
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

@@ -6,7 +6,7 @@
 #include "snowshed/methods/mpm/kernels/node.hpp"
 #include "snowshed/methods/mpm/kernels/tile.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::mpm)
 
 template <class T, int D, Basis basis, bool takes_change, bool energy>
 struct NodeKernels {
@@ -220,8 +220,8 @@ struct NodeKernels {
 
   /// Returns the share of its stored impulse that a contact exerts as friction in a step. It is 1
   /// after the snow has left.
-  static T drained_share(const StepParameters<T>& step, const Contact<T>& c, T sliding_speed) {
-    return c.acts ? drain_rate(step, sliding_speed) : T(1);
+  static T decayed_share(const StepParameters<T>& step, const Contact<T>& c, T sliding_speed) {
+    return c.acts ? decay_share(step, sliding_speed) : T(1);
   }
 
   /// Returns the largest pull that a contact can cancel in a step, as a negative push (N s). A
@@ -232,18 +232,20 @@ struct NodeKernels {
   }
 
   /// Sticky, slip, separate (thesis 1.2.3), with Coulomb friction on the running mean of the net
-  /// normal impulse. Each contact has a store of normal impulse: pushes on the obstacle fill it,
-  /// pulls empty it, and it drains at the rate 1/(friction memory). The friction of a step follows
-  /// from the impulse that drains in it, so that every newton-second of net push counts once. The
-  /// usual rule takes each step's push at once. It overestimates the friction of a slab that
-  /// vibrates on its panel, because slip cancels the pulls but forgets them. The slab may even be
-  /// held where it should slide. Slip cancels any pull: its store may become negative. A negative
-  /// store causes no friction, and later pushes must first fill it. Separate releases snow when the
-  /// pull exceeds the store.
+  /// normal impulse. Each contact stores a normal impulse: pushes on the obstacle add to it, pulls
+  /// subtract from it, and it decays at the rate 1/(friction memory). The friction of a step
+  /// follows from the part that decays in it, so that every newton-second of net push counts once.
+  /// The usual rule applies the friction of each step's push at once. It overestimates the friction
+  /// of a slab that vibrates on its panel, because slip cancels the pulls but forgets them. The
+  /// slab may even be held where it should slide.
   ///
-  /// The store stays at the node while the snow moves on, so friction must act on fast snow before
-  /// it has left. The store therefore drains within the time in which the snow slides over a given
-  /// part of a cell, or sooner. It drains at once if the snow separates.
+  /// Slip cancels any pull, so its stored impulse may become negative. It then causes no friction
+  /// until later pushes have made it positive. Separate releases snow when the pull exceeds the
+  /// stored impulse.
+  ///
+  /// The stored impulse stays at the node while the snow moves on, so friction must act on fast
+  /// snow before it has left. The impulse therefore decays within the time in which the snow slides
+  /// over a given part of a cell, or sooner. It decays at once if the snow separates.
   static void apply(const StepParameters<T>& step, Contact<T>& c, const ContactLaw& law,
                     const T* sum, Half& node, NodeStats& stats) {
     const T mass = sum[0];
@@ -262,9 +264,9 @@ struct NodeKernels {
       }
       return;
     }
-    const T drained =
-        c.normal_impulse * drained_share(step, c, sliding_speed(c, normal_speed, free));
-    const T remaining_impulse = c.normal_impulse - drained;
+    const T decayed =
+        c.normal_impulse * decayed_share(step, c, sliding_speed(c, normal_speed, free));
+    const T remaining_impulse = c.normal_impulse - decayed;
     const T min_impulse = c.acts ? min_push(c, remaining_impulse) : T(0);
     T push = c.acts ? -mass * normal_speed : T(0);
     const bool lets_go = !c.acts || push < min_impulse;
@@ -280,7 +282,7 @@ struct NodeKernels {
     }
     const T slip_impulse = mass * std::sqrt(slip_squared);
     const T friction =
-        T(law.friction) * step.friction_shares[c.obstacle] * (drained > T(0) ? drained : T(0));
+        T(law.friction) * step.friction_shares[c.obstacle] * (decayed > T(0) ? decayed : T(0));
     const T slip_share = slip_impulse > friction ? friction / slip_impulse : T(1);
     for (int d = 0; d < D; ++d) node[d] = after[d] = pushed[d] - slip_share * slip[d];
     if constexpr (energy) {
@@ -297,4 +299,4 @@ struct NodeKernels {
   }
 };
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

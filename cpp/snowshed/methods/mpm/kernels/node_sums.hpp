@@ -4,7 +4,7 @@
 
 #include "snowshed/methods/mpm/kernels/node.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::mpm)
 
 /// Returns the same address, kept in a register. Nodes are then addressed by constant offsets from
 /// it.
@@ -117,4 +117,4 @@ SNOWSHED_INLINE void scatter_nodes(const typename Rule::Scattering& weights, int
   }
 }
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

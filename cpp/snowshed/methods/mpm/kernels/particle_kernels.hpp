@@ -11,13 +11,13 @@
 #include "snowshed/methods/mpm/kernels/tile.hpp"
 #include "snowshed/methods/mpm/kernels/transfer_rules.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::mpm)
 
 template <class T, int D, Transfer transfer, Basis basis, class Snows, bool energy>
 struct ParticleKernels {
   using Snow = typename Snows::Chunk;
   using V = SimdPack<T>;
-  using Tensor = Sym<V, D>;
+  using Tensor = material::Sym<V, D>;
   using Rule = TransferRule<T, D, transfer, basis>;
   using Tile = TileSums<T, D, basis>;
   static constexpr int W = simd_width<T>;
@@ -194,28 +194,28 @@ struct ParticleKernels {
   /// returned to the yield surface, unless this has been done (`committed`).
   SNOWSHED_INLINE Stress stress(State& s, const Snow& snow, int n, bool committed) const {
     const auto& el = snow.law.elastic;
-    Tensor e = hencky_strain(s.be_minus_identity);
-    const V volumetric = trace(e);
+    Tensor e = material::hencky_strain(s.be_minus_identity);
+    const V volumetric = material::trace(e);
     V third = volumetric * (T(1) / T(D));
     Tensor dev = e;
     for (int k = 0; k < D; ++k) dev.c[k] -= third;
-    const V dev_squared = norm_squared(dev);
+    const V dev_squared = material::norm_squared(dev);
     V shear_ratio = broadcast<V>(T(1)), p_now = -el.bulk * volumetric;
     if constexpr (Snow::plastic) {
       const V q_trial = sqrt(V(T(6) * dev_squared)) * el.mu;  // q = sqrt(3/2 s:s)
-      PQ<V> pq{p_now, q_trial};
+      material::PQ<V> pq{p_now, q_trial};
       if (!committed && snow.law.return_map(pq, s.plastic, step.overstress)) {
         const auto sheared = q_trial > T(0);
         shear_ratio = select(sheared, V(pq.q / select(sheared, q_trial, shear_ratio)), shear_ratio);
         third = pq.p * (T(-1) / (el.bulk * T(D)));
         for (int k = 0; k < Tensor::size; ++k) e.c[k] = shear_ratio * dev.c[k];
         for (int k = 0; k < D; ++k) e.c[k] += third;
-        const Tensor returned = cauchy_green_minus_identity(e);
+        const Tensor returned = material::cauchy_green_minus_identity(e);
         const auto changed = (pq.p != p_now) | (pq.q != q_trial);
         for (int k = 0; k < Tensor::size; ++k)
           s.be_minus_identity.c[k] = select(changed, returned.c[k], s.be_minus_identity.c[k]);
       }
-      if constexpr (energy) record_energy(PQ<V>{p_now, q_trial}, pq, s.mass, snow, n);
+      if constexpr (energy) record_energy(material::PQ<V>{p_now, q_trial}, pq, s.mass, snow, n);
       p_now = pq.p;
     }
     Stress r;
@@ -229,8 +229,8 @@ struct ParticleKernels {
   /// Records the elastic energy p^2/(2 K_d) + q^2/(6 mu) per initial volume, and the plastic work
   /// of the return, stress times plastic strain. (The loss of elastic energy from the trial would
   /// also contain the square of each step's plastic strain. This error adds up over the steps.)
-  void record_energy(const PQ<V>& trial, const PQ<V>& now, const V& mass, const Snow& snow,
-                     int n) const {
+  void record_energy(const material::PQ<V>& trial, const material::PQ<V>& now, const V& mass,
+                     const Snow& snow, int n) const {
     const auto& el = snow.law.elastic;
     for (int l = 0; l < n; ++l) {
       const double volume = double(mass[l]) * double(snow.specific_volume[l]);
@@ -415,4 +415,4 @@ struct ParticleKernels {
   }
 };
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

@@ -4,13 +4,14 @@
 #include "snowshed/methods/mpm/kernels/node_kernels.hpp"
 #include "snowshed/methods/mpm/kernels/particle_kernels.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::mpm)
 
 template <class T, int D, Transfer transfer, Basis basis, class Snows, bool energy>
 Kernels<T> kernels_for() {
   using P = ParticleKernels<T, D, transfer, basis, Snows, energy>;
   // Motion is the same for any snow.
-  using Motion = ParticleKernels<T, D, transfer, basis, SingleMaterial<T, Elastic>, false>;
+  using Motion =
+      ParticleKernels<T, D, transfer, basis, SingleMaterial<T, material::Elastic>, false>;
   using G = NodeKernels<T, D, basis, transfer != Transfer::apic, energy>;
   Kernels<T> kernels{&P::scatter, &P::g2p2g,       nullptr,    &Motion::probe,    &G::gather,
                      &G::update,  &G::update_free, &G::finish, &G::carried_motion};
@@ -19,23 +20,24 @@ Kernels<T> kernels_for() {
   return kernels;
 }
 
-/// `Law` is the Cam-Clay law of all kernels except the checked ones.
+/// `Law` is the Cam-Clay law. The kernels for checks always use RegularisedCamClay.
 template <class T, int D, Transfer transfer, Basis basis, template <class> class Law>
 Kernels<T> with_law(const KernelChoice& c) {
   if (c.checks())
-    return kernels_for<T, D, transfer, basis, MaterialPerParticle<T, RegularisedCamClay>, true>();
+    return kernels_for<T, D, transfer, basis, MaterialPerParticle<T, material::RegularisedCamClay>,
+                       true>();
   if (c.material_per_particle())
     return kernels_for<T, D, transfer, basis, MaterialPerParticle<T, Law>, false>();
-  return c.model == SnowModel::cam_clay
+  return c.model == material::SnowModel::cam_clay
              ? kernels_for<T, D, transfer, basis, SingleMaterial<T, Law>, false>()
-             : kernels_for<T, D, transfer, basis, SingleMaterial<T, Elastic>, false>();
+             : kernels_for<T, D, transfer, basis, SingleMaterial<T, material::Elastic>, false>();
 }
 template <class T, int D, Transfer transfer, Basis basis>
 Kernels<T> with_snow(const KernelChoice& c) {
   if constexpr (transfer == Transfer::affine_flip)
-    return with_law<T, D, transfer, basis, RegularisedCamClay>(c);
+    return with_law<T, D, transfer, basis, material::RegularisedCamClay>(c);
   else
-    return with_law<T, D, transfer, basis, CamClay>(c);
+    return with_law<T, D, transfer, basis, material::CamClay>(c);
 }
 template <class T, int D, Transfer transfer>
 Kernels<T> with_basis(const KernelChoice& c) {
@@ -60,4 +62,4 @@ Kernels<float> float_3d(const KernelChoice&);
 Kernels<double> double_2d(const KernelChoice&);
 Kernels<double> double_3d(const KernelChoice&);
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

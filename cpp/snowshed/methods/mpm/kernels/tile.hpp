@@ -8,7 +8,7 @@
 #include "snowshed/core/variant.hpp"
 #include "snowshed/methods/mpm/kernel_api.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::mpm)
 
 /// The nodes [begin, end) of the block at `offset` (-1, 0, 1) that the tile covers along one
 /// direction. Node n of the block is node n + shift of the tile.
@@ -98,4 +98,4 @@ class TileSums {
   int cleared_;
 };
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

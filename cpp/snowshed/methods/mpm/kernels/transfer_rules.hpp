@@ -13,7 +13,7 @@
 #include "snowshed/methods/mpm/kernels/chunk.hpp"
 #include "snowshed/methods/mpm/kernels/node_sums.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(mpm)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::mpm)
 
 /// Values of half a node.
 inline constexpr int half_node = node_values / 2;
@@ -294,4 +294,4 @@ struct RuleOf<T, D, Transfer::affine_flip, basis> {
 template <class T, int D, Transfer transfer, Basis basis>
 using TransferRule = typename RuleOf<T, D, transfer, basis>::type;
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

@@ -4,13 +4,13 @@
 #include "snowshed/methods/mps/kernels/search.hpp"
 #include "snowshed/methods/mps/kernels/weights.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(mps)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::mps)
 namespace {
 
 template <int D>
 struct Rows {
-  static std::size_t search(const SearchedPoints<D>& points, std::uint32_t i, std::uint32_t begin,
-                            std::uint32_t end, std::uint32_t* neighbours) {
+  static std::size_t search(const particles::SearchedPoints<D>& points, std::uint32_t i,
+                            std::uint32_t begin, std::uint32_t end, std::uint32_t* neighbours) {
     return find_near<D>(points, i, begin, end, neighbours);
   }
   static void weigh(const PairRows& rows, const float* const* offset, float reach, float* weight,
@@ -90,4 +90,4 @@ extern const Kernels<3> kernel_table_3d;
 const Kernels<2> kernel_table_2d = Rows<2>::table;
 const Kernels<3> kernel_table_3d = Rows<3>::table;
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

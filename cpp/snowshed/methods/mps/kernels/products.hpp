@@ -3,7 +3,7 @@
 
 #include "snowshed/methods/mps/kernels/row_packs.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(mps)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::mps)
 
 /// The sum of weight x over the neighbours of a row. Rows are short and their unknowns far apart in
 /// memory, so gathering lanes costs more than four independent sums.
@@ -20,6 +20,9 @@ SNOWSHED_INLINE T sum_row(const PairRows& rows, const float* weight, const T* x,
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
+/// q[row] = block[row] p[row] - sum of coupling * p[neighbour]; 0 if the block begins with zero.
+/// `p` and `q` have a vector per particle, `block` a matrix by columns, and `coupling` a value per
+/// pair.
 template <int D>
 SNOWSHED_INLINE void apply_row_to_velocities(const PairRows& rows, const float* coupling,
                                              const double* block, const double* p, double* q,
@@ -48,4 +51,4 @@ SNOWSHED_INLINE void apply_row_to_velocities(const PairRows& rows, const float* 
   for (int d = 0; d < D; ++d) q[row * D + d] = sum[0][d] + sum[1][d];
 }
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

@@ -1,9 +1,14 @@
-// Gradients of pressures and velocities, approaches, and shear rates midway between particles.
+// Row sums over neighbours: gradients of pressure and velocity, approach speeds, and the shear rate
+// at the midpoint of each pair.
+//
+// A row is a particle. `offset` (D arrays), `slope` and `rate` have a value per pair. `value` and
+// `share` have a value per particle, `velocity` and `sum` a vector, and `gradient` a matrix by
+// columns, whose rows are components of the velocity.
 #pragma once
 
 #include "snowshed/methods/mps/kernels/row_packs.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(mps)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::mps)
 
 /// Separations of some pairs, and the change of velocity from the particle to its neighbours.
 template <int D>
@@ -24,6 +29,7 @@ struct PairMotion {
   }
 };
 
+/// gradient[row] = sum of slope * change x separation.
 template <int D>
 SNOWSHED_INLINE void sum_row_gradients(const PairRows& rows, const float* const* offset,
                                        const float* slope, const double* velocity, double* gradient,
@@ -44,6 +50,8 @@ SNOWSHED_INLINE void sum_row_gradients(const PairRows& rows, const float* const*
   for (int k = 0; k < D * D; ++k) gradient[row * D * D + k] = sum_lanes(sum[k]);
 }
 
+/// sum[row] = sum of slope * (value[neighbour] + base) * separation; without values, sum of
+/// slope * separation.
 template <int D, bool with_values>
 SNOWSHED_INLINE void sum_row_separations(const PairRows& rows, const float* const* offset,
                                          const float* slope, const double* value, double base,
@@ -60,6 +68,8 @@ SNOWSHED_INLINE void sum_row_separations(const PairRows& rows, const float* cons
   for (int d = 0; d < D; ++d) sum[row * D + std::size_t(d)] = sum_lanes(total[d]);
 }
 
+/// sum[row] = sum of share[neighbour] * max(0, -change . e) * e over the neighbours nearer than
+/// `limit`; e is the direction of the separation.
 template <int D>
 SNOWSHED_INLINE void sum_row_approaches(const PairRows& rows, const float* const* offset,
                                         const double* velocity, const double* share, double limit,
@@ -84,6 +94,8 @@ SNOWSHED_INLINE void sum_row_approaches(const PairRows& rows, const float* const
   for (int d = 0; d < D; ++d) sum[row * D + std::size_t(d)] = sum_lanes(total[d]);
 }
 
+/// rate[pair] = |G + G^T| / sqrt(2), at least for the pairs whose neighbour has the larger index. G
+/// is the mean of both gradients, except that along the separation it is the change of velocity.
 template <int D>
 SNOWSHED_INLINE void find_pair_rates(const PairRows& rows, const float* const* offset,
                                      const double* velocity, const double* gradient, float* rate,
@@ -112,7 +124,7 @@ SNOWSHED_INLINE void find_pair_rates(const PairRows& rows, const float* const* o
     const V inverse = 1.0 / max(square, broadcast<V>(1e-30));
     SNOWSHED_UNROLL
     for (int a = 0; a < D; ++a) along[a] *= inverse;
-    V sum{};  // half of the square of the gradient and its transpose
+    V sum{};  // |G + G^T|^2 / 2
     SNOWSHED_UNROLL
     for (int a = 0; a < D; ++a) {
       const V diagonal = mean[a * D + a] + along[a] * pair.separation[a];
@@ -128,4 +140,4 @@ SNOWSHED_INLINE void find_pair_rates(const PairRows& rows, const float* const* o
   });
 }
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

@@ -4,7 +4,7 @@
 #include "snowshed/core/simd_pack.hpp"
 #include "snowshed/methods/mps/kernel_api.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(mps)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::mps)
 
 /// Indices for the lanes of V.
 template <class V>
@@ -86,4 +86,4 @@ SNOWSHED_INLINE Scalar<V> sum_lanes(const V& v) {
                        [](const auto& a, const auto& b) SNOWSHED_INLINE_LAMBDA { return a + b; });
 }
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

@@ -4,7 +4,7 @@
 #include "snowshed/core/simd_pack.hpp"
 #include "snowshed/particles/neighbour_search.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(mps)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::mps)
 
 /// Returns a bit for each lane of a mask of doubles; the first lane has the lowest bit.
 SNOWSHED_INLINE unsigned lane_bits(const SimdMask<double>& mask) {
@@ -19,9 +19,9 @@ SNOWSHED_INLINE unsigned lane_bits(const SimdMask<double>& mask) {
 #endif
 }
 
-/// Writes `from` plus the position of each set bit, in order; returns their number. Values after
-/// the written ones may change.
-SNOWSHED_INLINE std::size_t write_places(unsigned bits, std::uint32_t from, std::uint32_t* to) {
+/// Writes `from` plus the index of each set bit, in ascending order; returns their number. It may
+/// change eight values of `to`.
+SNOWSHED_INLINE std::size_t write_set_bits(unsigned bits, std::uint32_t from, std::uint32_t* to) {
 #if defined(__AVX512VL__)
   const __m256i all =
       _mm256_add_epi32(_mm256_set1_epi32(int(from)), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
@@ -36,12 +36,12 @@ SNOWSHED_INLINE std::size_t write_places(unsigned bits, std::uint32_t from, std:
 }
 
 template <int D>
-SNOWSHED_INLINE std::size_t find_near(const SearchedPoints<D>& points, std::uint32_t i,
+SNOWSHED_INLINE std::size_t find_near(const particles::SearchedPoints<D>& points, std::uint32_t i,
                                       std::uint32_t begin, std::uint32_t end,
                                       std::uint32_t* neighbours) {
   using V = SimdPack<double>;
   constexpr std::uint32_t lanes = simd_width<double>;
-  static_assert(lanes <= SearchedPoints<D>::spare);
+  static_assert(lanes <= particles::SearchedPoints<D>::spare);
   const double radius2 = points.radius * points.radius, period = points.period;
   std::size_t n = 0;
   for (std::uint32_t j = begin; j < end; j += lanes) {
@@ -57,9 +57,9 @@ SNOWSHED_INLINE std::size_t find_near(const SearchedPoints<D>& points, std::uint
     unsigned bits = lane_bits(square < radius2);
     if (end - j < lanes) bits &= (1u << (end - j)) - 1;
     if (i - j < lanes) bits &= ~(1u << (i - j));
-    n += write_places(bits, j, neighbours + n);
+    n += write_set_bits(bits, j, neighbours + n);
   }
   return n;
 }
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

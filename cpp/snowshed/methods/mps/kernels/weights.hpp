@@ -1,10 +1,14 @@
-// Weights of pairs, and their sums.
+// Weights of pairs, and their sums over a row, which is a particle. `offset` (D arrays), `weight`,
+// `slope` and `corrected` have a value per pair; `correction` has an upper half by rows per
+// particle.
 #pragma once
 
 #include "snowshed/methods/mps/kernels/row_packs.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(mps)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::mps)
 
+/// weight[pair] = w(r) = reach/r - 1, slope[pair] = w(r)/r^2; `sum` and `filling` are the row's
+/// sums of w and of filling_weight.
 template <int D>
 SNOWSHED_INLINE void weigh_row(const PairRows& rows, const float* const* offset, float reach,
                                float* weight, float* slope, float& sum, float& filling,
@@ -32,6 +36,7 @@ SNOWSHED_INLINE void weigh_row(const PairRows& rows, const float* const* offset,
   filling = sum_lanes(filled);
 }
 
+/// The row's sums of slope * r x r, weight * r x r and weight * r.
 template <int D>
 SNOWSHED_INLINE void sum_row_moments(const PairRows& rows, const float* const* offset,
                                      const float* weight, const float* slope,
@@ -65,6 +70,8 @@ SNOWSHED_INLINE void sum_row_moments(const PairRows& rows, const float* const* o
   for (int d = 0; d < D; ++d) moments.side[d] = sum_lanes(side[d]);
 }
 
+/// corrected[pair] = weight[pair] * clamp(e . B e, 0.5, 2); e is the direction of the separation,
+/// and B the mean of both particles' corrections.
 template <int D>
 SNOWSHED_INLINE void find_isotropic_weights(const PairRows& rows, const float* const* offset,
                                             const float* weight, const float* correction,
@@ -92,4 +99,4 @@ SNOWSHED_INLINE void find_isotropic_weights(const PairRows& rows, const float* c
   });
 }
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

@@ -3,7 +3,7 @@
 
 #include "snowshed/methods/slide/kernels/places.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(slide)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::slide)
 
 /// The force of a bond is its modulus times its strain times its contact area, h L / sqrt 3.
 SNOWSHED_INLINE PackMask stretch_lanes(const View& s, const Lanes& l) {
@@ -36,4 +36,4 @@ SNOWSHED_INLINE Quad pull_on(const View& s, std::ptrdiff_t i) {
   return sum;
 }
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

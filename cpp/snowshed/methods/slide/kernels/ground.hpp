@@ -3,7 +3,7 @@
 
 #include "snowshed/methods/slide/kernels/places.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(slide)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::slide)
 
 /// Draws a velocity toward that of the snow around, implicitly (artificial viscosity of SamosAT).
 SNOWSHED_INLINE PackVec mixed(const View& s, const PackVec& u, const PackVec& around,
@@ -68,4 +68,4 @@ SNOWSHED_INLINE void ground_batch(const View& s, std::ptrdiff_t begin, std::ptrd
   for (int k = 0; k < packs; ++k) load_ground(s, lanes_of(begin, end, k), ahead[k]);
 }
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

@@ -7,7 +7,7 @@
 #include "snowshed/methods/slide/kernels/node_sums.hpp"
 #include "snowshed/methods/slide/kernels/surface_pressure.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(slide)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::slide)
 namespace {
 
 void locate(const View& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -71,4 +71,4 @@ const Kernels kernel_table{
     &stretch_bonds, &advance, &sum_row_on_nodes, &raise_mean_speed_of_row, &thickness,
     &bounds};
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

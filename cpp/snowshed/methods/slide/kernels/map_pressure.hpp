@@ -3,7 +3,7 @@
 
 #include "snowshed/methods/slide/kernels/neighbours.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(slide)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::slide)
 
 template <int count>
 SNOWSHED_INLINE void map_pressure_on(const View& s, double factor, std::uint32_t first,
@@ -36,4 +36,4 @@ SNOWSHED_INLINE void map_pressure_row(const View& s, int row) {
       });
 }
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

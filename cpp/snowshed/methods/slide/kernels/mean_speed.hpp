@@ -1,19 +1,21 @@
 // The speed of the snow around a node, for the peaks of the default mode.
 //
-// Where snow is thin, the velocity at a node comes from few particles. It depends on their places
-// in the node's cells, which differ on another grid, and beyond the last particle it falls to zero
-// from one node to the next. The peak is therefore that of a mean over the nodes around, with
-// binomial weights (1 4 6 4 1)/16 along both axes: nearly a Gaussian as wide as a cell, which has
-// no direction. This speed fades where the mean mass m around falls below a share m_0 of a
-// particle's mass: with the mean momentum q it is |q| m / (m^2 + m_0^2). A node beside the snow has
-// such a fading speed, too. When only nodes with snow had such a speed, the choice of nodes at the
-// rim depended on the direction of the grid: a turned slide changed its peak speeds by up to 1.2
-// (L1) and 1.8 (L2) times the error of interpolation, more than the verification case allows.
+// Where snow is thin, the velocity at a node comes from few particles. It depends on where they lie
+// in the cell, so it changes with the grid, and it drops to zero beyond the last particle. The
+// recorded peak is therefore that of a mean over neighbouring nodes, with binomial weights
+// (1 4 6 4 1)/16 along both axes: nearly a Gaussian as wide as a cell, which is isotropic.
+//
+// This speed fades where the mean mass m falls below a share m_0 of a particle's mass: with the
+// mean momentum q it is |q| m / (m^2 + m_0^2).
+//
+// Nodes beside the snow have a fading speed, too. Otherwise the outermost nodes depend on the
+// orientation of the grid, and a rotated slide changes its peak speeds by up to 1.2 (L1) and 1.8
+// (L2) times the interpolation error, more than the verification case allows.
 #pragma once
 
 #include "snowshed/methods/slide/kernels/node_sums.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(slide)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::slide)
 
 /// The mean over five values with binomial weights.
 SNOWSHED_INLINE Quad binomial_mean(const Quad& a, const Quad& b, const Quad& c, const Quad& d,
@@ -53,4 +55,4 @@ SNOWSHED_INLINE void raise_mean_speed(const View& s, int row) {
   }
 }
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

@@ -3,7 +3,7 @@
 
 #include "snowshed/methods/slide/kernels/bond_forces.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(slide)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::slide)
 
 inline constexpr double min_slide_speed = 1e-6;  // m/s
 inline constexpr double at_rest = 2e-15;         // m/s, above the rounding error of a root
@@ -119,4 +119,4 @@ SNOWSHED_INLINE double move_batch(const View& s, std::ptrdiff_t begin, std::ptrd
   return sum_of_lanes(kinetic);
 }
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

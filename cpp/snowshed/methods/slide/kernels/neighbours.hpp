@@ -7,7 +7,7 @@
 #include "snowshed/core/angles.hpp"
 #include "snowshed/methods/slide/kernels/places.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(slide)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::slide)
 
 /// The number of each lane.
 template <class V>
@@ -118,4 +118,4 @@ SNOWSHED_INLINE void for_each_neighbour(const Neighbourhood& around, const Add& 
     for (std::uint32_t e = around[k].begin; e < around[k].end; e += width) add(e, around[k].end);
 }
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

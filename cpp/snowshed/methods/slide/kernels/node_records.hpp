@@ -4,7 +4,7 @@
 
 #include "snowshed/core/simd_quad.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(slide)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::slide)
 
 /// A pack holds one value of four particles, or of eight if a register has room for them. It has at
 /// least as many lanes as a record has values, because records are taken apart into packs.
@@ -165,4 +165,4 @@ SNOWSHED_INLINE PackRecord records_of(const double* nodes, int columns, const Pa
 }
 #endif
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

@@ -4,7 +4,7 @@
 
 #include "snowshed/methods/slide/kernels/places.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(slide)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::slide)
 
 /// The two nodes on one side of a cell.
 struct NodePair {
@@ -83,4 +83,4 @@ SNOWSHED_INLINE void sum_on_nodes(const View& s, int row) {
   if (has_north) finish_nodes(s, row + 1);
 }
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

@@ -5,7 +5,7 @@
 #include "snowshed/methods/slide/kernel_api.hpp"
 #include "snowshed/methods/slide/kernels/node_records.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(slide)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::slide)
 
 using PackVec = SimdVec<Pack>;
 
@@ -176,4 +176,4 @@ SNOWSHED_INLINE void store_place(const View& s, const Lanes& l, const PackPlace&
   l.store(s.nx, s.ny, s.nz, normal);
 }
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

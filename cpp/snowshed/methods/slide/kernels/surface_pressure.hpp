@@ -12,7 +12,7 @@
 #include "snowshed/core/simd_math.hpp"
 #include "snowshed/methods/slide/kernels/neighbours.hpp"
 
-SNOWSHED_METHOD_VARIANT_BEGIN(slide)
+SNOWSHED_MODULE_VARIANT_BEGIN(methods::slide)
 
 /// See `few_neighbours` in kernel_api.hpp.
 template <class V>
@@ -99,4 +99,4 @@ SNOWSHED_INLINE void surface_pressure_row(const View& s, int row) {
       });
 }
 
-SNOWSHED_METHOD_VARIANT_END
+SNOWSHED_MODULE_VARIANT_END

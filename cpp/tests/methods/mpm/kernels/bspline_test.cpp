@@ -4,7 +4,7 @@
 
 #include "snowshed/methods/mpm/kernel_api.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
 template <Basis B, class S>
@@ -42,7 +42,7 @@ TYPED_TEST(BSplineWeights, AddUpToOne) {
   }
 }
 
-TYPED_TEST(BSplineWeights, HaveGradientsThatAddUpToZero) {
+TYPED_TEST(BSplineWeights, GradientsAddUpToZero) {
   for (double f : fractions) {
     this->at(f);
     double sum = 0;
@@ -64,7 +64,7 @@ TYPED_TEST(BSplineWeights, ReproduceLinearFields) {
   }
 }
 
-TYPED_TEST(BSplineWeights, OfStepsMakeTheSameSums) {
+TYPED_TEST(BSplineWeights, WeightsOfStepsGiveTheSameSums) {
   const double values[] = {3.0, -1.0, 4.0, -1.5};
   for (double f : fractions) {
     this->at(f);
@@ -87,7 +87,7 @@ TYPED_TEST(BSplineWeights, OfStepsMakeTheSameSums) {
   }
 }
 
-TYPED_TEST(BSplineWeights, HaveTheInertiaOfApic) {
+TYPED_TEST(BSplineWeights, HaveTheSecondMomentOfApic) {
   // sum w (x_i - x)^2 = 1/4 (quadratic), 1/3 (cubic): the D_p that APIC relies on.
   for (double f : fractions) {
     this->at(f);
@@ -99,7 +99,7 @@ TYPED_TEST(BSplineWeights, HaveTheInertiaOfApic) {
   }
 }
 
-TYPED_TEST(BSplineWeights, HaveTheirDerivativesAsGradients) {
+TYPED_TEST(BSplineWeights, GradientsAreTheDerivatives) {
   constexpr int n = support(TypeParam::basis);
   for (double f : {0.01, 0.3, 0.5, 0.99}) {
     double above[n], below[n], unused[n];
@@ -112,7 +112,7 @@ TYPED_TEST(BSplineWeights, HaveTheirDerivativesAsGradients) {
   }
 }
 
-TYPED_TEST(BSplineWeights, PassSmoothlyFromCellToCell) {
+TYPED_TEST(BSplineWeights, AreContinuousAcrossCells) {
   constexpr int n = support(TypeParam::basis);
   typename TypeParam::Scalar w[n], g[n];
   BSpline<TypeParam::basis>::evaluate(typename TypeParam::Scalar(1), w, g);
@@ -124,4 +124,4 @@ TYPED_TEST(BSplineWeights, PassSmoothlyFromCellToCell) {
 }
 
 }  // namespace
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

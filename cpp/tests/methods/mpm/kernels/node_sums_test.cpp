@@ -6,7 +6,7 @@
 #include "snowshed/core/random.hpp"
 #include "snowshed/methods/mpm/kernels/transfer_rules.hpp"
 
-namespace snowshed::mpm {
+namespace snowshed::methods::mpm {
 namespace {
 
 template <class T, int dimension, Transfer transfer, Basis b>
@@ -20,16 +20,16 @@ struct SumsCase {
 
 /// A chunk of particles anywhere in a block, and a tile of nodes around it.
 template <class C>
-class NodeSumsOfChunk : public testing::Test {
+class NodeSumsTest : public testing::Test {
  protected:
   using T = typename C::Scalar;
   static constexpr int D = C::D, S = support(C::basis), N = tile_edge<D>(C::basis);
   static constexpr int W = simd_width<T>;
-  /// Number of a node's values that particles take. Further values repeat these.
+  /// Number of values per node that particles read. Further values repeat these.
   static constexpr int taken = C::Rule::taken == Halves::first ? half_node : node_values;
   static constexpr double epsilon = std::numeric_limits<T>::epsilon();
 
-  NodeSumsOfChunk() : tile(tile_nodes<D>(C::basis) * node_values) {
+  NodeSumsTest() : tile(tile_nodes<D>(C::basis) * node_values) {
     Random random(5);
     for (std::size_t i = 0; i < tile.size(); ++i) {
       const bool repeated = i % node_values >= taken;
@@ -81,9 +81,9 @@ using SumsCases = testing::Types<SumsCase<float, 2, Transfer::flip, Basis::quadr
                                  SumsCase<float, 2, Transfer::affine_flip, Basis::quadratic>,
                                  SumsCase<float, 3, Transfer::affine_flip, Basis::quadratic>,
                                  SumsCase<double, 3, Transfer::affine_flip, Basis::cubic>>;
-TYPED_TEST_SUITE(NodeSumsOfChunk, SumsCases);
+TYPED_TEST_SUITE(NodeSumsTest, SumsCases);
 
-TYPED_TEST(NodeSumsOfChunk, AreThoseOverTheNodesOneByOne) {
+TYPED_TEST(NodeSumsTest, InterpolationMatchesASumOverTheNodes) {
   using Fixture = TestFixture;
   using T = typename Fixture::T;
   constexpr int D = Fixture::D;
@@ -103,18 +103,18 @@ TYPED_TEST(NodeSumsOfChunk, AreThoseOverTheNodesOneByOne) {
                                   (i < half_node ? gradient[d] : w * arm[d]) * node[i % half_node];
                           }
                         });
-    T got[node_values];
-    sums.value.template store<TypeParam::Rule::taken>(got);
-    for (int i = 0; i < Fixture::taken; ++i) EXPECT_NEAR(got[i], value[i], 32 * this->epsilon);
+    T result[node_values];
+    sums.value.template store<TypeParam::Rule::taken>(result);
+    for (int i = 0; i < Fixture::taken; ++i) EXPECT_NEAR(result[i], value[i], 32 * this->epsilon);
     for (int d = 0; d < D; ++d) {
-      sums.along[d].store(got);
+      sums.along[d].store(result);
       for (int i = 0; i < TypeParam::Rule::derived_values; ++i)
-        EXPECT_NEAR(got[i], along[d][i], 64 * this->epsilon);
+        EXPECT_NEAR(result[i], along[d][i], 64 * this->epsilon);
     }
   }
 }
 
-TYPED_TEST(NodeSumsOfChunk, FindNoGradientInUniformMotion) {
+TYPED_TEST(NodeSumsTest, UniformMotionHasNoGradient) {
   using T = typename TestFixture::T;
   constexpr int D = TestFixture::D;
   std::fill(this->tile.begin(), this->tile.end(), T(0.3));
@@ -123,17 +123,17 @@ TYPED_TEST(NodeSumsOfChunk, FindNoGradientInUniformMotion) {
   for (int l = 0; l < TestFixture::W; ++l) {
     const auto sums = interpolate_nodes<typename TypeParam::Rule, T, D, TypeParam::basis>(
         weights, l, this->tile.data() + stencil.address[l]);
-    T got[node_values];
-    sums.value.template store<TypeParam::Rule::taken>(got);
-    for (int i = 0; i < TestFixture::taken; ++i) EXPECT_EQ(got[i], T(0.3));
+    T result[node_values];
+    sums.value.template store<TypeParam::Rule::taken>(result);
+    for (int i = 0; i < TestFixture::taken; ++i) EXPECT_EQ(result[i], T(0.3));
     for (int d = 0; d < D; ++d) {
-      sums.along[d].store(got);
-      for (int i = 0; i < half_node; ++i) EXPECT_EQ(got[i], T(0));
+      sums.along[d].store(result);
+      for (int i = 0; i < half_node; ++i) EXPECT_EQ(result[i], T(0));
     }
   }
 }
 
-TYPED_TEST(NodeSumsOfChunk, AreGivenToTheNodesOneByOne) {
+TYPED_TEST(NodeSumsTest, ScatteringMatchesASumOverTheNodes) {
   using T = typename TestFixture::T;
   using Rule = typename TypeParam::Rule;
   constexpr int D = TestFixture::D;
@@ -147,8 +147,8 @@ TYPED_TEST(NodeSumsOfChunk, AreGivenToTheNodesOneByOne) {
     const T* nothing = nullptr;
     sums.value = Node<T>::of_halves(row, nothing);
     for (int d = 0; d < D; ++d) sums.along[d] = Rule::given(row, d);
-    std::vector<double> wanted(this->tile.begin(), this->tile.end());
-    this->for_each_node(wanted.data(), l,
+    std::vector<double> expected(this->tile.begin(), this->tile.end());
+    this->for_each_node(expected.data(), l,
                         [&](double* node, double w, const double* gradient, const double* arm) {
                           for (int i = 0; i < half_node; ++i) {
                             node[i] += w * row[i];
@@ -161,12 +161,12 @@ TYPED_TEST(NodeSumsOfChunk, AreGivenToTheNodesOneByOne) {
                         });
     scatter_nodes<Rule, T, D, TypeParam::basis>(weights, l, sums,
                                                 this->tile.data() + stencil.address[l]);
-    for (std::size_t i = 0; i < wanted.size(); ++i)
-      EXPECT_NEAR(this->tile[i], wanted[i], 16 * this->epsilon);
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      EXPECT_NEAR(this->tile[i], expected[i], 16 * this->epsilon);
   }
 }
 
-TYPED_TEST(NodeSumsOfChunk, AreNotTakenOutsideTheTile) {
+TYPED_TEST(NodeSumsTest, ParticlesOutsideTheTileAreDetected) {
   using T = typename TestFixture::T;
   constexpr int D = TestFixture::D;
   for (const T x : {T(-1.01), T(block_edge<D> + 1), std::numeric_limits<T>::quiet_NaN()}) {
@@ -178,4 +178,4 @@ TYPED_TEST(NodeSumsOfChunk, AreNotTakenOutsideTheTile) {
 }
 
 }  // namespace
-}  // namespace snowshed::mpm
+}  // namespace snowshed::methods::mpm

@@ -25,7 +25,7 @@ from snowshed.analysis.grains.material.readings import (
 )
 from snowshed.methods.grains.curve import LoadingCurve
 from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, STYLE, blank_figure, headline
-from snowshed.plot.labels import label
+from snowshed.scene.labels import label
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

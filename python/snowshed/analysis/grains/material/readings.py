@@ -23,8 +23,8 @@ PEAK_FROM_STRAIN = 5e-4
 #: Width of the intervals of plastic compaction over which stresses are averaged before hardening is
 #: fitted.
 HARDENING_BIN = 0.02
-#: Largest values of the law's parameters in scenes (`snowshed.Snow`).
-MAX_POISSON, MAX_HARDENING = 0.49, 1000.0
+MAX_POISSON = 0.49  # largest Poisson's ratio in scenes (`snowshed.Snow`)
+MAX_HARDENING = 1000.0  # largest hardening factor in scenes
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ TABLE = "material.csv"
 
 
 def snow_file(folder: Path, fitted: FittedSnow) -> Path:
-    """Return the file of a snow, which its density names."""
+    """Return the file of a fitted snow; its name contains the density."""
     return folder / f"snow-{fitted.law.density:.0f}.json"
 
 

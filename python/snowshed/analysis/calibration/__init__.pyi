@@ -1,0 +1,14 @@
+from .comparison import SimulatedStacks as SimulatedStacks
+from .comparison import compare_stacks as compare_stacks
+from .comparison import read_simulated_stacks as read_simulated_stacks
+from .grid_study import calibration_study as calibration_study
+from .measurements import Measurement as Measurement
+from .measurements import measurements_template as measurements_template
+from .measurements import read_measurements as read_measurements
+from .misfit import rank_sets as rank_sets
+from .posterior import Posterior as Posterior
+from .posterior import sample_posterior as sample_posterior
+from .report import Calibration as Calibration
+from .report import calibrate as calibrate
+from .report import evaluate_calibration as evaluate_calibration
+from .surrogate import Surrogate as Surrogate

@@ -1,0 +1,1 @@
+from .maps import hazard_maps as hazard_maps

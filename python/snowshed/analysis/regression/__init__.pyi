@@ -1,0 +1,17 @@
+from .dataset import geometry_rows as geometry_rows
+from .dataset import geometry_table as geometry_table
+from .folds import CrossValidation as CrossValidation
+from .geometry import geometry_study as geometry_study
+from .model_file import StackModel as StackModel
+from .model_file import load_model as load_model
+from .model_file import save_model as save_model
+from .nested import RegressionInterrupted as RegressionInterrupted
+from .pipeline import TargetReport as TargetReport
+from .pipeline import regress as regress
+from .predictor import OutsideDataError as OutsideDataError
+from .predictor import Prediction as Prediction
+from .predictor import predict as predict
+from .rows import StackRows as StackRows
+from .rows import read_rows as read_rows
+from .rows import stack_rows as stack_rows
+from .svr import EpsilonSVR as EpsilonSVR

@@ -1,0 +1,9 @@
+from .designs import sensitivity_study as sensitivity_study
+from .fixed_parameter import fixation_table as fixation_table
+from .global_indices import morris_effects as morris_effects
+from .global_indices import sobol_indices as sobol_indices
+from .noise import seeding_noise as seeding_noise
+from .report import evaluate_sensitivity as evaluate_sensitivity
+from .single_parameter import local_index as local_index
+from .stored import StudyRuns as StudyRuns
+from .stored import read_study_runs as read_study_runs

@@ -1,0 +1,1 @@
+"""Printed output: results, progress, costs."""

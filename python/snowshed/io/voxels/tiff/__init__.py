@@ -1,0 +1,1 @@
+"""TIFF files: tags, pages, strips and tiles, descriptions."""

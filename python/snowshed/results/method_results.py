@@ -1,0 +1,39 @@
+"""Results that only some methods have."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray
+
+
+class MethodResults:
+    """Results that only some methods have: at the end of a run, or of a simulation up to now.
+
+    If the scene's method has no such result, the attribute raises an InputError that is also an
+    AttributeError, so that `hasattr` returns False.
+    """
+
+    def result(self, name: str) -> object:
+        """Return a result of the scene's method by its name, such as "maps"."""
+        raise NotImplementedError
+
+    @property
+    def maps(self) -> xarray.Dataset:
+        """The maps of a slide at the nodes of its grid: largest values over time, and at the end.
+
+        Needs xarray (extra ``study``).
+        """
+        return cast("xarray.Dataset", self.result("maps"))
+
+    @property
+    def curve(self) -> pd.DataFrame:
+        """The curve of a loading test: strains, stresses, bonds and contacts over time."""
+        return cast("pd.DataFrame", self.result("curve"))
+
+    @property
+    def forces(self) -> pd.DataFrame:
+        """The contacts between grains at the end of a loading test, with their forces, N."""
+        return cast("pd.DataFrame", self.result("forces"))

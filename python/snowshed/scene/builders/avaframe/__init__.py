@@ -1,0 +1,1 @@
+"""Scenes from the project folders of AvaFrame."""

@@ -1,0 +1,1 @@
+"""The weather of winters: read, checked, completed, judged, or synthetic."""
