@@ -47,7 +47,7 @@ help:
 	@echo "make demo       the laboratory experiment: five slide-offs, table, pictures and a page that moves"
 	@echo "make validation problems with known answers, a minute (VALIDATION=--full: hours)"
 	@echo "make thesis     the thesis reproduced, some minutes (THESIS=--middle: hours, --full: days)"
-	@echo "make test       lint and all tests (test-cpp, test-py: C++, Python; test-slow: those that take minutes)"
+	@echo "make test       lint, and all tests that take seconds (test-cpp, test-py: C++, Python; test-slow: those that take minutes)"
 	@echo "make sanitize   the tests with AddressSanitizer, UBSan and ThreadSanitizer"
 	@echo "make fuzz       fuzz all readers of files (FUZZ_SECONDS=$(FUZZ_SECONDS) each)"
 	@echo "make mutants    inject faults and see which the tests catch, an hour or two"
@@ -96,12 +96,12 @@ demo: build
 	@echo "The snow in motion; open it in a browser:"
 	@echo "$(CURDIR)/$(DEMO)/view.html"
 
-# Old results of the quick suite give way; those of the full one took hours and never do.
+# Results of the quick suite are overwritten; those of the full suite, which takes hours, are kept.
 validation: build $(VENV)/.dev-tools
 	$(if $(findstring --full,$(VALIDATION)),,rm -rf validation-quick)
 	$(BIN)/python -m validation $(VALIDATION) -o validation-$(patsubst --%,%,$(firstword $(VALIDATION)))
 
-# What was interrupted goes on.
+# It resumes after an interruption.
 thesis: build $(VENV)/.dev-tools
 	$(BIN)/python -m reproductions frischholz2023 $(THESIS) -o reproduction-$(patsubst --%,%,$(firstword $(THESIS)))
 
@@ -134,11 +134,11 @@ test-slow: build $(VENV)/.dev-tools
 # --- robustness, see docs/trust/robustness.md ----------------------------------------------
 
 # Each sanitizer has its own tree; the second argument are tests that are left out. LongSlab takes
-# minutes and runs only code that shorter tests run, too. ThreadSanitizer's threads are those of the
-# standard library, which allocate where OpenMP's do not: no place for tests in which every
-# allocation fails. Lua's memory limit leaves no room for AddressSanitizer.
+# minutes and runs only code that shorter tests run, too. Under ThreadSanitizer, threads come from
+# the standard library and allocate memory; tests that make every allocation fail are therefore left
+# out. Lua's memory limit leaves no room for AddressSanitizer.
 #
-# The Python tests are those of all rooms but these, which run no other code of the core.
+# Python tests of these folders are left out, because they exercise no further code of the core.
 UNSANITIZED := analysis base faults plot reproductions results season study tools validation
 SANITIZED_TESTS := $(filter-out $(UNSANITIZED:%=tests/%/%),$(wildcard tests/test_*.py tests/*/test_*.py)) \
   $(wildcard tests/snow/*/test_*.py)
@@ -198,7 +198,7 @@ format: $(VENV)/.clang-format $(VENV)/.dev-tools
 	$(BIN)/ruff check --fix $(PYTHON_FOLDERS)
 	$(BIN)/ruff format $(PYTHON_FOLDERS)
 
-# Of the compiled core; mypy looks for it beside the package's other modules.
+# Types of the compiled core, linked to where mypy looks for them.
 python/snowshed/_core.pyi:
 	ln -s ../../cpp/bindings/_core.pyi $@
 

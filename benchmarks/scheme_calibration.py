@@ -1,4 +1,4 @@
-"""Search the snow for each scheme of the MPM whose stacks are those of the calibrated snow.
+"""Search, for each MPM scheme, the snow whose stacks match those of the calibrated snow.
 
 Usage: python -m benchmarks.scheme_calibration run FOLDER
        python -m benchmarks.scheme_calibration rank
@@ -82,14 +82,14 @@ def ranked(scheme: str) -> pd.DataFrame:
     """
     columns = {TILT: "tilt", **{measured_column(name): name for name in COMPARED_QUANTITIES}}
     table = pd.read_csv(STACKS).rename(columns=columns)
-    of_stand_in = (table["scheme"] == STAND_IN) & table["seed"].isin(STAND_IN_SEEDS)
-    means = table[of_stand_in].groupby(["tilt", "event"])[COMPARED_QUANTITIES].mean()
+    is_stand_in = (table["scheme"] == STAND_IN) & table["seed"].isin(STAND_IN_SEEDS)
+    means = table[is_stand_in].groupby(["tilt", "event"])[COMPARED_QUANTITIES].mean()
     targets = [
         Measurement(tilt, event, 1, name, row[name], 1.0)
         for (tilt, event), row in means.iterrows()
         for name in COMPARED_QUANTITIES
     ]
-    rows = table[~of_stand_in & (table["scheme"] == scheme)]
+    rows = table[~is_stand_in & (table["scheme"] == scheme)]
     rows = rows.assign(set=rows.groupby(SNOW, sort=False).ngroup() + 1)
     sets = rows.drop_duplicates("set").set_index("set")[SNOW]
     rows = rows.reindex(columns=["tilt", "seed", "event", *QUANTITIES, "set"])

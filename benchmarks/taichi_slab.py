@@ -3,8 +3,8 @@
 Usage: python -m benchmarks.taichi_slab [--steps 50] [--threads 2] [--atomic] [--json FILE]
 
 The benchmark needs Taichi (pip install taichi). The slab has 262 144 particles of reference snow on
-sticky ground, with float, quadratic splines and FLIP 0.99. Taichi uses the time steps that snowshed
-chose, at no cost, and the final states are compared. Numbers in parentheses are equations of
+sticky ground, with float, quadratic splines and FLIP 0.99. Taichi gets snowshed's time
+steps for free. The final states are compared. Numbers in parentheses are equations of
 docs/methods/mpm.md.
 
 The Taichi version is the fastest of several variants: grid flat or in blocks, as one or eight

@@ -40,7 +40,7 @@ def lammps_python() -> Optional[str]:
 def press_with_yade(
     sample: VoxelSample, press: Press, folder: Path, *, steps: int = 0, threads: int = 1
 ) -> Record:
-    """Return the test's record with Yade; `steps` above 0 times this many, with hollow grains."""
+    """Return the test's record with Yade; with `steps` above 0, time that many steps instead."""
     program = [str(yade_program()), "-n", f"-j{threads}", "-x", str(HERE / "yade_press.py")]
     return _run(program, sample, press, folder, [str(steps)] if steps else [])
 

@@ -1,6 +1,8 @@
 // Runs a fuzz target on the given files and on the files of given folders, without a fuzzing
 // engine.
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>

@@ -34,7 +34,7 @@ void set_limit(int resource, rlim_t value) {
   ::setrlimit(resource, &limit);
 }
 
-/// Limits memory and time, of which OpenVDB may need any amount for a damaged file. The limits are
+/// Limits memory and time, because OpenVDB may use any amount on a damaged file. The limits are
 /// many times the needs of a sound file. A sound file has at least a bit for each byte in memory,
 /// and 10 MB of it are read in far less than a second.
 void limit_by_size_of(const std::string& path) {

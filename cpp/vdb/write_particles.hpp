@@ -19,7 +19,7 @@ struct ParticleCloud {
 struct VdbWriteSettings {
   int dimension = 3;
   double voxel = 0;   // m, cell size of the simulation
-  double radius = 0;  // m, of a particle, see particle_radius
+  double radius = 0;  // m, of a particle, see sampling::particle_radius
   double width = 0;   // m, in 2D: width of the extruded strip about y = 0
 };
 

@@ -14,6 +14,7 @@ from ._core import SimulationError as SimulationError
 from .analysis.clearance.clearance import clearance as clearance
 from .analysis.regression.predictor import predict as predict
 from .base.interrupt import Interrupted as Interrupted
+from .base.missing_result import MissingResultError as MissingResultError
 from .base.notes import SnowshedNote as SnowshedNote
 from .base.progress import Progress as Progress
 from .methods.grains.settings import GrainsSettings as GrainsSettings

@@ -89,7 +89,9 @@ def _scatter_part(stacks: pd.DataFrame) -> list[str]:
     ]
     grid = HtmlTable(["trimming rule", *names.values(), *QUARTILES], rows, "l" + "r" * 7)
     other = next(name for name in TRIMMINGS if name != DEFAULT_TRIMMING)
-    ours, theirs = (scatter(stacks, name, "length") for name in (DEFAULT_TRIMMING, other))
+    default_scatter, other_scatter = (
+        scatter(stacks, name, "length") for name in (DEFAULT_TRIMMING, other)
+    )
     return [
         "## The two trimming rules of A.4.2",
         "The table measures the same stacks by [two trimming rules]"
@@ -98,8 +100,9 @@ def _scatter_part(stacks: pd.DataFrame) -> list[str]:
         "columns are the deviation between seedings relative to the mean (root mean square over "
         "panels and events), and the quartiles of H/L of the rows.",
         markdown_table(grid),
-        f"The length by `{DEFAULT_TRIMMING}` scatters by {percent(ours, 2)}, by `{other}` by "
-        f"{percent(theirs, 2)}. The steadier rule is the default, whether or not it agrees with "
+        f"The length by `{DEFAULT_TRIMMING}` scatters by {percent(default_scatter, 2)}, by "
+        f"`{other}` by {percent(other_scatter, 2)}. "
+        "The steadier rule is the default, whether or not it agrees with "
         "the thesis's numbers.",
     ]
 
@@ -142,6 +145,8 @@ def _cause(stacks: pd.DataFrame, name: str) -> str:
         size = "the runs of the sample do not switch it, so its effect is unknown"
     elif ratio_change.value == 0:
         size = "it changes no stack of the sample"
+    elif 100 * max(abs(ratio_change.value), ratio_change.noise) < 0.5:  # both are printed as 0
+        size = "it changes no stack of the sample noticeably"
     else:
         size = f"H/L changes by {deviations_section.change_text(ratio_change)}"
         if not abs(ratio_change.value) > SIGMAS * ratio_change.noise:
@@ -152,10 +157,10 @@ def _cause(stacks: pd.DataFrame, name: str) -> str:
 
 def _remaining_gaps(stacks: pd.DataFrame) -> list[str]:
     """Return the differences that remain between Table 5.3.1 and the preset ``thesis``."""
-    of_all = stacks[stacks["variant"] == THESIS]
-    if of_all.empty:
+    undone = stacks[stacks["variant"] == THESIS]
+    if undone.empty:
         return []
-    gaps = [f"{_gaps(quartiles(of_all, name))} with `{name}`" for name in TRIMMINGS]
+    gaps = [f"{_gaps(quartiles(undone, name))} with `{name}`" for name in TRIMMINGS]
     return [
         "With all deviations undone, the quartiles Q1 to Q4 of this sample's rows differ from the "
         f"thesis's predictions for all panels as follows: {'; '.join(gaps)}. The panel's friction, "
@@ -171,8 +176,7 @@ def _gaps(ours: list[float]) -> str:
 def rows_of_regressions() -> dict[str, StackRows]:
     """Return the rows of the regressions in ``data``, by the name of their folder.
 
-    For each trimming rule of the data set these are the rows of one seed, and the means if a row
-    has several seeds.
+    Each trimming rule has the rows of one seed and, if rows have several seeds, their means.
     """
     rows_by_name = {}
     for name in TRIMMINGS:

@@ -1,4 +1,4 @@
-"""Regressions of the sample's rows with each deviation undone: Tables 5.3.1 and 5.3.2 of each.
+"""Regressions for each variant of the sample, as in Tables 5.3.1 and 5.3.2.
 
 ``python -m reproductions.frischholz2023.variant_errors STACKS.csv`` writes the file
 ``deviation-errors.csv`` in the folder ``data``.
@@ -17,9 +17,9 @@ from reproductions.frischholz2023.regression_stage import KINDS, TARGET
 from reproductions.frischholz2023.sections.regression import ERRORS, read_results
 from reproductions.frischholz2023.studies import PANEL
 from reproductions.frischholz2023.variants import (
+    distinct_variants,
     measured_as,
     read_variants_file,
-    with_runs_of_its_own,
 )
 from snowshed._core import InputError
 from snowshed.analysis.regression.folds import CrossValidation
@@ -65,7 +65,7 @@ def variant_errors(
 
     tables = [
         _stack_errors(of_variant, trimming, scheme, jobs).assign(variant=name, trimming=trimming)
-        for name, of_variant in with_runs_of_its_own(stacks)
+        for name, of_variant in distinct_variants(stacks)
         for trimming in TRIMMINGS
     ]
     return pd.concat(tables, ignore_index=True)[list(COLUMNS)]

@@ -88,7 +88,7 @@ def quartiles(stacks: pd.DataFrame, trimming: str) -> list[float]:
     return [float(quartile) for quartile in np.quantile(ratios(stacks, trimming), QUANTILES)]
 
 
-def with_runs_of_its_own(stacks: pd.DataFrame) -> Iterator[tuple[str, pd.DataFrame]]:
+def distinct_variants(stacks: pd.DataFrame) -> Iterator[tuple[str, pd.DataFrame]]:
     """Yield the defaults, and each variant that has runs of its own, with its stacks."""
     for name, of_one in stacks.groupby("variant", sort=False):
         if name == DEFAULTS or not of_one["same_runs"].all():

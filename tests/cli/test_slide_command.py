@@ -44,7 +44,7 @@ def test_ranges_give_maps_page_and_summary_and_are_resumed(tmp_path, capsys):
     [
         ("mux=1:2", "'mux' is none of mu, xi, E, thickness"),
         ("mu=0.3", "not of the form NAME=LOW:HIGH"),
-        ("mu=0.5:0.3", "must rise"),
+        ("mu=0.5:0.3", "the upper end 0.3 is not above the lower end 0.5"),
         ("mode=0:1", "'mode' is none of"),
         ("cell=1:4", "'cell' is none of"),
     ],

@@ -8,7 +8,7 @@ import pytest
 from conftest import tiny_scene
 
 from snowshed import Body, Ground, Obstacle, Scene, Shape, Simulation, Snow, run_events
-from snowshed.cli.self_test.incline import Incline
+from snowshed.analysis.accuracy.incline import Incline
 
 CONDITIONS = ("sticky", "slip", "separate")
 

@@ -94,7 +94,7 @@ def test_a_run_whose_workers_always_die_fails(scripted_workers, tmp_path):
     assert error == "gave up after 3 attempts: the worker was killed by signal 9 (Killed)"
 
 
-def test_a_machine_that_is_unable_stops_the_study_without_loss(scripted_workers, tmp_path):
+def test_a_failing_machine_stops_the_study_but_loses_no_results(scripted_workers, tmp_path):
     scripted_workers.answer = lambda task: (
         outcome(task.hash)
         if len(scripted_workers.tasks) < 3
@@ -309,7 +309,7 @@ def test_a_short_disturbance_does_not_change_the_estimate(monkeypatch):
     assert cost_estimate.expected_time(scenes, works, 1, 1) == 3 * 1800.0
 
 
-def test_speeds_before_a_short_study_are_measured_once(monkeypatch):
+def test_speed_is_measured_once_before_a_short_study(monkeypatch):
     measured = []
     monkeypatch.setattr(cost_estimate, "speed", lambda scene, _: measured.append(scene) or 1e9)
     cost_estimate.expected_time(["a", "b", "c"], [1.0] * 3, 1, 1)

@@ -94,7 +94,7 @@ def test_noise_is_in_deviations_of_carried_stacks(reseeded, runs):
 
 
 @pytest.mark.parametrize("settings", CASE.matrix(True) + CASE.matrix(False), ids=str)
-def test_every_entry_makes_a_scene_that_has_carried_stacks(settings):
+def test_stacks_are_carried_in_every_scene_of_the_matrix(settings):
     scene_settings = {name: value for name, value in settings.items() if name != "seedings"}
     data = lab_scene(scene_settings).resolve().data
     assert data["events"]["between"] == settings["between"]

@@ -15,7 +15,7 @@ def measured(outcome):
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
-def test_directions_of_the_plane(dimension):
+def test_directions_of_the_plane_are_orthonormal(dimension):
     plane = Incline(30.0, dimension)
     slope, normal = np.array(plane.slope), np.array(plane.normal)
     assert len(slope) == dimension

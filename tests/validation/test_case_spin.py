@@ -28,7 +28,7 @@ def test_the_expanded_disc_is_in_equilibrium():
     assert abs(sigma_rr[-1]) < 1e-6 * sigma_rr[0]
 
 
-def test_the_change_per_turn():
+def test_the_change_per_turn_is_measured():
     assert spin.per_turn(1.0, 3 * spin.TURN) == 0
     assert spin.per_turn(0.81, 2 * spin.TURN) == pytest.approx(-0.1)
     assert spin.per_turn(1.0 + 1e-12, spin.TURN) == pytest.approx(1e-12, rel=1e-3)

@@ -29,7 +29,7 @@ WANTED_ACCURACIES = (0.10, 0.05, 0.02, 0.01)
 
 
 @dataclass(frozen=True)
-class Cheapest:
+class QuickestSettings:
     """Quickest settings for a wanted accuracy, or the most accurate settings if none reach it.
 
     Attributes
@@ -78,7 +78,7 @@ def by_problem(
 
 def cheapest(
     table: pd.DataFrame, cases: Iterable[Case], wanted: Sequence[float] = WANTED_ACCURACIES
-) -> list[Cheapest]:
+) -> list[QuickestSettings]:
     """Return the quickest settings for each accuracy.
 
     The list covers each quantity with a relative error, and each problem with several solutions.
@@ -96,8 +96,8 @@ def cheapest(
 
 def _cheapest(
     case: str, quantity: Quantity, problem: CaseSettings, group: Sequence[Solution], wanted: float
-) -> Cheapest:
+) -> QuickestSettings:
     errors = assured_errors(group, quantity.order_in)
     i = quickest([solution.wall_s for solution in group], errors, wanted)
     reached = errors[i] <= wanted
-    return Cheapest(case, quantity.name, problem, wanted, reached, errors[i], group[i])
+    return QuickestSettings(case, quantity.name, problem, wanted, reached, errors[i], group[i])

@@ -8,8 +8,8 @@ from contextlib import contextmanager
 
 from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.record import Record
-from snowshed.cli.self_test import drive
 from snowshed.methods.mpm.settings import MpmSettings
+from snowshed.running.event_driver import EventDriver
 from snowshed.scene.components import Seeding, Snow
 from snowshed.scene.scene import Scene
 from validation.framework.case import Outcome
@@ -67,7 +67,7 @@ def _path(name: str) -> str:
     return name
 
 
-class TimedEventDriver(drive.EventDriver):
+class TimedEventDriver(EventDriver):
     """First event of a scene, which is run to given times; only its steps count as run time.
 
     Parameters

@@ -51,7 +51,7 @@ MIN_SHOWN_ERROR = 1e-17
 
 
 class KeyLine(NamedTuple):
-    """Text beside a diagram about a point; a text without a letter is a heading."""
+    """A line of a diagram's key: a point's letter and text; without a letter, a heading."""
 
     letter: str
     cost: str

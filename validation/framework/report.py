@@ -28,7 +28,7 @@ from snowshed.io.csv_table import write_csv
 from snowshed.plot.html_page import template, write_pictures
 from validation.framework import sections
 from validation.framework.case import Case
-from validation.framework.cheapest import Cheapest, cheapest
+from validation.framework.cheapest import QuickestSettings, cheapest
 from validation.framework.convergence import convergences
 from validation.framework.criteria import Criterion, compare
 
@@ -131,7 +131,7 @@ def problems(validation: Validation, criteria: Sequence[Criterion]) -> list[str]
 def render(
     validation: Validation,
     criteria: Sequence[Criterion],
-    answers: Sequence[Cheapest],
+    answers: Sequence[QuickestSettings],
     about_cases: Sequence[sections.Section],
 ) -> str:
     """Return the report as HTML."""
@@ -151,7 +151,7 @@ def json_text(
     validation: Validation,
     table: pd.DataFrame,
     criteria: Sequence[Criterion],
-    answers: Sequence[Cheapest],
+    answers: Sequence[QuickestSettings],
 ) -> str:
     """Return the results as JSON; numbers that are not finite are null."""
     data = {

@@ -16,7 +16,7 @@ from snowshed.base import formatting
 from snowshed.plot.html_page import HtmlTable, Picture
 from validation.framework import figures
 from validation.framework.case import Case, Quantity, alternatives
-from validation.framework.cheapest import Cheapest, by_problem
+from validation.framework.cheapest import QuickestSettings, by_problem
 from validation.framework.convergence import Convergence, convergences
 from validation.framework.criteria import Criterion
 from validation.framework.schemes import problem_of, varying
@@ -222,7 +222,9 @@ def worst_error(criterion: Criterion) -> str:
 
 
 def cheapest_grid(
-    answers: Sequence[Cheapest], cases: Sequence[Case], measurements: Sequence[MeasuredSolution]
+    answers: Sequence[QuickestSettings],
+    cases: Sequence[Case],
+    measurements: Sequence[MeasuredSolution],
 ) -> HtmlTable:
     """Return a table of the quickest settings for each accuracy, with a row for each problem."""
     wanted = sorted({answer.wanted for answer in answers}, reverse=True)
@@ -314,10 +316,10 @@ def _picture(figure: Figure, case: Case, title: str, caption: str) -> Picture:
 
 
 def _cheapest_rows(
-    case: Case, answers: Sequence[Cheapest], measurements: Sequence[MeasuredSolution]
+    case: Case, answers: Sequence[QuickestSettings], measurements: Sequence[MeasuredSolution]
 ) -> list[list[str]]:
     """Return a row for each quantity and problem of a case, with the case's title in the first."""
-    groups: dict[Hashable, list[Cheapest]] = {}
+    groups: dict[Hashable, list[QuickestSettings]] = {}
     for answer in answers:
         if answer.case == case.name:
             groups.setdefault((answer.quantity, settings_key(answer.problem)), []).append(answer)
@@ -352,7 +354,7 @@ def _cheapest_rows(
     return rows
 
 
-def _cheapest_cell(answer: Cheapest, solution_settings: Sequence[str]) -> str:
+def _cheapest_cell(answer: QuickestSettings, solution_settings: Sequence[str]) -> str:
     if not answer.reached:
         return f"not reached; best {formatting.percent(answer.error)}"
     with_what = setting_labels.settings_label(answer.solution.settings, solution_settings)

@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import cast
 
+from snowshed.analysis.accuracy.incline import GRAVITY, Incline
 from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
-from snowshed.cli.self_test.incline import GRAVITY, Incline
 from snowshed.scene.components import Condition
 from snowshed.scene.scene import Scene
 from validation.framework.case import Case, Outcome, Quantity

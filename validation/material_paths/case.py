@@ -10,9 +10,9 @@ from typing import Callable, NamedTuple
 import numpy as np
 
 from snowshed import _core
+from snowshed.analysis.accuracy.calibrated_snow import calibrated_snow
 from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.arrays import Floats
-from snowshed.cli.self_test.return_mapping import calibrated_snow
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import relative
 from validation.material_paths.rate_equations import RateEquations, evenly

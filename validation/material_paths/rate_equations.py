@@ -20,8 +20,8 @@ import numpy as np
 
 from snowshed.base.arrays import Floats
 
-#: Softening snow is followed until its strength has fallen to this part; stress and strength then
-#: vanish together, and their ratio would be lost in rounding.
+#: Integration of softening snow ends at this fraction of the initial strength; below, stress and
+#: strength vanish together, and rounding destroys their ratio.
 MIN_STRENGTH_SHARE = 1e-3
 RELATIVE_TOLERANCE = 1e-12  # of the integrated solution
 ABSOLUTE_TOLERANCE = 1e-15  # of integrated strains

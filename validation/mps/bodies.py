@@ -1,4 +1,4 @@
-"""Fluids of particles for the cases: bodies of snow or water among walls, in the plane."""
+"""Scenes of the MPS cases: blocks of snow or water between walls, in 2D."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def block(width: float, height: float) -> Body:
     return Body(shape=Shape.box((width / 2, height / 2), (width, height)))
 
 
-def mps_drive(
+def mps_driver(
     fluid: MpsSettings,
     obstacles: Sequence[Obstacle],
     bodies: Sequence[Body],

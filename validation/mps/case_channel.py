@@ -11,7 +11,7 @@ from snowshed.scene.components import Body, Obstacle
 from snowshed.scene.shape import Shape
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import relative
-from validation.mps.bodies import GRAVITY, mps_drive
+from validation.mps.bodies import GRAVITY, mps_driver
 
 HALF_GAP, LENGTH = 0.1, 2.4  # m
 STEADY_FROM_S = 0.2
@@ -72,7 +72,7 @@ def measure(settings: CaseSettings) -> Outcome:
         for name, x, normal in (("left", -HALF_GAP, (1, 0)), ("right", HALF_GAP, (-1, 0)))
     ]
     slug = Body(shape=Shape.box((0, 0), (2 * HALF_GAP, LENGTH)))
-    drive = mps_drive(FLUID, plates, [slug], {**settings, "spacing": spacing}, {"across"})
+    drive = mps_driver(FLUID, plates, [slug], {**settings, "spacing": spacing}, {"across"})
     drive.run_to(STEADY_FROM_S)
     flows = []
     while drive.core.time_s < STEADY_FROM_S + AVERAGED_S:

@@ -12,7 +12,7 @@ from snowshed.methods.mps.settings import MpsSettings
 from snowshed.scene.components import Body, Obstacle
 from snowshed.scene.shape import Shape
 from validation.framework.case import Case, Outcome, Quantity
-from validation.mps.bodies import mps_drive
+from validation.mps.bodies import mps_driver
 
 SNOW = MpsSettings(density=200.0, friction_angle=24.0)
 CASE_SETTINGS = frozenset({"tilt", "board"})
@@ -39,7 +39,7 @@ def measure(settings: CaseSettings) -> Outcome:
             _sticky("board", _box(BOARD_DISTANCE * down + 0.5 * size[1] * normal, size, tilt))
         )
     snow = Body(shape=_box(0.75 * BLOCK_EDGE * normal, (BLOCK_EDGE, BLOCK_EDGE), tilt))
-    drive = mps_drive(SNOW, obstacles, [snow], settings, CASE_SETTINGS)
+    drive = mps_driver(SNOW, obstacles, [snow], settings, CASE_SETTINGS)
     stopped = 0.0
     try:
         drive.step(STEPS)
@@ -101,7 +101,7 @@ CASE = Case(
     description="""
     A block of snow falls a little and slides down a plane, with or without a board that stands on
     it. Viscosity and yield stress go up to 1e4 Pa s and Pa, and tilts to 85 degrees. Boards are
-    thinner or thicker than a particle (their thickness is in distances between particles). After 60
+    thinner or thicker than a particle (their thickness is in particle spacings). After 60
     steps all values must be finite, and no particle may be behind or in a wall. A run may stop with
     an error.
     """,

@@ -13,7 +13,7 @@ from snowshed.scene.components import Body, Obstacle
 from snowshed.scene.shape import Shape
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import absolute, relative
-from validation.mps.bodies import GRAVITY, block, floor_and_sides, mps_drive
+from validation.mps.bodies import GRAVITY, block, floor_and_sides, mps_driver
 
 SNOW = MpsSettings(density=200.0, viscosity=0.012, friction_angle=24.0, rheology="bingham")
 SLAB_THICKNESS, LENGTH, SLIDING_TIME = 0.1, 2.4, 0.2  # m, m, s
@@ -47,7 +47,7 @@ def measure_slab(settings: CaseSettings) -> Outcome:
         angle=tilt,
         translate=(0.0, 0.0),
     )
-    drive = mps_drive(SNOW, [plane], [Body(shape=slab)], settings, {"tilt"})
+    drive = mps_driver(SNOW, [plane], [Body(shape=slab)], settings, {"tilt"})
     along = np.array([down[0], 0.0, down[1]])
     middle = np.abs(drive.core.positions() @ along) < LENGTH / 12
     drive.run_to(SLIDING_TIME)
@@ -84,7 +84,7 @@ def resting_heap(positions: Floats) -> Floats:
 
 def measure_heap(settings: CaseSettings) -> Outcome:
     """Let a heap slump until it rests, and compare its height in columns of four particles."""
-    drive = mps_drive(FLUID, floor_and_sides(), [block(*HEAP_SIZE)], settings)
+    drive = mps_driver(FLUID, floor_and_sides(), [block(*HEAP_SIZE)], settings)
     drive.run_to(2.0)
     spacing = float(settings["spacing"])
     width = 4 * spacing

@@ -10,7 +10,7 @@ import numpy as np
 from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import TimedEventDriver, absolute, relative
-from validation.mps.bodies import GRAVITY, VARIANTS, WATER, block, floor_and_sides, mps_drive
+from validation.mps.bodies import GRAVITY, VARIANTS, WATER, block, floor_and_sides, mps_driver
 
 HEIGHT = 0.2  # m, of the column at rest, which is as wide
 DAM_WIDTH = 0.05715  # m, 2 1/4 inches, width of the column that collapses; it is twice as high
@@ -38,7 +38,7 @@ def pressure_slope(drive: TimedEventDriver, spacing: float) -> float:
 
 def measure_column(settings: CaseSettings) -> Outcome:
     """Let a column of water stand, and measure its pressure, rise and speed."""
-    drive = mps_drive(WATER, floor_and_sides(HEIGHT), [block(HEIGHT, HEIGHT)], settings, {"time"})
+    drive = mps_driver(WATER, floor_and_sides(HEIGHT), [block(HEIGHT, HEIGHT)], settings, {"time"})
     spacing = float(settings["spacing"])
     top = float(drive.core.positions()[:, 2].max())
     drive.run_to(float(settings["time"]))
@@ -80,7 +80,7 @@ def deviation(
 def measure_dam(settings: CaseSettings) -> Outcome:
     """Let a column of water collapse, and compare its front."""
     spacing = DAM_WIDTH / int(settings["across"])
-    drive = mps_drive(
+    drive = mps_driver(
         WATER, floor_and_sides(8 * DAM_WIDTH), [block(DAM_WIDTH, 2 * DAM_WIDTH)],
         {**settings, "spacing": spacing}, {"across"},
     )  # fmt: skip

@@ -12,7 +12,7 @@ namespace {
 /// The solver as one of MPM; throws InputError if the scene's method is another.
 const Solver& mpm_of(const run::Simulation& sim) {
   const auto* mpm = dynamic_cast<const Solver*>(&sim.method());
-  if (!mpm) throw InputError("/method", "is not \"mpm\", and sorts no particles by blocks");
+  if (!mpm) throw InputError("/method", "only \"mpm\" has the counter \"sorts\"");
   return *mpm;
 }
 

@@ -90,7 +90,7 @@ ChildResult run_child(const std::filesystem::path& program,
   return result;
 }
 
-std::optional<std::filesystem::path> beside_this_binary(const std::string& name) {
+std::optional<std::filesystem::path> find_sibling_program(const std::string& name) {
   std::vector<std::filesystem::path> folders;
   ::Dl_info info;
   if (::dladdr(reinterpret_cast<const void*>(&run_child), &info) && info.dli_fname)

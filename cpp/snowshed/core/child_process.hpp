@@ -19,7 +19,8 @@ struct ChildResult {
 ChildResult run_child(const std::filesystem::path& program,
                       const std::vector<std::string>& arguments);
 
-/// A program in the folder of the library or executable that this code is part of.
-std::optional<std::filesystem::path> beside_this_binary(const std::string& name);
+/// Returns the path of the program `name` in the folder of the library or executable that contains
+/// this code; none if the folder has no such program.
+std::optional<std::filesystem::path> find_sibling_program(const std::string& name);
 
 }  // namespace snowshed

@@ -2,6 +2,10 @@
 // full relative accuracy near zero, where elastic strains live.
 #pragma once
 
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
 #include "snowshed/core/simd_pack.hpp"
 
 SNOWSHED_VARIANT_BEGIN

@@ -62,22 +62,22 @@ std::vector<EdgeUse> around_edge(const TriangleMesh& mesh, const EdgeUse* first,
                                  const EdgeUse* end) {
   const Vec3& foot = mesh.vertices[first->low];
   const Vec3 axis = (mesh.vertices[first->high] - foot).normalized();
-  const auto away = [&](const EdgeUse& use) {
+  const auto direction_to_apex = [&](const EdgeUse& use) {
     const Vec3 r = mesh.vertices[mesh.triangles[use.triangle][(use.corner + 2) % 3]] - foot;
     return Vec3(r - r.dot(axis) * axis);
   };
-  const Vec3 x = away(*first).normalized(), y = axis.cross(x);
+  const Vec3 x = direction_to_apex(*first).normalized(), y = axis.cross(x);
   constexpr double angle_tolerance = 1e-9;  // rad; faces that coincide
   std::vector<std::pair<double, EdgeUse>> uses;
   for (const EdgeUse* use = first; use != end; ++use) {
-    const Vec3 r = away(*use);
+    const Vec3 r = direction_to_apex(*use);
     double angle = std::atan2(r.dot(y), r.dot(x));
     if (angle < -angle_tolerance) angle += 2 * pi;
     uses.emplace_back(angle, *use);
   }
   std::stable_sort(uses.begin(), uses.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
-  // Where faces coincide, one solid ends before the next begins.
+  // Among coincident faces, those that end a solid come before those that begin the next.
   for (auto begin = uses.begin(); begin != uses.end();) {
     auto last = begin + 1;
     while (last != uses.end() && last->first - (last - 1)->first < angle_tolerance) ++last;
@@ -89,30 +89,30 @@ std::vector<EdgeUse> around_edge(const TriangleMesh& mesh, const EdgeUse* first,
   return ordered;
 }
 
-/// Calls pair(use, use) for the triangles that are neighbours at an edge. Seen along the edge, the
-/// solid begins at a triangle that passes it downward and ends at one that passes it upward, as
-/// angles grow. The triangles therefore match like parentheses.
+/// Calls pair(use, use) for the triangles that are neighbours at an edge. With growing angle, the
+/// solid begins at a triangle that traverses the edge downward and ends at one that traverses it
+/// upward. The triangles therefore match like parentheses.
 template <class Pair>
 void pair_neighbours(const TriangleMesh& mesh, const EdgeUse* first, const EdgeUse* end,
                      Pair pair) {
   if (end - first == 2) return pair(first[0], first[1]);
   std::vector<EdgeUse> uses = around_edge(mesh, first, end);
-  std::ptrdiff_t open = 0, least = 0, start = 0;
+  std::ptrdiff_t depth = 0, min_depth = 0, first_use = 0;
   for (std::size_t i = 0; i < uses.size(); ++i) {
-    open += uses[i].upward ? -1 : 1;
-    if (open >= least) continue;
-    least = open;
-    start = std::ptrdiff_t(i) + 1;
+    depth += uses[i].upward ? -1 : 1;
+    if (depth >= min_depth) continue;
+    min_depth = depth;
+    first_use = std::ptrdiff_t(i) + 1;
   }
-  std::rotate(uses.begin(), uses.begin() + start, uses.end());
-  std::vector<EdgeUse> begun;
+  std::rotate(uses.begin(), uses.begin() + first_use, uses.end());
+  std::vector<EdgeUse> open_uses;
   for (const EdgeUse& use : uses) {
     if (!use.upward) {
-      begun.push_back(use);
+      open_uses.push_back(use);
       continue;
     }
-    pair(begun.back(), use);
-    begun.pop_back();
+    pair(open_uses.back(), use);
+    open_uses.pop_back();
   }
 }
 

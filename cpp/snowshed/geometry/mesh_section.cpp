@@ -36,7 +36,9 @@ class Cutter {
 
   Section cut() {
     for (const Triangle& t : mesh_.triangles) {
-      std::array<std::uint32_t, 2> side;  // begins where the triangle's border goes down
+      // From the point where the triangle's border crosses downward to that where it crosses
+      // upward.
+      std::array<std::uint32_t, 2> side;
       int cuts = 0;
       for (int i = 0; i < 3; ++i) {
         const std::uint32_t from = t[i], to = t[(i + 1) % 3];

@@ -1,4 +1,4 @@
-// Exact sense in which three points of a plane turn, without rounding errors.
+// Exact orientation of three points in a plane.
 #pragma once
 
 #include <array>
@@ -18,7 +18,8 @@ inline double orientation(const Point2& a, const Point2& b, const Point2& c) {
   if (std::abs(left - right) > relative_error * (std::abs(left) + std::abs(right)))
     return left - right;
 
-  // The parts do not overlap, and the last one that is not zero has the sign of the sum.
+  // Shewchuk's expansion: the components do not overlap and grow in magnitude, so the last nonzero
+  // one has the sign of the sum.
   std::array<double, 12> parts{};
   int count = 0;
   const auto add = [&](double value) {

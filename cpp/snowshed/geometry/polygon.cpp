@@ -28,6 +28,12 @@ Point2 between(const Point2& a, const Point2& b, double part) {
 
 constexpr double mitre_limit = 4.0;
 
+/// Smallest cross product of two sides that is not straight on, in the square of the ring's unit.
+constexpr double min_turn = 1e-30;
+
+/// Corners that are no farther apart count as one, in the ring's unit (metres or cells).
+constexpr double coincidence_tolerance = 1e-14;
+
 /// The corner at `v` of a ring whose edges are offset.
 void add_corner(const Point2& before, const Point2& v, const Point2& after, double distance,
                 Ring& moved) {
@@ -36,7 +42,7 @@ void add_corner(const Point2& before, const Point2& v, const Point2& after, doub
   const Point2 end = plus(v, first), begin = plus(v, second);
   const Point2 d1{v[0] - before[0], v[1] - before[1]}, d2{after[0] - v[0], after[1] - v[1]};
   const double turn = d1[0] * d2[1] - d1[1] * d2[0];
-  if (std::abs(turn) < 1e-30) return moved.push_back(end);  // straight on
+  if (std::abs(turn) < min_turn) return moved.push_back(end);  // straight on
   // Where the two moved edges meet.
   const double along = ((begin[0] - end[0]) * d2[1] - (begin[1] - end[1]) * d2[0]) / turn;
   const Point2 meet{end[0] + along * d1[0], end[1] + along * d1[1]};
@@ -101,8 +107,9 @@ double twice_signed_area(const Ring& ring) {
 Ring offset_ring(const Ring& ring, double distance) {
   Ring distinct;
   for (const Point2& p : ring)
-    if (distinct.empty() || length(distinct.back(), p) > 1e-14) distinct.push_back(p);
-  while (distinct.size() > 1 && length(distinct.back(), distinct.front()) <= 1e-14)
+    if (distinct.empty() || length(distinct.back(), p) > coincidence_tolerance)
+      distinct.push_back(p);
+  while (distinct.size() > 1 && length(distinct.back(), distinct.front()) <= coincidence_tolerance)
     distinct.pop_back();
   const std::size_t n = distinct.size();
   if (n < 3) return ring;

@@ -16,7 +16,7 @@ class SampledGrid final : public LevelSet {
       : samples_(std::move(samples)), flat_(samples_.counts[1] == 1) {
     for (int axis = 0; axis < 3; ++axis)
       size_[axis] = samples_.spacing * static_cast<double>(samples_.counts[axis] - 1);
-    reaches_border_ = any_inside([this](const Vec3& at) { return to_border(at) >= 0; });
+    touches_border_ = any_inside([this](const Vec3& at) { return border_distance(at) >= 0; });
     find_depth();
     find_bounds();
   }
@@ -26,7 +26,7 @@ class SampledGrid final : public LevelSet {
     if (flat_) p.y() = 0;
     const Vec3 clamped = p.cwiseMax(0.0).cwiseMin(size_);
     const double d = interpolate(clamped / samples_.spacing) + (p - clamped).norm();
-    return reaches_border_ ? std::max(d, to_border(p)) : d;
+    return touches_border_ ? std::max(d, border_distance(p)) : d;
   }
 
   Vec3 normal(const Vec3& x) const override {
@@ -67,7 +67,7 @@ class SampledGrid final : public LevelSet {
 
   /// Returns the signed distance to the border of the grid at `p`, a position relative to its
   /// origin; a lower bound outside.
-  double to_border(const Vec3& p) const {
+  double border_distance(const Vec3& p) const {
     double nearest = -infinity;
     for (int axis = 0; axis < 3; ++axis)
       if (axis != 1 || !flat_) nearest = std::max({nearest, -p[axis], p[axis] - size_[axis]});
@@ -92,7 +92,8 @@ class SampledGrid final : public LevelSet {
 
   void find_depth() {
     for_each_inside([&](const Vec3& at, double value) {
-      deepest_ = std::max(deepest_, -(reaches_border_ ? std::max(value, to_border(at)) : value));
+      deepest_ =
+          std::max(deepest_, -(touches_border_ ? std::max(value, border_distance(at)) : value));
     });
   }
 
@@ -114,7 +115,7 @@ class SampledGrid final : public LevelSet {
   GridSamples samples_;
   bool flat_;
   Vec3 size_;
-  bool reaches_border_;
+  bool touches_border_;
   double deepest_ = 0;
   Bounds bounds_;
 };

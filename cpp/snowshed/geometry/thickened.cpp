@@ -33,10 +33,11 @@ class Thickened final : public LevelSet {
   }
 
   double distance(const Vec3& x) const override {
-    const double given = shape_->distance(x);
-    if (given > max_exact_distance * half_) return given - half_;  // a lower bound
-    const auto middle = nearest_part(x, given);
-    return middle ? std::sqrt(middle->squared_distance) - half_ : given;
+    const double original_distance = shape_->distance(x);
+    if (original_distance > max_exact_distance * half_)
+      return original_distance - half_;  // a lower bound
+    const auto middle = nearest_part(x, original_distance);
+    return middle ? std::sqrt(middle->squared_distance) - half_ : original_distance;
   }
 
   Vec3 normal(const Vec3& x) const override {
@@ -66,8 +67,8 @@ class Thickened final : public LevelSet {
   static constexpr double max_exact_distance = 5.0;
 
   /// The nearest middle of a thin part, if its grown surface is nearer than the original one.
-  std::optional<Nearest> nearest_part(const Vec3& x, double given) const {
-    const double limit = given + half_;
+  std::optional<Nearest> nearest_part(const Vec3& x, double original_distance) const {
+    const double limit = original_distance + half_;
     if (!(limit > 0)) return std::nullopt;
     const Nearest nearest = middles_.nearest(x, limit * limit);
     if (!(nearest.squared_distance < limit * limit)) return std::nullopt;
@@ -81,8 +82,8 @@ class Thickened final : public LevelSet {
   std::vector<Vec3> normals_;
 };
 
-/// Dilates a solid to the half thickness `half`. `half_thickness` is that of the whole solid, or of
-/// its thickest part if it is convex.
+/// Dilates a solid to the half thickness `half`. `half_thickness` is the present value: the
+/// inradius of a convex solid, or half the thickness of a plate.
 ThickSolid dilated(Shape shape, double half_thickness, double half) {
   const double missing = half - half_thickness;
   const Thickening thickening{Vec3::Zero(), 2 * half_thickness, missing, true};

@@ -9,7 +9,7 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/memory.hpp"
 #include "snowshed/core/message_format.hpp"
-#include "snowshed/run/snow_motion.hpp"
+#include "snowshed/run/motion_estimate.hpp"
 #include "snowshed/scene/distinct_snows.hpp"
 #include "snowshed/scene/event_bodies.hpp"
 #include "snowshed/scene/locator.hpp"

@@ -5,7 +5,7 @@
 
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/kernel_variant.hpp"
-#include "snowshed/core/timer.hpp"
+#include "snowshed/core/stopwatch.hpp"
 #include "snowshed/run/simulation.hpp"
 #include "snowshed/scene/scene_json.hpp"
 

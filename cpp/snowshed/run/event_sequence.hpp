@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "snowshed/core/timer.hpp"
+#include "snowshed/core/stopwatch.hpp"
 #include "snowshed/run/results_folder.hpp"
 #include "snowshed/run/run_record.hpp"
 #include "snowshed/run/simulation.hpp"

@@ -1,5 +1,5 @@
-// The share of another program in a run: files that it adds to the results folder, and its entries
-// in run.json. The Python package adds tables, pictures and notes.
+// Additions of another program to a run: its files in the results folder, and its entries in
+// run.json. The Python package adds tables, pictures and notes.
 #pragma once
 
 #include <cstdint>

@@ -18,39 +18,39 @@ namespace {
 std::vector<std::size_t> nearest_particles(const std::vector<Vec3>& points,
                                            const std::vector<Vec3>& particles, double reach) {
   const particles::PointGrid grid(particles, reach);
-  std::vector<std::size_t> nearest_of;
+  std::vector<std::size_t> nearest_index;
   for (const Vec3& x : points) {
-    std::size_t at = particles.size() - 1;
+    std::size_t best = particles.size() - 1;
     double nearest = std::numeric_limits<double>::infinity();
     grid.for_each_near(x, [&](std::size_t i, const Vec3& y) {
       const double distance = (x - y).squaredNorm();
       if (distance >= nearest) return;
       nearest = distance;
-      at = i;
+      best = i;
     });
-    nearest_of.push_back(at);
+    nearest_index.push_back(best);
   }
-  return nearest_of;
+  return nearest_index;
 }
 
 int material_id_of(const methods::ParticleState& particles, std::size_t i) {
   return particles.material_ids.empty() ? 0 : particles.material_ids[i];
 }
 
-/// Distributes the mass of old particles over the new ones that replace them (`old_of`): each snow
-/// keeps its mass, in equal parts. The mass of a snow without new particles goes to all new
+/// Distributes the mass of old particles over the new ones that replace them (`old_index`): each
+/// snow keeps its mass, in equal parts. The mass of a snow without new particles goes to all new
 /// particles.
 std::vector<double> share_masses(const methods::ParticleState& old,
-                                 const std::vector<std::size_t>& old_of, std::size_t snows) {
+                                 const std::vector<std::size_t>& old_index, std::size_t snows) {
   std::vector<double> mass(snows), count(snows);
   for (std::size_t i = 0; i < old.masses.size(); ++i) mass[material_id_of(old, i)] += old.masses[i];
-  for (const std::size_t i : old_of) ++count[material_id_of(old, i)];
-  double placed = 0, left = 0;
-  for (std::size_t k = 0; k < snows; ++k) (count[k] > 0 ? placed : left) += mass[k];
+  for (const std::size_t i : old_index) ++count[material_id_of(old, i)];
+  double placed = 0, unassigned = 0;
+  for (std::size_t k = 0; k < snows; ++k) (count[k] > 0 ? placed : unassigned) += mass[k];
   std::vector<double> masses;
-  for (const std::size_t i : old_of) {
+  for (const std::size_t i : old_index) {
     const int material_id = material_id_of(old, i);
-    masses.push_back(mass[material_id] / count[material_id] * (1 + left / placed));
+    masses.push_back(mass[material_id] / count[material_id] * (1 + unassigned / placed));
   }
   return masses;
 }
@@ -70,10 +70,10 @@ std::vector<Vec3> fill_stack(const scene::Scene& scene, const std::vector<Vec3>&
 /// The new particles in batches by event and snow, which are those of the particles they replace.
 std::vector<methods::ParticleBatch> batches_of(const Reseeding::Cloud& cloud,
                                                const methods::ParticleState& old,
-                                               const std::vector<std::size_t>& old_of) {
+                                               const std::vector<std::size_t>& old_index) {
   std::map<std::pair<int, int>, methods::ParticleBatch> sorted;
-  for (std::size_t i = 0; i < old_of.size(); ++i) {
-    const int event = old.events[old_of[i]], material_id = material_id_of(old, old_of[i]);
+  for (std::size_t i = 0; i < old_index.size(); ++i) {
+    const int event = old.events[old_index[i]], material_id = material_id_of(old, old_index[i]);
     methods::ParticleBatch& batch = sorted[{event, material_id}];
     batch.positions.push_back(cloud.positions[i]);
     batch.mass = cloud.masses[i];
@@ -96,12 +96,12 @@ Reseeding reseed_stack(const scene::Scene& scene, const PanelRegion& panel,
   };
   Reseeding r;
   r.after.positions = fill_stack(scene, old.positions, event, stop);
-  const auto old_of =
+  const auto old_index =
       nearest_particles(r.after.positions, old.positions, 1.5 * scene.numerics->resolution());
-  r.after.masses = share_masses(old, old_of, snows.size());
-  for (const std::size_t i : old_of) r.after.densities.push_back(initial_density(i));
+  r.after.masses = share_masses(old, old_index, snows.size());
+  for (const std::size_t i : old_index) r.after.densities.push_back(initial_density(i));
   r.after.on_panel = panel.contains(r.after.positions, laid_height);
-  r.batches = batches_of(r.after, old, old_of);
+  r.batches = batches_of(r.after, old, old_index);
 
   for (std::size_t i = 0; i < old.masses.size(); ++i)
     r.before.densities.push_back(initial_density(i));

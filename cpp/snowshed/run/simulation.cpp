@@ -8,7 +8,7 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/message_format.hpp"
 #include "snowshed/core/parallel.hpp"
-#include "snowshed/core/timer.hpp"
+#include "snowshed/core/stopwatch.hpp"
 #include "snowshed/methods/capabilities.hpp"
 #include "snowshed/run/energy_history.hpp"
 #include "snowshed/run/film_recorder.hpp"

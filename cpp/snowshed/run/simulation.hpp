@@ -196,7 +196,7 @@ class Simulation {
   std::unique_ptr<FilmRecorder> film_;
   std::optional<io::FilmMark> film_mark_;    // in the checkpoint that was loaded
   std::unique_ptr<methods::Curve> curve_;    // for methods that have one
-  std::unique_ptr<EnergyHistory> energies_;  // for all others, with output.energy
+  std::unique_ptr<EnergyHistory> energies_;  // for methods without a curve, if output.energy is set
   RestDetector rest_;
   std::vector<std::string> notes_;
   int event_ = 0;

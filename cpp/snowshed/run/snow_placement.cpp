@@ -79,7 +79,7 @@ class Particles {
     for_each_near(distance, depth, [&](std::size_t i) { count(where, i); });
   }
 
-  /// The same for particles that are not misplaced otherwise.
+  /// Returns the number of such particles that have no mark yet; marks none.
   template <class Distance>
   std::size_t count_others_within(double depth, const Distance& distance) const {
     std::size_t others = 0;

@@ -164,7 +164,9 @@ class ValueBuilder {
   const std::string& text_;
   const std::string& name_;
   json root_;
-  std::vector<json*> open_;  // from the root to the innermost; a parent never grows meanwhile
+  // Open containers, outermost first. None grows while an inner one is open, so pointers stay
+  // valid.
+  std::vector<json*> open_;
   std::vector<std::string> keys_;
   std::size_t values_ = 0, keys_read_ = 0;
 };

@@ -109,8 +109,8 @@ class SchemaWriter {
   template <class T>
   void optional(const char* key, std::optional<T>&, const char* doc) {
     json schema = schema_of<T>();
-    if constexpr (std::is_same_v<T,
-                                 material::Snow>)  // for a part the defaults are the scene's snow
+    // The snow of a part has the scene's snow as its defaults, so the schema states none.
+    if constexpr (std::is_same_v<T, material::Snow>)
       for (auto& [name, property] : schema["properties"].items()) property.erase("default");
     add(key, schema, doc);
   }
@@ -217,9 +217,9 @@ class SchemaWriter {
     return schema;
   }
 
-  static json array(json items, int least, const std::string& unit) {
+  static json array(json items, int min_items, const std::string& unit) {
     json schema = {
-        {"type", "array"}, {"items", std::move(items)}, {"minItems", least}, {"maxItems", 3}};
+        {"type", "array"}, {"items", std::move(items)}, {"minItems", min_items}, {"maxItems", 3}};
     if (!unit.empty()) schema["x-unit"] = unit;
     return schema;
   }

@@ -66,8 +66,8 @@ class SceneRules {
 
   void check_slab(const Slab& slab) const {
     if (!scene_.panel) fail(slab, "there is no " + path_of(scene_, scene_.panel) + " to lie on");
-    check_fits(slab.length, scene_.panel->length);
-    if (in_3d()) check_fits(slab.width, scene_.panel->width);
+    check_fits(slab.length, scene_.panel->length, "longer");
+    if (in_3d()) check_fits(slab.width, scene_.panel->width, "wider");
     check_layers(slab);
     check_in_domain(slab, thickest_slab());
   }
@@ -114,9 +114,10 @@ class SceneRules {
                        std::to_string(material::max_materials) + " are allowed");
   }
 
-  void check_fits(const double& slab, const double& panel) const {
+  void check_fits(const double& slab, const double& panel, const std::string& longer) const {
     if (slab > panel)
-      fail(slab, show(slab) + " m exceeds that of the panel (" + path_and_value(panel) + " m)");
+      fail(slab,
+           show(slab) + " m is " + longer + " than the panel (" + path_and_value(panel) + " m)");
   }
 
   void check_panel(const Panel& panel) const {

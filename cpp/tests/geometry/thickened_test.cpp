@@ -174,7 +174,7 @@ TEST(Thickened, OnlyThinPartsGrow) {
   expect_thick(gutter, 2, 1);
 }
 
-TEST(Thickened, LayersThatAreThickTogetherAreUnchanged) {
+TEST(Thickened, TouchingLayersCountAsOneThickPart) {
   std::vector<Shape> layers;
   for (int k = 0; k < 12; ++k) layers.push_back(box2(0, 0.05 * k, 2, 0.05));
   const Shape stack = unite(layers);

@@ -69,13 +69,18 @@ class RateEquations {
       double low = 0, high = 1;
       for (int i = 0; i < 200; ++i) {
         const double a = low + (high - low) / 3, b = high - (high - low) / 3;
-        (yield<D>(elastic_to(a)) < yield<D>(elastic_to(b)) ? high : low) =
-            yield<D>(elastic_to(a)) < yield<D>(elastic_to(b)) ? b : a;
+        if (yield<D>(elastic_to(a)) < yield<D>(elastic_to(b)))
+          high = b;
+        else
+          low = a;
       }
       high = 1;
       for (int i = 0; i < 200; ++i) {
         t = (low + high) / 2;
-        (yield<D>(elastic_to(t)) > 0 ? high : low) = t;
+        if (yield<D>(elastic_to(t)) > 0)
+          high = t;
+        else
+          low = t;
       }
       x = elastic_to(t);
     }
@@ -118,8 +123,8 @@ class RateEquations {
   }
 
   /// Returns the state shortly after the compaction of snow without strength has begun. Stress, p0
-  /// and e_v then grow in proportion to time. Their ratio r = p/p0 is that at which the shear
-  /// stress due to the strain rate lies on the yield surface.
+  /// and e_v then grow in proportion to time. Their ratio r = p/p0 follows from the yield condition
+  /// for the shear stress that the strain rate causes.
   template <int D>
   MaterialState<D> recompacted(const Eigen::Matrix<double, D, D>& rate, double time) const {
     using Matrix = Eigen::Matrix<double, D, D>;

@@ -64,7 +64,7 @@ int fail_every_allocation(CallSequence<M>& reference, CallSequence<M>& faulty,
       ++faults;
       SCOPED_TRACE("call " + std::to_string(k) + ", allocation " + std::to_string(n));
       // Streams can recover from a lack of memory. The call has then succeeded, so the reference
-      // makes it, too. Both make it again later, which changes nothing: such calls only read or
+      // makes it, too. Both repeat it later, which is harmless because such calls only read or
       // write files.
       if (outcome == FaultOutcome::recovered) reference.calls[k]();
       expect_same(*faulty.method, *reference.method);

@@ -9,7 +9,7 @@
 #include "snowshed/core/angles.hpp"
 #include "snowshed/core/errors.hpp"
 #include "snowshed/methods/mpm/settings.hpp"
-#include "snowshed/run/snow_motion.hpp"
+#include "snowshed/run/motion_estimate.hpp"
 #include "snowshed/scene/presets.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
@@ -68,7 +68,7 @@ TEST(CostEstimate, TimeStepOfTheCalibratedSnowMatchesItsFormula) {
   EXPECT_NEAR(first_time_step(fine), first_time_step(lab) / 4, 1e-15);
 }
 
-TEST(CostEstimate, TheRearSlidesAlongTheWholePanelAndFalls) {
+TEST(CostEstimate, TheRearOfTheSlabDeterminesTheTime) {
   scene::Scene scene = scene::preset_scene("lab-40");
   scene.panel->friction = 0.3;
   const double acceleration = g * (sine - 0.3 * cosine);

@@ -48,7 +48,7 @@ std::map<std::pair<int, int>, double> masses(const Simulation& sim) {
 
 class Layers : public io::TemporaryFolder {};
 
-TEST_F(Layers, AddTheirSnowInTheirEvents) {
+TEST_F(Layers, EachLayerIsAddedInItsEvent) {
   const auto sim = run_all(layered_scene());
   const std::map<std::pair<int, int>, double> expected = {
       {{1, 0}, 0.1 * 0.01 * 120}, {{1, 1}, 0.1 * 0.02 * 210}, {{2, 0}, 0.1 * 0.01 * 120},

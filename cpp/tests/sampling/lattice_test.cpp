@@ -55,7 +55,7 @@ TEST(Lattice, GivesASlabOnePointPerCell) {
     }
 }
 
-TEST(Lattice, GivesBoxesInSpaceTheirVolumeInPoints) {
+TEST(Lattice, TheNumberOfPointsMatchesTheVolumeOfABox) {
   for (const double spacing : {0.01, 0.013, 0.02}) {
     const geometry::Shape box =
         geometry::transform(geometry::make_box(Vec3::Zero(), Vec3(0.21, 0.13, 0.047)),
@@ -67,7 +67,7 @@ TEST(Lattice, GivesBoxesInSpaceTheirVolumeInPoints) {
   }
 }
 
-TEST(Lattice, GivesBallsTheirVolumeInPoints) {
+TEST(Lattice, TheNumberOfPointsMatchesTheVolumeOfABall) {
   for (const double spacing : {0.011, 0.02, 0.03}) {
     const double radius = 0.1;
     const geometry::Shape ball = geometry::make_sphere({0.003, 0, 0.5}, radius);

@@ -53,9 +53,9 @@ INSTANTIATE_TEST_SUITE_P(
     All, SceneRules,
     testing::ValuesIn(std::vector<Violation>{
         {"/slab", "there is no /panel", [](Scene& s) { s.panel.reset(); }},
-        {"/slab/length", "2.5 m exceeds that of the panel (/panel/length = 2 m)",
+        {"/slab/length", "2.5 m is longer than the panel (/panel/length = 2 m)",
          [](Scene& s) { s.slab->length = 2.5; }},
-        {"/slab/width", "3.5 m exceeds that of the panel (/panel/width = 3 m)",
+        {"/slab/width", "3.5 m is wider than the panel (/panel/width = 3 m)",
          [](Scene& s) { s.slab->width = 3.5; }},
         {"/slab/thickness", "missing: a thickness, or /slab/layers, is required",
          [](Scene& s) { s.slab->thickness = 0; }},

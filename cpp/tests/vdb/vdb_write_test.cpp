@@ -14,7 +14,8 @@ using namespace geometry_testing;
 using round_trip::voxel;
 
 VdbWriteSettings settings(int dimension) {
-  return {dimension, voxel, particle_radius(dimension, voxel, round_trip::per_voxel(dimension)),
+  return {dimension, voxel,
+          sampling::particle_radius(dimension, voxel, round_trip::per_voxel(dimension)),
           dimension == 2 ? 9 * voxel : 0};
 }
 
@@ -86,7 +87,7 @@ TEST_P(WriteVdb, SurvivesARoundTripThroughAFile) {
   const auto through_a_file = [&](const std::vector<Vec3>& particles,
                                   const round_trip::Snow& snow) {
     write_particles(path, cloud_of(particles), settings(snow.dimension));
-    return make_sampled_grid(read_vdb({path, "surface"}), path);
+    return geometry::make_sampled_grid(geometry::read_vdb({path, "surface"}), path);
   };
   round_trip::expect_preserved(round_trip::dome(GetParam()), through_a_file);
   round_trip::expect_preserved(round_trip::slab(GetParam()), through_a_file);
@@ -98,8 +99,9 @@ TEST_P(WriteVdb, DensityReadBackGivesTheSnow) {
   ParticleCloud cloud = cloud_of(round_trip::particles_of(*slab.solid, dimension, 1));
   for (double& mass : cloud.masses) mass = 200 * slab.volume / double(cloud.masses.size());
   write_particles(path, cloud, settings(dimension));
-  const Shape solid = make_sampled_grid(read_vdb({path, "density", 100}), path);
-  EXPECT_NEAR(measure(*solid, dimension, voxel) / slab.volume, 1, 0.1);
+  const geometry::Shape solid =
+      geometry::make_sampled_grid(geometry::read_vdb({path, "density", 100}), path);
+  EXPECT_NEAR(sampling::measure(*solid, dimension, voxel) / slab.volume, 1, 0.1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Dimensions, WriteVdb, ::testing::Values(2, 3));

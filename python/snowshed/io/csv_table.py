@@ -330,7 +330,7 @@ def _read_table_text(path: Path, largest: int) -> str:
         raise InputError(f"{path}, line {line}: not a table: not UTF-8 text") from None
     if b"\0" in content:
         line = content[: content.index(b"\0")].count(b"\n") + 1
-        raise InputError(f"{path}, line {line}: not a table: it holds bytes that are 0")
+        raise InputError(f"{path}, line {line}: not a table: it contains NUL bytes")
     return text
 
 

@@ -90,7 +90,7 @@ def stored_bytes(file: BinaryIO, enough: int) -> int:
     True
     """
     length, at, end = 0, 0, os.fstat(file.fileno()).st_size
-    place = file.tell()
+    position = file.tell()
     try:
         while at < end and length < enough:
             data = os.lseek(file.fileno(), at, os.SEEK_DATA)
@@ -99,7 +99,7 @@ def stored_bytes(file: BinaryIO, enough: int) -> int:
     except OSError:  # no data after this offset
         pass
     finally:
-        file.seek(place)
+        file.seek(position)
     return length
 
 

@@ -100,7 +100,7 @@ class Simulation(MethodResults):
         return loaded
 
     def save(self, path: PathLike) -> None:
-        """Store the simulation in a file, which appears whole or not at all.
+        """Store the simulation in a file, atomically.
 
         A simulation saved between events, or before the first step of an event, continues to the
         same bits after `load`. In the middle of an event it agrees with the original to rounding.
@@ -146,7 +146,7 @@ class Simulation(MethodResults):
         ----------
         until
             "rest": until the snow rests or the event's time limit; either ends the event. A number:
-            until this time in the event, s, and no farther than the step that reaches it. A
+            until this time in the event, s; the last step may end after it. A
             function: until it returns True; it gets the simulation and may change it.
         every
             Number of steps between two calls of the function.
@@ -259,9 +259,9 @@ class Simulation(MethodResults):
             If the shape is wrong, or a value is not finite.
         """
         rows = np.asarray(changes)
-        alike = rows.ndim == 1
-        count = 1 if alike else self.particle_count
-        vectors = points("changes", rows[None] if alike else rows, self.dimension, count)
+        is_single = rows.ndim == 1
+        count = 1 if is_single else self.particle_count
+        vectors = points("changes", rows[None] if is_single else rows, self.dimension, count)
         self._core.add_velocity(np.broadcast_to(vectors, (self.particle_count, 3)))
 
     def _seeded_mass(self, snow: Snow) -> float:
@@ -343,8 +343,8 @@ class Simulation(MethodResults):
         InputError
             If xarray (extra ``study``) is not installed.
         """
-        there = self.fields
-        values = {name: self._core.field_by_id(name) for name in DATASET if name in there}
+        fields = self.fields
+        values = {name: self._core.field_by_id(name) for name in DATASET if name in fields}
         return particle_dataset(values, self.event, self.time)
 
     def grid(self) -> xarray.Dataset:

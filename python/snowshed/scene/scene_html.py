@@ -98,7 +98,7 @@ def _circle(center: list[float], radius: float) -> list[Point]:
 
 
 def _widened(values: Iterable[float], height: float) -> Point:
-    """Return the left and the right of the drawing, with ground below the fall of the snow."""
+    """Return the horizontal limits of the drawing, with the ground onto which the snow falls."""
     numbers = list(values)
     low, high = min(numbers), max(numbers)
     extra = MARGIN * max(high - low, 0.1)

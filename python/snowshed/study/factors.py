@@ -116,7 +116,7 @@ def linear(
     if step <= 0:
         raise InputError(f"the step {step} is not positive")
     if stop < start:
-        raise InputError(f"must not fall: from {start} to {stop}")
+        raise InputError(f"the end {stop} is below the start {start}")
     steps = (float(stop) - float(start)) / step * (1 + 1e-9)
     if not steps < MAX_COUNT:
         raise InputError(f"has too many values; at most {MAX_COUNT} are allowed")
@@ -156,7 +156,7 @@ class Span:
         if self.scale not in SCALES:
             raise InputError(f"scale {self.scale!r} is none of {', '.join(SCALES)}")
         if not self.low < self.high:
-            raise InputError(f"must rise: from {self.low} to {self.high}")
+            raise InputError(f"the upper end {self.high} is not above the lower end {self.low}")
         if self.scale == "log":
             _check_positive(self.low, self.high)
 

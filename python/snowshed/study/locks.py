@@ -64,7 +64,7 @@ def is_held(path: Path) -> bool:
     except FileNotFoundError:
         return False
     try:
-        # Shared, so that two processes that test at the same time are not taken for the holder.
+        # A shared lock, so that two processes that test at once do not see each other as holder.
         _lock(handle, path, fcntl.LOCK_SH | fcntl.LOCK_NB)
     except BlockingIOError:
         return True

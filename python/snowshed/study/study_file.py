@@ -92,7 +92,7 @@ snow.critical_state_slope = { from = 0.3, to = 0.7, step = 0.2 }
 # panel.friction = { from = 0.1, to = 0.4 }
 # snow.preconsolidation_pressure = { from = 1e3, to = 1e4, scale = "log" }
 
-# A table `season` with the name of a season file, `weather`, makes a season of every run.
+# A table [season] with weather = "FILE" makes every run a season.
 
 # Several products in a study: each part is crossed with the axes above, and their union runs.
 # [[part]]
@@ -216,16 +216,16 @@ def _scene(data: Mapping[str, Any], folder: Path) -> Scene:
         _checked_value(value, str, f"scene.{key}", "a text")
     scene = Scene()
     if "preset" in sources:
-        scene = _with_place("scene", Scene.preset, sources["preset"])
+        scene = _at_key("scene", Scene.preset, sources["preset"])
     if "file" in sources:
         scene.update(_scene_file(Path(sources["file"])))
     if "snow_preset" in sources:
-        snow = _with_place("scene", Snow.preset, sources["snow_preset"])
+        snow = _at_key("scene", Snow.preset, sources["snow_preset"])
         scene.update({"snow": snow.to_data()})
-    _with_place("scene", scene.update, given)
+    _at_key("scene", scene.update, given)
     for key, value in given.items():
         if value == {} and getattr(scene, key, None) is None:  # a part with all its defaults
-            _with_place("scene", scene.set, key, value)
+            _at_key("scene", scene.set, key, value)
     for key, path in (("dimension", "dimension"), ("events", "events.count")):
         if key in data:
             scene.set(path, _checked_value(data[key], int, key, "a whole number"))
@@ -233,7 +233,7 @@ def _scene(data: Mapping[str, Any], folder: Path) -> Scene:
     names = {key: FORMER_NAMES.get(key, key) for key in accuracy}
     settings = accuracy_of(scene.to_data())
     _check_keys(names.values(), tuple(settings), "accuracy.")
-    _with_place("accuracy", check_once, names, "")
+    _at_key("accuracy", check_once, names, "")
     return scene.update({settings[names[key]]: value for key, value in accuracy.items()})
 
 
@@ -282,7 +282,7 @@ def _factors(data: Mapping[str, Any], where: str) -> list[Factor]:
     """Return the factors in a table with the keys axes, zip and sample."""
     axes = _flatten(_table(data.get("axes", {}), f"{where}axes"))
     return [
-        *(_with_place(f"{where}axes", axis, path, _values(value, f"{where}axes.{path}"))
+        *(_at_key(f"{where}axes", axis, path, _values(value, f"{where}axes.{path}"))
           for path, value in axes.items()),
         *(_zip_factor(table, inside) for table, inside in _tables(data, "zip", where)),
         *(_sample(table, inside) for table, inside in _tables(data, "sample", where)),
@@ -291,7 +291,7 @@ def _factors(data: Mapping[str, Any], where: str) -> list[Factor]:
 
 def _zip_factor(table: Mapping[str, Any], where: str) -> Factor:
     columns = {path: _values(value, f"{where}.{path}") for path, value in _flatten(table).items()}
-    return _with_place(where, Factor, columns)
+    return _at_key(where, Factor, columns)
 
 
 def _sample(table: Mapping[str, Any], where: str) -> Factor:
@@ -304,12 +304,12 @@ def _sample(table: Mapping[str, Any], where: str) -> Factor:
     seed = _checked_value(table.get("seed", 1), int, f"{where}.seed", "a whole number")
     axes = _flatten(_table(table.get("axes", {}), f"{where}.axes"))
     spans = {path: _span(value, f"{where}.axes.{path}") for path, value in axes.items()}
-    return _with_place(where, SAMPLE_METHODS[method], spans, count, seed=seed)
+    return _at_key(where, SAMPLE_METHODS[method], spans, count, seed=seed)
 
 
 def _span(value: Any, where: str) -> Span:
     numbers = _range_numbers(value, SPAN_KEYS, where)
-    return _with_place(where, Span, numbers["from"], numbers["to"], value.get("scale", "linear"))
+    return _at_key(where, Span, numbers["from"], numbers["to"], value.get("scale", "linear"))
 
 
 def _values(value: Any, where: str) -> list[Any]:
@@ -326,11 +326,11 @@ def _range(value: Mapping[str, Any], where: str) -> list[float]:
         _checked_value(value["count"], int, f"{where}.count", "a whole number")
     scale = value.get("scale", "linear")
     if scale == "linear":
-        return _with_place(where, linear, start, stop, **numbers)
+        return _at_key(where, linear, start, stop, **numbers)
     if scale == "log":
         if "step" in numbers or "count" not in numbers:
             raise InputError(f"{where}: a logarithmic range needs a count, and has no step")
-        return _with_place(where, logarithmic, start, stop, numbers["count"])
+        return _at_key(where, logarithmic, start, stop, numbers["count"])
     raise InputError(f"{where}.scale: {scale!r} is unknown; allowed: {', '.join(SCALES)}")
 
 
@@ -399,7 +399,7 @@ def _checked_value(value: Any, kind: type, where: str, expected: str) -> Any:
     return value
 
 
-def _with_place(where: str, make: Callable[..., Made], *arguments: Any, **options: Any) -> Made:
+def _at_key(where: str, make: Callable[..., Made], *arguments: Any, **options: Any) -> Made:
     """Call `make`, and name the place in the file in its errors."""
     try:
         return make(*arguments, **options)

@@ -16,10 +16,10 @@ from reproductions.frischholz2023.studies import DEFAULTS, PANEL, THESIS, VARIAN
 from reproductions.frischholz2023.variants import (
     by_size,
     change,
+    distinct_variants,
     is_unswitched,
     quartiles,
     read_variants,
-    with_runs_of_its_own,
 )
 from snowshed.analysis.regression.deviations import FRAME_RATE
 from snowshed.analysis.regression.geometry import DAMPING_RATE
@@ -70,8 +70,8 @@ def sample_text(stacks: pd.DataFrame) -> list[str]:
         f"{events:g} events and {seeds} seeding{'s' if seeds > 1 else ''} each. The panels were "
         "chosen by their geometry alone. They were simulated with our settings, with each "
         "deviation undone, and with all undone.",
-        f"{_cells_sentence(stacks)} Stacks are measured by outermost_first, except where "
-        "the trimming or all deviations are undone.",
+        f"{_cells_sentence(stacks)} The trimming rule is `outermost_first`, except in "
+        "the variants `trimming` and `thesis`.",
         "A change is the change of the mean stack below a panel, relative to our settings with "
         "the same seed; its noise is the standard error over the panels. A change of up to "
         f"{SIGMAS:g} standard errors may be chance.",
@@ -178,7 +178,7 @@ def quartiles_grid(stacks: pd.DataFrame) -> HtmlTable:
             trimming,
             *(f"{quartile:.3f}" for quartile in quartiles(of_one, trimming)),
         ]
-        for name, of_one in with_runs_of_its_own(stacks)
+        for name, of_one in distinct_variants(stacks)
         for trimming in TRIMMINGS
     ]
     printed = [f"{quartile:.3f}" for quartile in THESIS_QUARTILES["rbf"]]

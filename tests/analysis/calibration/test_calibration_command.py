@@ -91,7 +91,7 @@ def test_without_a_library_nothing_is_computed(
         assert run("calibrate", evaluated / "stacks.csv", *options, "--dry-run") == 0
 
 
-def test_the_printed_tables_and_warnings(evaluated, capsys):
+def test_tables_and_warnings_are_printed(evaluated, capsys):
     from snowshed.cli.commands.calibrate import print_calibration
 
     stacks = read_simulated_stacks(evaluated / "store")
@@ -121,7 +121,7 @@ def test_the_template_is_written(tmp_path, capsys):
     assert "stacks.csv: no measurement in it" in capsys.readouterr().err
 
 
-def test_dry_run_and_errors(tmp_path, capsys):
+def test_a_dry_run_counts_runs_and_bad_options_are_named(tmp_path, capsys):
     write_measurements(measured(TRUTH), tmp_path / "stacks.csv")
     options = (tmp_path / "stacks.csv", "-o", tmp_path / "out")
     assert run("calibrate", *options, "--quick", "--dry-run") == 0

@@ -22,7 +22,12 @@ from snowshed.analysis.clearance import (
 )
 from snowshed.analysis.clearance.answer import STUDY, expected_duration
 from snowshed.analysis.clearance.report import write_report
-from snowshed.analysis.clearance.statistics import burial_interval, levels_of, shares_of
+from snowshed.analysis.clearance.statistics import (
+    CauseShare,
+    burial_interval,
+    levels_of,
+    shares_of,
+)
 from snowshed.cli.main import main
 from snowshed.results.folder import read_events
 from snowshed.results.season_folder import SeasonFolder
@@ -132,7 +137,7 @@ def report(answer, tmp_path_factory):
     return folder
 
 
-def test_the_contents_of_page_and_summary(report):
+def test_page_and_summary_contain_the_answer(report):
     page = (report / "clearance.html").read_text()
     assert "must be" in page and "Assumptions" in page and "Gumbel" in page
     assert "http" not in page.replace("http://www.w3.org", "")
@@ -142,7 +147,7 @@ def test_the_contents_of_page_and_summary(report):
     assert 'href="worst-winter-0.6-60.html"' in page and "slide-offs" in view
 
 
-def test_its_pages_are_readable_on_telephone_and_screen(report):
+def test_pages_are_readable_on_telephone_and_screen(report):
     check_page(report / "clearance.html")
     check_page(report / "worst-winter-0.6-60.html")
 
@@ -210,6 +215,31 @@ def test_disabled_relations_are_stated(answer):
 
 
 # --- statistics ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "cover, ground",
+    [
+        ("weather", "the natural snow cover of the weather file"),
+        ("none", "bare ground"),
+        (0.0, "bare ground"),
+        (0.3, "natural snow, 0.3 m deep"),
+    ],
+)
+def test_the_report_says_on_which_ground_the_stack_lies(answer, cover, ground):
+    result, _ = answer
+    cases = [replace(case, base_settings=SeasonSettings(cover=cover)) for case in result.cases]
+    texts = answer_text.assumptions(replace(result, cases=cases))
+    assert f"The stack lies on {ground}, and nobody clears it." in texts
+
+
+def test_the_advice_names_the_parameter_without_its_unit(answer, monkeypatch):
+    result, _ = answer
+    monkeypatch.setattr(type(result), "shares", [CauseShare("adhesion", 0.5)])
+    text = answer_text.advice(result)
+    assert text.startswith("Measuring the adhesion of snow to the panel would reduce the ")
+    rows = answer_text.range_rows(SnowRanges({"adhesion": (0.0, 150.0)}))
+    assert rows == [("adhesion of snow to the panel, Pa", "0", "150")]
 
 
 def test_confidence_intervals_have_their_coverage(monkeypatch):

@@ -29,7 +29,7 @@ def test_coarser_voxels_keep_the_ice_fraction_and_take_the_majority_grain(snow):
         assert coarse.labels[z, y, x] == grains[counts.argmax()]
 
 
-def test_the_middle_and_a_turned_sample(snow):
+def test_samples_are_cropped_and_turned(snow):
     assert np.array_equal(snow.middle(0.5).labels, snow.labels[6:18, 6:18, 6:18])
     turned = snow.turned(2)
     assert turned.labels[5, 7, 9] == snow.labels[7, 9, 5]

@@ -82,7 +82,7 @@ def test_inputs_that_do_not_fit_the_table_are_refused(table, inputs, message):
         read_rows(table, inputs=inputs)
 
 
-def test_commands_take_the_inputs(table, tmp_path, capsys):
+def test_commands_accept_additional_inputs(table, tmp_path, capsys):
     out = str(tmp_path / "out")
     inputs = [word for name in INPUTS for word in ("--input", name)]
     quick = ["--kind", "linear", "--rounds", "1", "--folds", "3", "--inner-folds", "2"]

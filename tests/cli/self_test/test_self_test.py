@@ -45,7 +45,7 @@ def core(monkeypatch):
 
 
 def test_the_self_test_passes(capsys):
-    assert main(["verify"]) == 0
+    assert main(["self-test"]) == 0
     shown = capsys.readouterr().out
     assert f"snowshed {_core.version}, " in shown and " kernels, " in shown
     assert all(check.title in shown for check in CHECKS)
@@ -54,7 +54,7 @@ def test_the_self_test_passes(capsys):
 
 def test_the_exit_code_is_1_if_a_check_fails(capsys, monkeypatch):
     monkeypatch.setattr(snowshed.cli.self_test, "CHECKS", (BROKEN,))
-    assert main(["verify"]) == 1
+    assert main(["self-test"]) == 1
     (row,) = (line for line in capsys.readouterr().out.splitlines() if BROKEN.title in line)
     assert row.split()[-3:] == ["0.5", "0", "FAILED"]
 
@@ -65,7 +65,7 @@ def test_a_check_that_raises_an_error_fails_and_says_why(capsys, monkeypatch):
 
     check = Check("a core that stops", 1.0, measure)
     monkeypatch.setattr(snowshed.cli.self_test, "CHECKS", (check, BROKEN))
-    assert main(["verify"]) == 1
+    assert main(["self-test"]) == 1
     shown = capsys.readouterr().out
     assert "FAILED time step underflow" in shown and BROKEN.title in shown
 

@@ -45,8 +45,8 @@ def test_numbers_as_text(tmp_path, kind):
     [
         ("uint8", "10 " * 209, "209 numbers as text; its header says 210"),
         ("uint8", "1 " * 211, "211 numbers as text; its header says 210"),
-        ("uint8", "1 " * 209 + "256", "numbers that are no uint8"),
-        ("int16", "1 " * 209 + "1.5", "numbers that are no int16"),
+        ("uint8", "1 " * 209 + "256", "numbers that do not fit uint8"),
+        ("int16", "1 " * 209 + "1.5", "numbers that do not fit int16"),
         ("uint8", "1 " * 209 + "x", "is not only numbers"),
         ("uint8", "1", "1 characters for 210 numbers"),
         ("int64", "1 " * 210, "whole numbers of 8 bytes as text"),

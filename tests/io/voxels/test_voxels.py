@@ -104,7 +104,7 @@ def test_slices_are_in_the_order_of_their_numbers(tmp_path, ending):
     assert_same(open_voxels(folder), voxels)
 
 
-def test_sixteen_bit_png(tmp_path):
+def test_a_sixteen_bit_png_is_read(tmp_path):
     voxels = VOXELS.astype(np.uint16) * 200
     assert_same(open_voxels(save_slices(tmp_path / "s", voxels)), voxels)
 

@@ -187,7 +187,7 @@ def test_two_typical_years_in_a_file_are_refused(station):
         station(epw(rows + rows))
 
 
-def test_positions_of_stations(station):
+def test_positions_of_stations_are_read(station):
     icsv = (
         "# iCSV 1.0 UTF-8\n# geometry = POINTZ(170.5 -45.9 120)\n# srid = EPSG:4326\n"
         "# timezone = 12\n# fields = timestamp,TA\n# [DATA]\n2024-01-01T00:00:00,268.15\n"

@@ -62,6 +62,7 @@ def test_causes_are_sorted_by_size():
         (Estimate(-0.3, 0.2), "H/L changes by -30 ± 20 %, which may be chance. "),
         (Estimate(0.3, float("nan")), "which may be chance. "),
         (Estimate(0.0, 0.0), "it changes no stack of the sample. "),
+        (Estimate(0.004, 0.003), "it changes no stack of the sample noticeably. "),
     ],
 )
 def test_changes_within_the_noise_are_marked_as_chance(monkeypatch, estimate, words):

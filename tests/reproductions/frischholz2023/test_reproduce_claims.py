@@ -60,7 +60,7 @@ def test_claims_with_parts_hold_if_all_parts_do():
     assert all_of([confirmed, undecided, contradicted]) == Finding(CONTRADICTED, "co; un; co")
 
 
-def test_noise_of_a_mean():
+def test_the_noise_of_a_mean_is_pooled():
     mean = mean_of([Estimate(1.0, 3.0), Estimate(3.0, 4.0)])
     assert (mean.value, mean.noise) == (2.0, 2.5)
 
@@ -126,7 +126,7 @@ def test_claims_about_several_tilts_need_them():
     assert judged.finding.verdict == UNDECIDED
 
 
-def test_the_ratio_of_dimensions():
+def test_the_ratio_of_dimensions_is_judged():
     planar = lab_rows()
     spatial = [
         lab_rows(height=lambda event, tilt, f=f: f * 0.05 * event**0.7) for f in (0.66, 0.95)

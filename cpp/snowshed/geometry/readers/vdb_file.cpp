@@ -18,7 +18,7 @@ std::string where(const VdbSource& source) {
 
 /// Returns the output of snowshed-vdb. Throws InputError if it refused the file or crashed on it.
 std::string run_reader(const VdbSource& source) {
-  const auto program = beside_this_binary("snowshed-vdb");
+  const auto program = find_sibling_program("snowshed-vdb");
   if (!program)
     throw InputError(where(source),
                      "reading it needs OpenVDB, without which this snowshed was built; install it "

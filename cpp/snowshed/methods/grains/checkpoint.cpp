@@ -6,7 +6,7 @@
 
 #include "snowshed/core/errors.hpp"
 #include "snowshed/methods/archive.hpp"
-#include "snowshed/methods/grains/listing.hpp"
+#include "snowshed/methods/grains/pair_tables.hpp"
 #include "snowshed/methods/grains/solver_impl.hpp"
 
 namespace snowshed::methods::grains {
@@ -172,17 +172,17 @@ SolverImpl::LoadedState SolverImpl::read_state(const io::BinaryReader& in) const
   Workspace& work = result.work;
   const std::size_t grains = next.bodies.size();
   if (grains > 0) {
-    Listing listing;
+    PairTables tables;
     try {
-      listing = listing_of(model_, std::move(next.searched_poses), next.searched_boundary, past);
+      tables = search_pairs(model_, std::move(next.searched_poses), next.searched_boundary, past);
     } catch (const SimulationError& error) {
       archive.refuse(error.what());
     }
-    next.pairs = std::move(listing.pairs);
-    next.searched_poses = std::move(listing.poses);
-    work.groups_by_body = std::move(listing.groups_by_body);
-    work.results = std::move(listing.results);
-    work.max_step = listing.max_step;
+    next.pairs = std::move(tables.pairs);
+    next.searched_poses = std::move(tables.poses);
+    work.groups_by_body = std::move(tables.groups_by_body);
+    work.results = std::move(tables.results);
+    work.max_step = tables.max_step;
     if (next.pairs.all().size() != past.size()) archive.refuse("pairs of near spheres are missing");
   }
   work.next = next.bodies;

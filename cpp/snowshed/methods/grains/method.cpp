@@ -41,7 +41,8 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
     if (scene.dimension != 3)
       throw InputError("/dimension", "grains need three dimensions; allowed: 3");
     if (scene.events.count != 1)
-      throw InputError("/events/count", show(scene.events.count) + " events; a loading is 1");
+      throw InputError("/events/count",
+                       show(scene.events.count) + " events; a loading test is one event");
     check_stages(scene.loading, settings_);
     const auto pushed_in = [](const LoadingStage& s) { return s.kind == LoadingKind::penetrate; };
     if (scene.cone && std::none_of(scene.loading.begin(), scene.loading.end(), pushed_in))

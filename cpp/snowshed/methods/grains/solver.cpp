@@ -9,7 +9,7 @@
 #include "snowshed/core/parallel.hpp"
 #include "snowshed/methods/grains/check_options.hpp"
 #include "snowshed/methods/grains/forces.hpp"
-#include "snowshed/methods/grains/listing.hpp"
+#include "snowshed/methods/grains/pair_tables.hpp"
 #include "snowshed/methods/grains/solver_impl.hpp"
 #include "snowshed/methods/grains/time_step.hpp"
 
@@ -103,14 +103,14 @@ State SolverImpl::with_batches(const std::vector<ParticleBatch>& batches) const 
 void SolverImpl::accept(State next, Workspace work) {
   std::vector<GrainPose> poses = poses_of(next.bodies);
   const std::vector<PairHistory> bonds = initial_bonds(model_, poses, next.boundary);
-  Listing listing = listing_of(model_, std::move(poses), next.boundary, bonds);
+  PairTables tables = search_pairs(model_, std::move(poses), next.boundary, bonds);
   next.bonds = std::int64_t(bonds.size());
-  next.pairs = std::move(listing.pairs);
-  next.searched_poses = std::move(listing.poses);
+  next.pairs = std::move(tables.pairs);
+  next.searched_poses = std::move(tables.poses);
   next.searched_boundary = next.boundary;
-  work.groups_by_body = std::move(listing.groups_by_body);
-  work.results = std::move(listing.results);
-  work.max_step = listing.max_step;
+  work.groups_by_body = std::move(tables.groups_by_body);
+  work.results = std::move(tables.results);
+  work.max_step = tables.max_step;
   work.next = next.bodies;
   work.frames.resize(next.bodies.size() + 2);
   work.damped_energy.resize(next.bodies.size());
@@ -213,24 +213,25 @@ bool SolverImpl::must_relist(const Boundary& moved) const {
 
 /// Makes the list for the poses in the workspace. Changes nothing if it throws.
 void SolverImpl::relist(const Boundary& moved) {
-  Listing listing = listing_of(model_, poses_of(workspace_.next), moved, state_.pairs.histories());
+  PairTables tables =
+      search_pairs(model_, poses_of(workspace_.next), moved, state_.pairs.histories());
   double removed = 0;  // J, with the top plate
   if (model_.keeps_energy && moved.has_top != state_.searched_boundary.has_top) {
     EnergyBalance e;
     store_energy(model_, state_, e);
     removed = e.normal + e.shear;
-    std::swap(state_.pairs, listing.pairs);
+    std::swap(state_.pairs, tables.pairs);
     store_energy(model_, state_, e);
-    std::swap(state_.pairs, listing.pairs);
+    std::swap(state_.pairs, tables.pairs);
     removed -= e.normal + e.shear;
   }
   state_.energy.added -= removed;
-  state_.pairs = std::move(listing.pairs);
-  state_.searched_poses = std::move(listing.poses);
+  state_.pairs = std::move(tables.pairs);
+  state_.searched_poses = std::move(tables.poses);
   state_.searched_boundary = moved;
-  workspace_.groups_by_body = std::move(listing.groups_by_body);
-  workspace_.results = std::move(listing.results);
-  workspace_.max_step = listing.max_step;
+  workspace_.groups_by_body = std::move(tables.groups_by_body);
+  workspace_.results = std::move(tables.results);
+  workspace_.max_step = tables.max_step;
   ++state_.pair_searches;
 }
 

@@ -132,7 +132,8 @@ constexpr bool reaches(int reach, int neighbour) {
 
 /// A kernel's report on one block of particles.
 struct BlockStats {
-  double speed_squared = 0;   // largest square of a velocity or of the velocity of motion, m2/s2
+  // Largest square of a particle's velocity or of the grid velocity that moves it, m2/s2.
+  double max_speed_squared = 0;
   double strain = 0;          // largest |dt grad v| component; only from `probe`
   int reach = 0;              // blocks around it whose nodes its particles touch
   bool escaped = false;       // a particle left the tile: the sums are not valid, sort first
@@ -161,16 +162,17 @@ struct NodeStats {
 
 /// Motion that the nodes of a step would have given to a block of sleeping particles: means over
 /// its mass.
-struct CarriedMotion {
+struct SleepingBlockMotion {
   double speed_squared = 0;            // m2/s2
   double change[3] = {0.0, 0.0, 0.0};  // change of its velocity in the step by all forces, m/s
 };
 
 /// Rule by which a contact releases snow that is pulled off the obstacle.
 enum class Release : std::uint8_t {
-  never,       // slip
-  after_push,  // separate, where gravity presses snow on: when pulls have used up the stored push
-  at_once      // separate elsewhere
+  never,  // slip
+  // separate, on faces onto which gravity presses snow: once pulls exceed the stored impulse
+  after_push,
+  at_once  // separate elsewhere
 };
 
 /// A node that an obstacle constrains.
@@ -218,7 +220,7 @@ struct Kernels {
   /// Computes the motion that the 3^D blocks of nodes around (null: at rest) would give to the snow
   /// on a tile. `reach` tells where its particles are.
   void (*carried_motion)(const T* tile, int reach, const T* const* sums, const T* const* velocities,
-                         CarriedMotion&);
+                         SleepingBlockMotion&);
 };
 
 struct KernelChoice {

@@ -118,7 +118,7 @@ bool Sleep<D>::is_slow(double rms_speed, double fastest) const {
 /// withstands. Forces do not move sleeping snow, so their effect is summed up, and the effect of
 /// older forces fades.
 template <int D>
-bool Sleep<D>::is_pushed(State& s, int steps, double dt, const CarriedMotion& carried) const {
+bool Sleep<D>::is_pushed(State& s, int steps, double dt, const SleepingBlockMotion& carried) const {
   s.sum *= std::max(0.0, 1.0 - steps * dt / time_);
   for (int d = 0; d < D; ++d) s.sum[d] += steps * carried.change[d];
   return carried.speed_squared > limit_ * limit_ || s.sum.norm() > limit_;
@@ -207,7 +207,7 @@ template <class T, int D>
 typename Sleep<D>::BlockProbe SolverImpl<T, D>::block_probe() {
   typename Sleep<D>::BlockProbe block_probe;
   block_probe.fastest = [this](std::int32_t b) {
-    return std::sqrt(workspace_.grid.block_stats[b].speed_squared);
+    return std::sqrt(workspace_.grid.block_stats[b].max_speed_squared);
   };
   block_probe.speed = [this](std::int32_t b) {
     return state_.particles.rms_speed(state_.layout.first[b], state_.layout.first[b + 1]);
@@ -223,7 +223,7 @@ typename Sleep<D>::BlockProbe SolverImpl<T, D>::block_probe() {
       sums[k] = moves ? workspace_.grid.sum(g) : nullptr;
       velocities[k] = moves ? workspace_.grid.velocity(g) : nullptr;
     }
-    CarriedMotion motion;
+    SleepingBlockMotion motion;
     model_.kernels.carried_motion(workspace_.grid.tile(b), workspace_.grid.block_stats[b].reach,
                                   sums, velocities, motion);
     return motion;

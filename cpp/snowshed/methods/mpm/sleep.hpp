@@ -40,7 +40,7 @@ class Sleep {
     std::function<double(std::int32_t)> speed;      // root of the mean square, m/s
     std::function<VecD<D>(std::int32_t)> velocity;  // mean, m/s
     // Motion that the block's nodes would have given it.
-    std::function<CarriedMotion(std::int32_t)> carried;
+    std::function<SleepingBlockMotion(std::int32_t)> carried;
     std::function<bool(std::int32_t)> obstacle_moves;  // whether one moves through its nodes
     std::function<bool(std::int32_t)> holds_its_snow;  // whether its particles lie within it
   };
@@ -85,7 +85,7 @@ class Sleep {
  private:
   static State awake_since(double now);
   bool is_slow(double rms_speed, double fastest) const;
-  bool is_pushed(State& state, int steps, double dt, const CarriedMotion& carried) const;
+  bool is_pushed(State& state, int steps, double dt, const SleepingBlockMotion& carried) const;
   bool falls_asleep(State& state, double now, const VecD<D>& velocity) const;
   void list_blocks(const BlockLayout<D>& layout) noexcept;
 

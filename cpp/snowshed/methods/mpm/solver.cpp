@@ -89,7 +89,7 @@ void SolverImpl<T, D>::record_step(double dt) noexcept {
   double speed_squared = 0;
   for (std::int32_t b : state_.sleep.awake()) {
     const BlockStats& s = workspace_.grid.block_stats[b];
-    speed_squared = std::max(speed_squared, s.speed_squared);
+    speed_squared = std::max(speed_squared, s.max_speed_squared);
     if (s.escaped) workspace_.tiles_valid = false;
   }
   p.speed = std::sqrt(speed_squared);

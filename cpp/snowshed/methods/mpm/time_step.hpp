@@ -8,8 +8,8 @@ namespace snowshed::methods::mpm {
 /// max over positions of sum_i (dN_i)^2 / N_i for a B-spline, per cell squared.
 constexpr double stability_number(Basis basis) { return basis == Basis::quadratic ? 6.0 : 3.2; }
 
-/// Returns the number S of a transfer, which is stable for dt^2 < 2 rho_0 dx^2/(S (d lambda + 2
-/// mu)).
+/// Returns the stability number S of a transfer scheme: steps are stable for dt^2 < 2 rho_0 dx^2/(S
+/// (d lambda + 2 mu)).
 ///
 /// Let R transfer velocities from the grid to the particles, and R* back. A mode u of the grid is
 /// stable if dt^2 |strain rate of u|^2 <= 2 |u|^2 + 2 |R u|^2, in the norms of the elastic and the

@@ -8,9 +8,9 @@
 namespace snowshed::methods::mps {
 namespace {
 
-/// Finds the velocities that count in divergences. Inner walls conduct pressure as snow does, and
-/// therefore move as the snow around them does; the dummies behind them ensure that nothing flows
-/// into the wall (ours).
+/// Computes the velocities of which divergences are taken. Inner wall particles transmit pressure
+/// like snow and therefore take the mean velocity of the snow around them; dummy particles behind
+/// them ensure that nothing flows into the wall (ours).
 template <int D>
 void find_divergence_velocities(const Model<D>& model, const Particles<D>& particles,
                                 Neighbourhood<D>& near) {
@@ -30,7 +30,7 @@ void find_divergence_velocities(const Model<D>& model, const Particles<D>& parti
   });
 }
 
-/// The divergence beside walls of particles, 1/s. Dummies add the flow into the wall.
+/// Divergence near walls made of particles, 1/s. Dummy particles contribute the flow into the wall.
 template <int D>
 double wall_particle_divergence(const Model<D>& model, const Particles<D>& particles,
                                 const Neighbourhood<D>& near,
@@ -52,9 +52,9 @@ double wall_particle_divergence(const Model<D>& model, const Particles<D>& parti
   return model.gradient() * sum + model.laplacian() * flow;
 }
 
-/// The part of images behind walls in the divergence, 1/s. Images move along the wall as their
-/// particles do. The flow through the wall has the weight of the pressure's slope in the Laplacian,
-/// so that both cancel at rest.
+/// Contribution of mirror images behind walls to the divergence, 1/s. Images move along the wall as
+/// their particles do. Flow through the wall is weighted like pressure differences in the
+/// Laplacian, so that the two cancel at rest.
 template <int D>
 double image_divergence(const Model<D>& model, const Particles<D>& particles,
                         const Neighbourhood<D>& near, const Eigen::Matrix<double, D, D>& correction,
@@ -99,23 +99,24 @@ void prepare_divergence(const Model<D>& model, const Particles<D>& particles, Wo
     sum_velocity_gradients(model, particles, work.near.slope.data(), work);
 }
 
-/// The time in which the share `compensation` of the density's error is removed, s: the longer of
-/// the step and the time in which a particle of usual speed moves by the Courant factor times l0.
-/// With the step alone a single fast particle, which shortens the step, would raise the pressure of
-/// all snow. (Ours.)
+/// Time over which the fraction `compensation` of the density error is removed, s: the larger of dt
+/// and the time in which a particle of typical speed travels courant_factor * l0 (at most
+/// max_time_step). With dt alone, a single fast particle, which shortens the step, would raise the
+/// pressure of all snow. (Ours.)
 template <int D>
 double compensation_time(const Model<D>& model, double dt, const Particles<D>& particles) {
   const Settings& s = model.settings();
   double square = 0;
   for (const VecD<D>& u : particles.velocity) square += u.squaredNorm();
-  const double usual = 3 * std::sqrt(square / double(particles.size())) +
-                       std::sqrt(model.gravity.norm() * s.spacing);
-  return usual > 0 ? std::max(dt, std::min(s.max_time_step, s.courant_factor * s.spacing / usual))
-                   : dt;
+  const double typical_speed = 3 * std::sqrt(square / double(particles.size())) +
+                               std::sqrt(model.gravity.norm() * s.spacing);
+  return typical_speed > 0
+             ? std::max(dt, std::min(s.max_time_step, s.courant_factor * s.spacing / typical_speed))
+             : dt;
 }
 
-/// Sources smaller than this share of the source by a particle's weight are rounding errors, and do
-/// not lower the tolerance.
+/// Sources below this fraction of the source due to a particle's own weight count as rounding
+/// errors and do not lower the tolerance.
 constexpr double min_source = 1e-8;
 
 /// Tolerance of densities below the surface, where particles need not form a lattice.
@@ -123,8 +124,9 @@ constexpr double surface_tolerance = 0.002;
 
 /// Excess of density over that of a lattice, which the compensation (ours) reduces. Inside the snow
 /// it follows from the filled part of the space. Beside wall particles it follows from the number
-/// density, which grows faster near a wall. At the surface only a positive excess counts. Below the
-/// surface a deficit counts only as far as it exceeds that of a lattice, so that gaps close.
+/// density, which grows faster near a wall. At the surface only a positive excess counts. In the
+/// layer below the surface, only the part of a deficit counts that exceeds a lattice's deficit, so
+/// that gaps close.
 template <int D>
 double compensated_excess(const Model<D>& model, const Particles<D>& particles,
                           const Neighbourhood<D>& near, std::size_t i) {
@@ -140,9 +142,9 @@ double compensated_excess(const Model<D>& model, const Particles<D>& particles,
 }
 
 /// The right-hand side of lap p = ..., Pa/m2: equation (18), or after Tanaka and Masunaga (2010,
-/// doi:10.1016/j.jcp.2010.02.011) the divergence of the velocities and a share of the density's
-/// error. They multiply the divergence by one minus this share, which would lower the pressure of
-/// snow at rest by the share; here the factor is one.
+/// doi:10.1016/j.jcp.2010.02.011) the divergence of the velocities and the fraction `compensation`
+/// of the density error. Their factor 1 - compensation on the divergence would lower pressures at
+/// rest by the same fraction; here it is 1.
 template <int D>
 double source(const Model<D>& model, double dt, double compensation_time,
               const Particles<D>& particles, const Workspace<D>& work, std::size_t i) {
@@ -171,8 +173,8 @@ void balance_sources(Workspace<D>& work, std::size_t n) {
 
 }  // namespace
 
-/// The equation is divided by -2 d/(lambda n0): the sum of w (p_i - p_j) and the surface's part of
-/// the diagonal remain.
+/// The equation is divided by -2 d/(lambda n0). Its left-hand side is then the sum of w (p_i - p_j)
+/// plus the surface term on the diagonal.
 template <int D>
 void prepare_pressure(const Model<D>& model, const Particles<D>& particles, Workspace<D>& work) {
   const Neighbourhood<D>& near = work.near;
@@ -249,8 +251,8 @@ SolveReport solve_pressure(const Model<D>& model, double dt, Particles<D>& parti
   const std::size_t n = particles.size();
   prepare_divergence(model, particles, work);
   const double relaxation = compensation_time(model, dt, particles);
-  // With corrected gradients the source contains the Laplacian of a linear pressure, which is not
-  // zero because neighbours are not distributed evenly.
+  // Unevenly distributed neighbours give a linear pressure a nonzero discrete Laplacian. With
+  // corrected gradients the source contains it.
   const bool corrected = model.settings().gradient == Gradient::corrected;
   work.pressure.source.resize(n);
   work.pressure.values.resize(n);

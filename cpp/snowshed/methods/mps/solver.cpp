@@ -36,11 +36,12 @@ constexpr double viscous_share_uncoupled = 0.5;
 ///   makes it flow at u, is less than `max_inertia`. Fast flows lose no volume even without
 ///   coupling, so they use the cheaper separate solves at every l0.
 constexpr double min_stiffness = 2, min_fall = 2, max_inertia = 1e-3;
-/// The share of the last step's viscous force with which the iteration begins; below 1, errors of
+/// Fraction of the last step's viscous force with which the iteration begins. Below 1, errors of
 /// the pressure die out.
 constexpr double viscous_share_first_iteration = 0.9;
-/// The iteration ends when the force per mass changes by less than this share of gravity, or after
-/// `max_couplings` iterations. Even without convergence these are better than a single iteration.
+/// The iteration ends when the force per mass changes by less than this fraction of gravity, or
+/// after `max_couplings` iterations. Even if they do not converge, they are better than a single
+/// iteration.
 constexpr double coupling_tolerance = 3e-3;
 constexpr int max_couplings = 20;
 

@@ -168,7 +168,7 @@ struct SplitForces {
 
 /// Friction of walls on the particles beside them.
 struct WallFriction {
-  AlignedVector<double> share, weight_sum;  // see find_shares
+  AlignedVector<double> share, weight_sum;  // see compute_wall_contact_fractions
   AlignedVector<double> drag;               // one per contact with a wall, 1/s
 };
 

@@ -9,11 +9,11 @@
 namespace snowshed::methods::mps {
 namespace {
 
-/// Smallest distance from a wall, in l0, with which its friction is computed.
+/// Lower limit of the wall distance that enters wall friction, in l0.
 constexpr double min_friction_distance = 0.25;
 
-/// The share of the wall's shear stress that acts on a particle at a distance, in l0. The shares of
-/// the first and of the second layer of a lattice add up to one.
+/// Fraction of the wall's shear stress that acts on a particle at a distance, in l0. The fractions
+/// of the first and the second layer of a lattice sum to one.
 double share_of_mirror(double distance, double second) {
   const auto falls = [&](double from, double to) {
     return std::clamp((to - distance) / (to - from), 0.0, 1.0);
@@ -50,10 +50,11 @@ double friction_weight_sum(const Model<D>& model, const Particles<D>& particles,
   return std::max(sum, min_touched_share * on_lattice);
 }
 
-/// The share of each contact with a wall in the wall's shear stress. The particles around a wall
-/// particle share all of its friction.
+/// Computes the fraction of the wall's shear stress that each contact carries. The particles that
+/// touch the obstacle around a wall particle divide its friction among them.
 template <int D>
-void find_shares(const Model<D>& model, const Particles<D>& particles, Workspace<D>& work) {
+void compute_wall_contact_fractions(const Model<D>& model, const Particles<D>& particles,
+                                    Workspace<D>& work) {
   const Neighbourhood<D>& near = work.near;
   const int threads = model.threads_for(particles.size());
   work.wall_friction.share.resize(near.contacts.all().size());
@@ -273,7 +274,8 @@ SolveReport solve_viscosity(const Model<D>& model, double dt, const Velocities<D
   return {first.iterations + second.iterations, second.residual, second.converged};
 }
 
-/// Scale of residuals and changes of all velocities: the change by gravity in a step, m/s.
+/// Reference for residuals and changes of all velocities, m/s: the norm of their changes due to
+/// gravity in a step, plus a thousandth of their own norm.
 template <int D>
 double velocity_scale(const Model<D>& model, double dt, const Particles<D>& particles) {
   double speed2 = 0;
@@ -318,7 +320,7 @@ SolveReport apply_viscosity(const Model<D>& model, double dt, Particles<D>& part
     for (std::size_t i = 0; i < start.size(); ++i)
       particles.velocity[i] = work.before[i] + first_guess_share * (start[i] - work.before[i]);
   const double scale = velocity_scale(model, dt, particles);
-  find_shares(model, particles, work);
+  compute_wall_contact_fractions(model, particles, work);
   if (!newtonian) {
     prepare_rates(model, particles, work);
     work.near.lists.find_mirrors(model.threads_for(particles.size()));

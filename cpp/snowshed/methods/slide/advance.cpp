@@ -30,10 +30,10 @@ namespace {
 
 /// Keeps the entries of an array whose particles stay.
 template <class Array>
-void keep(const std::vector<std::uint32_t>& new_place, Array& array) {
+void keep(const std::vector<std::uint32_t>& new_index, Array& array) {
   std::size_t count = 0;
-  for (std::size_t i = 0; i < new_place.size(); ++i)
-    if (new_place[i] != removed_particle) array[count++] = array[i];
+  for (std::size_t i = 0; i < new_index.size(); ++i)
+    if (new_index[i] != removed_particle) array[count++] = array[i];
   array.resize(count);
 }
 
@@ -54,19 +54,19 @@ void reorder(const std::vector<std::uint32_t>& order, AlignedVector<double>& scr
 void remove_marked(State& state, Workspace& work) {
   if (!std::memchr(work.removed.data(), 1, work.removed.size())) return;
   Particles& p = state.particles;
-  std::vector<std::uint32_t>& new_place = work.new_places;
-  new_place.resize(p.size());
+  std::vector<std::uint32_t>& new_index = work.new_indices;
+  new_index.resize(p.size());
   std::uint32_t count = 0;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    new_place[i] = work.removed[i] ? removed_particle : count++;
+    new_index[i] = work.removed[i] ? removed_particle : count++;
     if (!work.removed[i]) continue;
     state.balance.left_terrain += p.mass[i];
     ++state.balance.particles_left;
   }
-  p.for_each_array([&](const char*, auto& array) { keep(new_place, array); });
-  Places::for_each_array(work.places, [&](auto& array) { keep(new_place, array); });
-  keep(new_place, work.thickness);
-  renumber(state.bonds, new_place);
+  p.for_each_array([&](const char*, auto& array) { keep(new_index, array); });
+  CellPositions::for_each_array(work.cell_positions, [&](auto& array) { keep(new_index, array); });
+  keep(new_index, work.thickness);
+  renumber(state.bonds, new_index);
   work.bond_lists.update(state.bonds, p.size());
 }
 
@@ -77,7 +77,7 @@ namespace {
 /// of storage.
 void number_new(State& state, Workspace& work, std::size_t begin) {
   Particles& p = state.particles;
-  std::vector<std::uint32_t>& order = work.new_places;
+  std::vector<std::uint32_t>& order = work.new_indices;
   order.resize(p.size() - begin);
   std::iota(order.begin(), order.end(), std::uint32_t(begin));
   std::sort(order.begin(), order.end(),
@@ -100,20 +100,22 @@ void split_heavy(const Model& model, State& state, Workspace& work) {
     const double speed = along.norm();
     along = speed > 0 ? Vec3(along * (distance / speed)) : Vec3(distance, 0, 0);
     const Vec3 x{p.x[i], p.y[i], p.z[i]};
-    const geometry::CellPosition behind = model.terrain.place(x.x() - along.x(), x.y() - along.y());
-    const geometry::CellPosition ahead = model.terrain.place(x.x() + along.x(), x.y() + along.y());
+    const geometry::CellPosition behind =
+        model.terrain.cell_position(x.x() - along.x(), x.y() - along.y());
+    const geometry::CellPosition ahead =
+        model.terrain.cell_position(x.x() + along.x(), x.y() + along.y());
     if (!behind.inside() || !ahead.inside() || !model.terrain.known(behind) ||
         !model.terrain.known(ahead))
       continue;
     p.for_each_array([i](const char*, auto& array) { array.push_back(array[i]); });
     p.mass[i] = p.mass.back() = 0.5 * p.mass[i];
-    const auto put = [&](std::size_t at, const Vec3& to, const geometry::CellPosition& place) {
+    const auto put = [&](std::size_t at, const Vec3& to, const geometry::CellPosition& position) {
       p.x[at] = to.x();
       p.y[at] = to.y();
-      p.z[at] = model.compatible() ? to.z() : model.terrain.height(place);
-      refresh_places(model, state, work, at, at + 1);
+      p.z[at] = model.compatible() ? to.z() : model.terrain.height(position);
+      refresh_cell_positions(model, state, work, at, at + 1);
     };
-    work.places.resize(p.size());
+    work.cell_positions.resize(p.size());
     work.thickness.push_back(work.thickness[i]);
     put(i, x - along, behind);
     put(p.size() - 1, x + along, ahead);
@@ -127,14 +129,14 @@ void split_heavy(const Model& model, State& state, Workspace& work) {
 void sort_by_cell(State& state, Workspace& work) {
   const std::vector<std::uint32_t>& order = work.cells.order();
   AlignedVector<double> scratch(order.size());
-  work.new_places.resize(order.size());
+  work.new_indices.resize(order.size());
   // Nothing from here on allocates.
   state.particles.for_each_array(
       [&](const char*, auto& array) { reorder(order, scratch, work.threads, array); });
-  for (std::size_t e = 0; e < order.size(); ++e) work.new_places[order[e]] = std::uint32_t(e);
+  for (std::size_t e = 0; e < order.size(); ++e) work.new_indices[order[e]] = std::uint32_t(e);
   for (auto* ends : {&state.bonds.first, &state.bonds.second})
     parallel_for_static(std::ptrdiff_t(ends->size()), work.threads,
-                        [&](std::ptrdiff_t b) { (*ends)[b] = work.new_places[(*ends)[b]]; });
+                        [&](std::ptrdiff_t b) { (*ends)[b] = work.new_indices[(*ends)[b]]; });
 }
 
 }  // namespace snowshed::methods::slide

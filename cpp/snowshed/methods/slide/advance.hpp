@@ -16,8 +16,8 @@ void remove_marked(State&, Workspace&);
 /// Splits particles that have become too heavy.
 void split_heavy(const Model&, State&, Workspace&);
 
-/// Stores the particles in the order of their cells. Only the order of the cells is read from the
-/// workspace, which must be refreshed afterwards. Changes nothing if it throws.
+/// Stores the particles in the order of their cells. Reads only the order of the cells from the
+/// workspace. Refresh the workspace afterwards. Changes nothing if it throws.
 void sort_by_cell(State&, Workspace&);
 
 }  // namespace snowshed::methods::slide

@@ -6,7 +6,7 @@
 namespace snowshed::methods::slide {
 namespace {
 
-/// Whether most corners are passed counterclockwise as seen from the first one.
+/// Whether the direction from the first corner to the others turns mostly counterclockwise.
 bool mostly_counterclockwise(const geometry::Ring& ring) {
   std::vector<double> angles;
   for (std::size_t i = 1; i < ring.size(); ++i)

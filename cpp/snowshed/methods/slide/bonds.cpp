@@ -176,10 +176,10 @@ double max_bond_step(const Bonds& bonds, const Particles& particles,
   return std::sqrt(2 / square);
 }
 
-void renumber(Bonds& bonds, const std::vector<std::uint32_t>& new_place) {
+void renumber(Bonds& bonds, const std::vector<std::uint32_t>& new_index) {
   std::size_t count = 0;
   for (std::size_t b = 0; b < bonds.size(); ++b) {
-    const std::uint32_t first = new_place[bonds.first[b]], second = new_place[bonds.second[b]];
+    const std::uint32_t first = new_index[bonds.first[b]], second = new_index[bonds.second[b]];
     if (first == removed_particle || second == removed_particle) continue;
     bonds.first[count] = first;
     bonds.second[count] = second;

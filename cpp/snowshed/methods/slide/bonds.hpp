@@ -36,10 +36,10 @@ struct Bonds {
 Bonds bonds_between(const Particles& particles, std::size_t begin, double spacing,
                     const std::vector<Area>* areas, const StopRequest& stop = {});
 
-/// Removes the bonds of removed particles and renumbers the others: `new_place[i]` is the new
+/// Removes the bonds of removed particles and renumbers the others: `new_index[i]` is the new
 /// storage index of particle i, or `removed_particle`.
 inline constexpr std::uint32_t removed_particle = 0xffffffff;
-void renumber(Bonds& bonds, const std::vector<std::uint32_t>& new_place);
+void renumber(Bonds& bonds, const std::vector<std::uint32_t>& new_index);
 
 /// Returns the longest step in which the vibration of bonds does not grow, s; infinite without
 /// bonds. A bond has the stiffness k = E h / sqrt(3). A particle of mass m whose bonds have the

@@ -31,10 +31,10 @@ void visit_state(Archive& archive, State& s) {
                  s.stopped, s.next_id);
 }
 
-void check_places(const StateReader& archive, const Particles& p, const Terrain& terrain) {
+void check_positions(const StateReader& archive, const Particles& p, const Terrain& terrain) {
   for (std::size_t i = 0; i < p.size(); ++i) {
-    const geometry::CellPosition place = terrain.place(p.x[i], p.y[i]);
-    if (!place.inside() || !terrain.known(place))
+    const geometry::CellPosition position = terrain.cell_position(p.x[i], p.y[i]);
+    if (!position.inside() || !terrain.known(position))
       archive.refuse("a particle lies outside of the terrain");
     if (!(p.mass[i] > 0)) archive.refuse("a particle has no mass");
   }
@@ -51,7 +51,7 @@ State read_state(const io::BinaryReader& in, const Model& model) {
   const StateReader archive(in);
   State next(model);
   visit_state(archive, next);
-  check_places(archive, next.particles, model.terrain);
+  check_positions(archive, next.particles, model.terrain);
   check_bonds(archive, next.bonds, next.particles.size());
   if (!(next.step > 0)) archive.refuse("the time step is not sound");
   next.counters.smallest_dt = next.step;

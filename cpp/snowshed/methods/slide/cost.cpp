@@ -27,15 +27,16 @@ double block_travel_time(const Terrain& terrain, const Settings& s, const Area& 
   Vec3 x(start[0], start[1], 0), u = Vec3::Zero();
   double time = 0;
   for (; time < max_time; time += dt) {
-    const geometry::CellPosition place = terrain.place(x.x(), x.y());
-    if (!place.inside() || !terrain.known(place)) break;
-    const Vec3 n = terrain.normal(place);
+    const geometry::CellPosition position = terrain.cell_position(x.x(), x.y());
+    if (!position.inside() || !terrain.known(position)) break;
+    const Vec3 n = terrain.normal(position);
     u -= u.dot(n) * n;
     u += dt * gravity * (n.z() * n - Vec3::UnitZ());
     const double speed = u.norm();
-    const double slowed = speed - dt * (law.friction * gravity * n.z() + drag * speed * speed);
-    if (slowed <= 0) break;
-    u *= slowed / speed;
+    const double after_friction =
+        speed - dt * (law.friction * gravity * n.z() + drag * speed * speed);
+    if (after_friction <= 0) break;
+    u *= after_friction / speed;
     x += dt * u;
   }
   return std::max(time, dt);

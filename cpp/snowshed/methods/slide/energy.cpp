@@ -32,10 +32,10 @@ Drag drag_parts(const Model& model, const Workspace& work, std::size_t i) {
 }
 
 /// The sum over the neighbours of a particle of m_l (R - r)^3; R is the width of a cell.
-double kernel_mass_sum(const Particles& p, const CellLists& cells, const Places& places,
-                       std::uint32_t i, double radius) {
-  const int column = places.column[i] - cells.first_column();
-  const int row = places.row[i] - cells.first_row();
+double kernel_mass_sum(const Particles& p, const CellLists& cells,
+                       const CellPositions& cell_positions, std::uint32_t i, double radius) {
+  const int column = cell_positions.column[i] - cells.first_column();
+  const int row = cell_positions.row[i] - cells.first_row();
   double sum = 0;
   for (int k = row - 1; k <= row + 1; ++k)
     for (std::uint32_t e = cells.begin(column - 1, k); e < cells.begin(column + 2, k); ++e) {
@@ -65,10 +65,10 @@ double pressure_energy(const Model& model, const State& state, const Workspace& 
   const Particles& p = state.particles;
   double sum = 0;
   for (std::uint32_t i = 0; i < p.size(); ++i) {
-    const double mass_sum = kernel_mass_sum(p, work.cells, work.places, i, radius);
+    const double mass_sum = kernel_mass_sum(p, work.cells, work.cell_positions, i, radius);
     const double neighbours = 10 / (radius * radius * radius) * mass_sum / p.mass[i];
     const double thickness_of_one = p.mass[i] / (pi * radius * radius * model.settings.density);
-    sum += 0.5 * p.mass[i] * model.gravity * work.places.nz[i] * thickness_of_one *
+    sum += 0.5 * p.mass[i] * model.gravity * work.cell_positions.nz[i] * thickness_of_one *
            raised_integral(neighbours);
   }
   return sum;
@@ -114,11 +114,11 @@ void EnergyRecorder::begin_step(const State& state) {
 void EnergyRecorder::after_ground(const Model& model, const State& state, const Workspace& work,
                                   EnergyBalance& e) {
   for (std::size_t i = 0; i < before_.size(); ++i) {
-    const double mixed = work.loads.speed[i] * work.loads.speed[i];
+    const double after_viscosity = work.loads.speed[i] * work.loads.speed[i];
     const Vec3 u = velocity_at(state, i);
     const double mass = state.particles.mass[i];
-    e.viscosity += 0.5 * masses_[i] * (before_[i].squaredNorm() - mixed);
-    e.entrainment += 0.5 * (masses_[i] * mixed - mass * u.squaredNorm());
+    e.viscosity += 0.5 * masses_[i] * (before_[i].squaredNorm() - after_viscosity);
+    e.entrainment += 0.5 * (masses_[i] * after_viscosity - mass * u.squaredNorm());
     e.added += (mass - masses_[i]) * model.gravity * heights_[i];
     before_[i] = u;
   }
@@ -153,16 +153,17 @@ void EnergyRecorder::after_motion(const Model& model, const State& state, const 
     // Friction reduces the velocity, and afterwards the ground turns it.
     const Vec3 accelerated = before_[i] + state.step * Vec3(l.ax[i], l.ay[i], l.az[i]);
     const double after = velocity_at(state, i).norm(), before = accelerated.norm();
-    const Vec3 slowed = before > 0 ? Vec3(accelerated * (after / before)) : accelerated;
-    const double work_of_friction = 0.5 * mass * (accelerated - slowed).dot(before_[i] + slowed);
+    const Vec3 after_friction = before > 0 ? Vec3(accelerated * (after / before)) : accelerated;
+    const double work_of_friction =
+        0.5 * mass * (accelerated - after_friction).dot(before_[i] + after_friction);
     const Drag drag = drag_parts(model, work, i);
     const double turbulent = drag.turbulent * after * after;
     const double resistance = drag.resistance * after * after;
-    const double all = work.loads.yield[i] + turbulent + resistance;
+    const double all = work.loads.coulomb_deceleration[i] + turbulent + resistance;
     if (!(all > 0)) continue;
     e.turbulent += work_of_friction * turbulent / all;
     e.resistance += work_of_friction * resistance / all;
-    e.coulomb += work_of_friction * work.loads.yield[i] / all;
+    e.coulomb += work_of_friction * work.loads.coulomb_deceleration[i] / all;
   }
 }
 

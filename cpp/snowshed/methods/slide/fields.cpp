@@ -62,16 +62,16 @@ PointCloud SolverImpl::snapshot() const {
   PointCloud cloud = Method::snapshot();
   const std::vector<std::uint32_t>& order = order_by_id();
   const Particles& p = state_.particles;
-  std::vector<std::uint32_t> place(order.size());
+  std::vector<std::uint32_t> index_in_cloud(order.size());
   std::vector<float> pressure, thickness, speed;
   pressure.reserve(order.size());
   thickness.reserve(order.size());
   speed.reserve(order.size());
   for (std::uint32_t k = 0; k < order.size(); ++k) {
     const std::uint32_t i = order[k];
-    place[i] = k;
-    pressure.push_back(float(model_.settings.density * model_.gravity * workspace_.places.nz[i] *
-                             workspace_.thickness[i]));
+    index_in_cloud[i] = k;
+    pressure.push_back(float(model_.settings.density * model_.gravity *
+                             workspace_.cell_positions.nz[i] * workspace_.thickness[i]));
     thickness.push_back(float(workspace_.thickness[i]));
     speed.push_back(float(Vec3(p.ux[i], p.uy[i], p.uz[i]).norm()));
   }
@@ -79,7 +79,7 @@ PointCloud SolverImpl::snapshot() const {
   const Bonds& bonds = state_.bonds;
   cloud.lines.reserve(bonds.size());
   for (std::size_t b = 0; b < bonds.size(); ++b) {
-    cloud.lines.push_back({place[bonds.first[b]], place[bonds.second[b]]});
+    cloud.lines.push_back({index_in_cloud[bonds.first[b]], index_in_cloud[bonds.second[b]]});
     for (const std::uint32_t particle : cloud.lines.back()) ++count[particle];
   }
   cloud.replace("pressure", std::move(pressure));
@@ -125,8 +125,9 @@ std::size_t SolverImpl::bytes() const {
                state_.peaks.speed, state_.erodible, workspace_.thickness, workspace_.predicted,
                workspace_.pressure_force, workspace_.sorted_pressure_factor, workspace_.bond_force);
   const Loads& l = workspace_.loads;
-  total += bytes_of(l.ax, l.ay, l.az, l.yield, l.drag, l.speed);
-  Places::for_each_array(workspace_.places, [&](const auto& array) { total += bytes_of(array); });
+  total += bytes_of(l.ax, l.ay, l.az, l.coulomb_deceleration, l.drag, l.speed);
+  CellPositions::for_each_array(workspace_.cell_positions,
+                                [&](const auto& array) { total += bytes_of(array); });
   return total;
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double min_speed = 1e-6;  // m/s
 
-/// The node nearest to a place.
+/// The node nearest to a position.
 std::size_t nearest_node(const Terrain& terrain, const geometry::CellPosition& p) {
   return terrain.index(p.column + int(p.east >= 0.5), p.row + int(p.north >= 0.5));
 }
@@ -40,9 +40,11 @@ double entrain_by(const Model& model, const State& state, View& v, Particles& p,
                   std::size_t node) {
   const double density = model.settings.density, dt = state.step;
   const double h = std::max(v.thickness[i], min_thickness), speed = v.speed[i];
-  const double pressing = model.friction.friction > 0 ? v.yield[i] / model.friction.friction : 0.0;
-  const double stress =
-      v.drag[i] > 0 || pressing > 0 ? model.friction.stress(pressing * density * h, speed) : 0.0;
+  const double normal_acceleration =
+      model.friction.friction > 0 ? v.coulomb_deceleration[i] / model.friction.friction : 0.0;
+  const double stress = v.drag[i] > 0 || normal_acceleration > 0
+                            ? model.friction.stress(normal_acceleration * density * h, speed)
+                            : 0.0;
   Vec3 u{p.ux[i], p.uy[i], p.uz[i]};
   const Vec3 before = u;
   const double entrained_mass = entrain(model, state.erodible[node], stress,
@@ -60,19 +62,19 @@ void apply_entrainment_and_resistance(const Model& model, State& state, Workspac
   View v = view_of(model, state, work);
   Particles& p = state.particles;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    const std::size_t node = nearest_node(model.terrain, work.places.at(i));
+    const std::size_t node = nearest_node(model.terrain, work.cell_positions.at(i));
     if (!work.entrained.empty())
       work.entrained[i] = state.erodible[node] > 0 ? entrain_by(model, state, v, p, i, node) : 0.0;
     if (!model.resistance.empty())
       v.drag[i] += model.resistance[node] / std::max(v.thickness[i], min_thickness);
     if (model.compatible() && !work.entrained.empty()) {  // there forces act on the mass before
       const double share = 1 - work.entrained[i] / p.mass[i];
-      for (double* load : {v.ax, v.ay, v.az, v.yield, v.drag}) load[i] *= share;
+      for (double* load : {v.ax, v.ay, v.az, v.coulomb_deceleration, v.drag}) load[i] *= share;
     }
   }
   for (std::size_t i = 0; i < work.entrained.size(); ++i) {
     if (work.entrained[i] == 0) continue;
-    const std::size_t node = nearest_node(model.terrain, work.places.at(i));
+    const std::size_t node = nearest_node(model.terrain, work.cell_positions.at(i));
     double& rest = state.erodible[node];
     rest = std::max(0.0, rest - work.entrained[i] / model.terrain.nodes()[node].area);
     state.balance.entrained += work.entrained[i];

@@ -54,18 +54,18 @@ struct View {
   double *x, *y, *z, *ux, *uy, *uz;
   const double* mass;
 
-  // Places: cells and positions within these, normals of the ground, thickness of the snow.
+  // Cells and positions within these, normals of the ground, thickness of the snow.
   std::int32_t *column, *row;
   double *east, *north;
   double *nx, *ny, *nz;
   double* thickness;
 
   // Accelerations by the loads.
-  double *ax, *ay, *az;  // m/s2
-  double* yield;         // m/s2, deceleration by friction that does not depend on the speed
-  double* drag;          // 1/m, deceleration over the square of the speed
-  double* speed;         // m/s, at the beginning of the step
-  double* predicted;     // records of x, y, z at the end of the step without forces, and thickness
+  double *ax, *ay, *az;          // m/s2
+  double* coulomb_deceleration;  // m/s2, deceleration by friction that does not depend on the speed
+  double* drag;                  // 1/m, deceleration over the square of the speed
+  double* speed;                 // m/s, at the beginning of the step
+  double* predicted;  // records of x, y, z at the end of the step without forces, and thickness
   double* pressure_force;  // records of force by the snow's pressure (N) and 0
   char* removed;           // set for particles that left the terrain
 
@@ -95,7 +95,8 @@ struct View {
 /// Each kernel processes a range of particles or bonds, or a row; several of these may run at the
 /// same time.
 struct Kernels {
-  /// Finds the places of the particles, which must be on the terrain, and the normals there.
+  /// Computes the cell positions of the particles, which must be on the terrain, and the normals at
+  /// them.
   void (*locate)(const View&, std::ptrdiff_t begin, std::ptrdiff_t end);
   /// Mixes velocities with those of the snow around and finds the forces of the ground.
   void (*ground)(const View&, std::ptrdiff_t begin, std::ptrdiff_t end);

@@ -24,8 +24,8 @@ double lattice_side(double area, double points) { return std::sqrt(area / points
 
 void place_on_ground(const Terrain& terrain, double x, double y, double mass,
                      ParticleBatch& batch) {
-  const geometry::CellPosition place = terrain.place(x, y);
-  batch.positions.push_back({x, y, terrain.height(place)});
+  const geometry::CellPosition position = terrain.cell_position(x, y);
+  batch.positions.push_back({x, y, terrain.height(position)});
   batch.masses.push_back(mass);
 }
 
@@ -209,7 +209,7 @@ Ground ground_under(const Terrain& terrain, const geometry::Polygon& polygon) {
   const Bounds b = bounds_of(polygon.outline);
   const double step = terrain.cell() / 2;
   const auto look_at = [&](double x, double y) {
-    const geometry::CellPosition p = terrain.place(x, y);
+    const geometry::CellPosition p = terrain.cell_position(x, y);
     if (!p.inside()) return;
     const Vec3 n = terrain.normal(p);
     g.stretch += 1 / n.z();
@@ -292,7 +292,7 @@ ParticleBatch seed_area(const Settings& s, const Terrain& terrain, const Area& a
   for_lattice_points(area.polygon.outline, centroid(area.polygon.outline), ground,
                      lattice_side(cell * cell, points), [&](double x, double y) {
                        give_up();
-                       const geometry::CellPosition p = terrain.place(x, y);
+                       const geometry::CellPosition p = terrain.cell_position(x, y);
                        if (!p.inside() || !geometry::contains(area.polygon, {x, y})) return;
                        const double share = thickness_at(area, x, y) / terrain.normal(p).z();
                        place_on_ground(terrain, x, y, share, batch);

@@ -56,7 +56,7 @@ void check_on_terrain(const Terrain& terrain, const std::vector<Area>& areas,
   for (std::size_t i = 0; i < areas.size(); ++i) {
     const std::string where = "/terrain/" + kind + "/" + std::to_string(i);
     for (const geometry::Point2& p : areas[i].polygon.outline) {
-      if (!terrain.place(p[0], p[1]).inside())
+      if (!terrain.cell_position(p[0], p[1]).inside())
         throw InputError(
             where, "reaches beyond the terrain, which extends from (" + on_map(terrain, 0, 0) +
                        ") to (" + on_map(terrain, terrain.columns() - 1, terrain.rows() - 1) + ")");
@@ -87,14 +87,14 @@ void SolverImpl::append(State& state, const ParticleBatch& batch, const StopRequ
   p.resize(old + batch.positions.size());
   for (std::size_t k = 0; k < batch.positions.size(); ++k) {
     const Vec3& x = batch.positions[k];
-    const geometry::CellPosition place = model_.terrain.place(x.x(), x.y());
-    if (!place.inside() || std::isnan(model_.terrain.height(place)))
+    const geometry::CellPosition position = model_.terrain.cell_position(x.x(), x.y());
+    if (!position.inside() || std::isnan(model_.terrain.height(position)))
       throw SimulationError("a particle at (" + std::to_string(x.x()) + ", " +
                             std::to_string(x.y()) + ") m lies outside of the terrain");
     const std::size_t i = old + k;
     p.x[i] = x.x();
     p.y[i] = x.y();
-    p.z[i] = model_.terrain.height(place);
+    p.z[i] = model_.terrain.height(position);
     p.ux[i] = batch.velocity.x();
     p.uy[i] = batch.velocity.y();
     p.uz[i] = batch.velocity.z();
@@ -182,7 +182,7 @@ void SolverImpl::add_velocity(const std::vector<Vec3>& changes) {
   check_velocity_changes(changes, size());
   const std::vector<std::uint32_t>& at = order_by_id();
   for (std::size_t k = 0; k < at.size(); ++k) {
-    const Vec3 n = workspace_.places.normal(at[k]);
+    const Vec3 n = workspace_.cell_positions.normal(at[k]);
     const Vec3 along = changes[k] - changes[k].dot(n) * n;  // snow stays on the ground
     next.particles.ux[at[k]] += along.x();
     next.particles.uy[at[k]] += along.y();

@@ -51,14 +51,14 @@ void Workspace::reserve_memory(const Model& model, State& state) {
   // Each particle may split.
   const std::size_t now = state.particles.size(), most = state.erodible.empty() ? now : 2 * now;
   state.particles.for_each_array([most](const char*, auto& array) { array.reserve(most); });
-  Places::for_each_array(places, [most](auto& array) { array.reserve(most); });
+  CellPositions::for_each_array(cell_positions, [most](auto& array) { array.reserve(most); });
   thickness.reserve(most);
   loads.resize(now);
   predicted.resize(4 * now);
   pressure_force.resize(4 * now);
   entrained.resize(state.erodible.empty() ? 0 : now);
   removed.resize(now);
-  new_places.reserve(most);
+  new_indices.reserve(most);
   piece_sums.resize(most / std::size_t(particles_in_piece) + 1);
   bond_force.resize(4 * state.bonds.size());
   broken.resize(state.bonds.size());
@@ -103,8 +103,8 @@ void view_model(const Model& model, View& v) {
   v.added_speed = model.compatible() ? 1e-6 : 0.0;
 }
 
-void view_places(const Model& model, Workspace& work, View& v) {
-  Places& p = work.places;
+void view_cell_positions(const Model& model, Workspace& work, View& v) {
+  CellPositions& p = work.cell_positions;
   v.column = p.column.data();
   v.row = p.row.data();
   v.east = p.east.data();
@@ -149,7 +149,7 @@ void view_loads(Workspace& work, View& v) {
   v.ax = l.ax.data();
   v.ay = l.ay.data();
   v.az = l.az.data();
-  v.yield = l.yield.data();
+  v.coulomb_deceleration = l.coulomb_deceleration.data();
   v.drag = l.drag.data();
   v.speed = l.speed.data();
   v.predicted = work.predicted.data();
@@ -173,7 +173,7 @@ void view_bonds(const State& state, Workspace& work, View& v) {
 View view_of(const Model& model, State& state, Workspace& work) {
   View v{};
   view_model(model, v);
-  view_places(model, work, v);
+  view_cell_positions(model, work, v);
   view_loads(work, v);
   view_particles(state, v);
   view_bonds(state, work, v);
@@ -182,11 +182,11 @@ View view_of(const Model& model, State& state, Workspace& work) {
   return v;
 }
 
-void refresh_places(const Model& model, const State& state, Workspace& work, std::size_t begin,
-                    std::size_t end) {
+void refresh_cell_positions(const Model& model, const State& state, Workspace& work,
+                            std::size_t begin, std::size_t end) {
   View view{};
   view_model(model, view);
-  view_places(model, work, view);
+  view_cell_positions(model, work, view);
   view_particles(state, view);
   for_each_piece(work, end - begin, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
     const auto from = std::ptrdiff_t(begin);
@@ -198,8 +198,8 @@ void refresh(const Model& model, const State& state, Workspace& work, PeakFields
   const std::size_t n = state.particles.size();
   work.threads = model.threads_for(n);
   work.no_particle_splits = false;
-  work.places.resize(n);
-  refresh_places(model, state, work, 0, n);
+  work.cell_positions.resize(n);
+  refresh_cell_positions(model, state, work, 0, n);
   work.bond_lists.update(state.bonds, n);
   refresh_fields(model, state, work, raised);
 }
@@ -218,12 +218,12 @@ double lightest(const Particles& p) {
 
 void refresh_fields(const Model& model, const State& state, Workspace& work, PeakFields* raised) {
   const Particles& p = state.particles;
-  work.cells.update(work.places.column, work.places.row);
+  work.cells.update(work.cell_positions.column, work.cell_positions.row);
   work.fields.take_shape(work.cells);
   work.thickness.resize(p.size());
   View view{};
   view_model(model, view);
-  view_places(model, work, view);
+  view_cell_positions(model, work, view);
   view_particles(state, view);
   if (raised) {
     view.peak_thickness = raised->thickness.data();

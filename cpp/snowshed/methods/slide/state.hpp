@@ -72,8 +72,8 @@ struct State {
   EnergyBalance energy;    // sums over steps; stored energies are computed on request
 };
 
-/// Places of the particles in the grid, and the normals of the ground there.
-struct Places {
+/// Positions of the particles in the cells of the grid, and the normals of the ground at them.
+struct CellPositions {
   AlignedVector<std::int32_t> column, row;
   AlignedVector<double> east, north;  // within the cell, 0 to 1
   AlignedVector<double> nx, ny, nz;
@@ -99,15 +99,15 @@ struct Places {
 
 /// Loads on each particle during a step; see View.
 struct Loads {
-  AlignedVector<double> ax, ay, az, yield, drag, speed;
+  AlignedVector<double> ax, ay, az, coulomb_deceleration, drag, speed;
 
   void resize(std::size_t n) {
-    for (auto* array : {&ax, &ay, &az, &yield, &drag, &speed}) array->resize(n);
+    for (auto* array : {&ax, &ay, &az, &coulomb_deceleration, &drag, &speed}) array->resize(n);
   }
 };
 
 struct Workspace {
-  Places places;
+  CellPositions cell_positions;
   AlignedVector<double> thickness;  // m, of the snow at the particles
   CellLists cells;
   AlignedVector<double> sorted_pressure_factor;  // in the order of the cells, see View
@@ -121,7 +121,7 @@ struct Workspace {
   std::vector<char> removed;      // particles that left the terrain
   std::vector<char> broken;       // bonds that break in this step
   bool bonds_break = false;       // whether any bond breaks in this step
-  std::vector<std::uint32_t> new_places;
+  std::vector<std::uint32_t> new_indices;
   std::vector<double> piece_sums;
   bool no_particle_splits = false;  // no particle is too heavy, and none becomes heavier
   EnergyRecorder energy_recorder;
@@ -144,12 +144,14 @@ void for_each_piece(const Workspace& work, std::size_t count, F f) {
   parallel_pieces(std::ptrdiff_t(count), work.threads, particles_in_piece, f);
 }
 
-/// Updates the workspace from the particles: places, cells, fields, bonds. Raises the given peaks
-/// to the values of the fields.
+/// Updates the workspace from the particles: cell positions, cells, fields, bonds. Raises the given
+/// peaks to the values of the fields.
 void refresh(const Model&, const State&, Workspace&, PeakFields* raised = nullptr);
-/// Updates the places of the particles [begin, end), for which the workspace must have memory.
-void refresh_places(const Model&, const State&, Workspace&, std::size_t begin, std::size_t end);
-/// Does the rest of `refresh` if bonds and the particles' places are up to date.
+/// Updates the cell positions of the particles [begin, end), for which the workspace must have
+/// memory.
+void refresh_cell_positions(const Model&, const State&, Workspace&, std::size_t begin,
+                            std::size_t end);
+/// Does the rest of `refresh` if bonds and the particles' cell positions are up to date.
 void refresh_fields(const Model&, const State&, Workspace&, PeakFields* raised);
 
 }  // namespace snowshed::methods::slide

@@ -37,7 +37,7 @@ class Terrain {
   const Node* nodes() const { return nodes_.data(); }
 
   /// The position of a point in the grid; outside if it lies beyond the last nodes.
-  geometry::CellPosition place(double x, double y) const {
+  geometry::CellPosition cell_position(double x, double y) const {
     return geometry::find_cell(x * per_cell_, y * per_cell_, columns_, rows_);
   }
 

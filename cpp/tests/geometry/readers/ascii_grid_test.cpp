@@ -64,7 +64,7 @@ TEST_F(AsciiGrid, CellSizesMayBeGivenPerAxis) {
   EXPECT_DOUBLE_EQ(read(replaced(good, "cellsize 10", "dx 10\nDY 10.0")).cell, 10);
 }
 
-TEST_F(AsciiGrid, CountsItsAssumptions) {
+TEST_F(AsciiGrid, AssumedValuesAreCounted) {
   write_plainly(path("a.asc"),
                 "ncols 2\nnrows 2\nxllcorner 0,5\nyllcorner 0\ncellsize 1\n"
                 "1,25 2\n3 -9999\n");

@@ -8,7 +8,7 @@
 
 #include "snowshed/core/random.hpp"
 #include "snowshed/methods/grains/forces.hpp"
-#include "snowshed/methods/grains/listing.hpp"
+#include "snowshed/methods/grains/pair_tables.hpp"
 #include "snowshed/methods/grains/state.hpp"
 
 namespace snowshed::methods::grains {
@@ -116,10 +116,10 @@ struct PosedGrains {
     std::vector<GrainPose> poses = poses_of(state.bodies);
     const std::vector<PairHistory> bonds = initial_bonds(model, poses, state.boundary);
     state.bonds = std::int64_t(bonds.size());
-    Listing listing = listing_of(model, std::move(poses), state.boundary, bonds);
-    state.pairs = std::move(listing.pairs);
-    work.groups_by_body = std::move(listing.groups_by_body);
-    work.results = std::move(listing.results);
+    PairTables tables = search_pairs(model, std::move(poses), state.boundary, bonds);
+    state.pairs = std::move(tables.pairs);
+    work.groups_by_body = std::move(tables.groups_by_body);
+    work.results = std::move(tables.results);
     work.frames.resize(state.bodies.size() + 2);
   }
   void evaluate(double dt = 0) { evaluate_forces(model, state, work, dt); }

@@ -77,7 +77,7 @@ TEST_P(ParticleFields, StressesLieWithinTheYieldSurface) {
   EXPECT_NEAR(max_yield, 0.0, 5e-3);  // to rounding in single precision
 }
 
-TEST_P(ParticleFields, BelongToKnownQuantities) {
+TEST_P(ParticleFields, EveryFieldIsAListedQuantity) {
   const std::vector<Quantity> all = quantities();
   for (const particles::FieldInfo& info : solver_->fields()) {
     const auto known = [&](const Quantity& q) {

@@ -125,7 +125,7 @@ TEST(MaterialPerParticle, TheStiffestPresentSnowLimitsTheStep) {
   EXPECT_DOUBLE_EQ(solver->time_step(), limit(o.snows[1]));
 }
 
-TEST(MaterialPerParticle, TheStiffestSnowLimitsTheStepAtAnyListPosition) {
+TEST(MaterialPerParticle, TheStiffestSnowLimitsTheStepWhereverItIsListed) {
   Options o = options_for({2, Precision::float64});
   o.gravity = 0;
   double step[2];

@@ -13,7 +13,7 @@ constexpr int steps_between_checks = 8;
 /// Measurements of the quiet block.
 struct QuietBlock {
   double speed = 0, fastest = 0;
-  CarriedMotion carried;
+  SleepingBlockMotion carried;
   VecD<2> velocity = VecD<2>::Zero();
 };
 

@@ -60,7 +60,7 @@ TEST_P(RestingGap, IsLessThanATenthOfACell) {
     }
 }
 
-TEST_P(RestingGap, IsAsSmallInThreeDimensions) {
+TEST_P(RestingGap, In3DIsAsSmallAsIn2D) {
   const Condition condition = GetParam();
   const Obstacle ground =
       fixed(geometry::make_plane(Vec3(0, 0, 0.002), Vec3::UnitZ()), condition, 0.3);

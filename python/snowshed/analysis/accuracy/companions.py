@@ -1,8 +1,8 @@
-"""The error of a stack, measured with companions of its scene: coarser grids, and several seeds.
+"""The error of a stack, measured by repeating its scene on coarser grids and with other seeds.
 
-Three seeds on each of three grids give means and their scatter. A straight line through the means
-over the size of the cells gives the value on an infinitely fine grid. The error is
-assumed to be linear, because contact of snow with snow and ground errs by about a cell.
+Three seeds on each of three grids give means and their scatter. The means are extrapolated linearly
+in dx to dx = 0. The error is assumed to be linear, because contact of snow with snow and ground
+errs by about a cell.
 """
 
 from __future__ import annotations

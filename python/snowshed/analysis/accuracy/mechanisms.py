@@ -23,7 +23,7 @@ SCHEME = "scheme"
 FIRST_SCHEME = "thesis"
 #: Settings that a scheme decides unless they are given.
 SCHEME_SETTINGS = MpmSettings.ADOPTS[SCHEME]
-#: Decided settings that are lengths, which do not depend on the slab.
+#: Those of them that are lengths, m; they do not scale with the slab.
 LENGTHS = ("damping_length", "crack_band_length")
 
 
@@ -35,12 +35,12 @@ class Mechanisms:
     ----------
     scheme
         Name of the scheme.
-    departures
+    overrides
         Settings that the scheme decides, if their values are not the scheme's.
     """
 
     scheme: str = FIRST_SCHEME
-    departures: Mapping[str, Value] = field(default_factory=dict)
+    overrides: Mapping[str, Value] = field(default_factory=dict)
 
     @classmethod
     def of_scene(cls, scene: Mapping[str, Any]) -> Optional[Mechanisms]:
@@ -68,13 +68,13 @@ class Mechanisms:
         'scheme objective with damping length 0.02'
         """
         scheme = scheme_of(settings)
-        decided = decided_by(scheme)
-        departures = {
+        decided = scheme_defaults(scheme)
+        overrides = {
             name: settings[name]
             for name in SCHEME_SETTINGS
             if settings.get(name) is not None and settings[name] != decided.get(name)
         }
-        return cls(scheme, departures)
+        return cls(scheme, overrides)
 
     @classmethod
     def of_texts(cls, texts: Mapping[str, str]) -> Mechanisms:
@@ -83,15 +83,15 @@ class Mechanisms:
         Examples
         --------
         >>> Mechanisms.of_texts({"transfer": "flip", "flip_ratio": "0.95", "damping_rate": "nan"})
-        Mechanisms(scheme='thesis', departures={'flip_ratio': 0.95})
+        Mechanisms(scheme='thesis', overrides={'flip_ratio': 0.95})
         """
         return cls.of_settings({name: _value(text) for name, text in texts.items()})
 
     @property
     def label(self) -> str:
         """The name of the scheme, with the departures from it."""
-        departures = settings_label(self.departures)
-        return f"scheme {self.scheme}" + (f" with {departures}" if departures else "")
+        overrides = settings_label(self.overrides)
+        return f"scheme {self.scheme}" + (f" with {overrides}" if overrides else "")
 
     @property
     def calibration_note(self) -> str:
@@ -110,7 +110,7 @@ class Mechanisms:
         return f"the snow was calibrated with {calibrated_with}, which stacks it higher"
 
     def lengths_note(self, recorded: float, thickness: float) -> str:
-        """Return a clause if the scheme's lengths are other shares of the slab than recorded.
+        """Return a clause if the slab is thicker or thinner than the recorded one by a percent.
 
         Parameters
         ----------
@@ -129,13 +129,17 @@ class Mechanisms:
         >>> Mechanisms("objective").lengths_note(0.02, 0.02), Mechanisms().lengths_note(0.02, 0.2)
         ('', '')
         """
-        decided = decided_by(self.scheme)
+        decided = scheme_defaults(self.scheme)
         length = max(float(decided[name]) for name in LENGTHS)
         if not length or abs(thickness / recorded - 1) < 0.01:
             return ""
-        there, here = percent(length / recorded, 2), percent(length / thickness, 2)
+        recorded_share = percent(length / recorded, 2)
+        own_share = percent(length / thickness, 2)
         lengths = f"the scheme's lengths ({length:g} m)"
-        return f"{lengths} are {there} of the recorded slab's thickness, {here} of this one's"
+        return (
+            f"{lengths} are {recorded_share} of the recorded slab's thickness, "
+            f"{own_share} of this one's"
+        )
 
 
 def scheme_of(settings: Mapping[str, Any]) -> str:
@@ -150,12 +154,12 @@ def scheme_of(settings: Mapping[str, Any]) -> str:
 
 
 @lru_cache(maxsize=8)
-def decided_by(scheme: str) -> CaseSettings:
+def scheme_defaults(scheme: str) -> CaseSettings:
     """Return the settings that a scheme decides.
 
     Examples
     --------
-    >>> decided_by("thesis")["transfer"], decided_by("objective")["damping_length"]
+    >>> scheme_defaults("thesis")["transfer"], scheme_defaults("objective")["damping_length"]
     ('flip', 0.01)
     """
     scene = Scene.preset(PRESET).with_({f"{SETTINGS_KEY}.{SCHEME}": scheme})

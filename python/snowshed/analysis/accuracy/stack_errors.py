@@ -30,7 +30,7 @@ from snowshed.base.formatting import number
 from snowshed.running.scene_notes import MIN_CELLS_ACROSS
 from snowshed.scene.scene import ResolvedScene, Scene
 
-#: Settings that plain recorded runs may have; their other settings are defaults.
+#: The only settings in which a plain recorded run may differ from the defaults.
 _PLAIN = {"dimension", "between", "events", ORDER_IN, SCHEME, *SCHEME_SETTINGS}
 
 
@@ -84,7 +84,7 @@ class StackError:
             else f"; this scene has {number(self.cells, 2)}"
         )
         return _clauses(
-            f"error of the stack in recorded runs ({_where(self.settings)}, {cells} in the "
+            f"error of the stack in recorded runs ({_scene_label(self.settings)}, {cells} in the "
             f"slab{own_cells}): {bias}, relative to the finest recorded grid of this scheme, "
             "which is itself not converged",
             f"single runs scatter by {scatter}" if scatter else "",
@@ -156,7 +156,7 @@ def error_sentence(scene: ResolvedScene) -> str:
     mechanisms = Mechanisms.of_scene(scene.data)
     if slab_thickness(scene.data) is None or mechanisms is None:
         return ""
-    return f"error of the stack: {_nothing(mechanisms)}; --check measures it"
+    return f"error of the stack: {_no_runs_text(mechanisms)}; --check measures it"
 
 
 def recorded_bias(dimension: int, events: int, mechanisms: Optional[Mechanisms] = None) -> str:
@@ -194,10 +194,10 @@ def recorded_bias(dimension: int, events: int, mechanisms: Optional[Mechanisms] 
     }
     resolved = {n: bias for n, bias in cells.items() if n > MIN_CELLS_ACROSS - 1e-9}
     if not resolved:
-        return _nothing(mechanisms)
+        return _no_runs_text(mechanisms)
     low, high = 100 * min(resolved.values()), 100 * max(resolved.values())
     return _clauses(
-        f"stacks of {_where(stacks[0].settings)} were {_span(low, high)} with "
+        f"stacks of {_scene_label(stacks[0].settings)} were {_span(low, high)} with "
         f"{_numbers(min(resolved), max(resolved))} cells in the slab, relative to the finest "
         "recorded grid of this scheme",
         mechanisms.calibration_note,
@@ -215,7 +215,7 @@ def _plain_stacks(
     ]
 
 
-def _where(settings: CaseSettings) -> str:
+def _scene_label(settings: CaseSettings) -> str:
     """Return the recorded scene of settings, with its scheme."""
     scene = f"{PRESET} in {settings['dimension']}D, event {settings['events']}"
     return f"{scene}, {Mechanisms.of_settings(settings).label}"
@@ -226,7 +226,7 @@ def _clauses(*clauses: str) -> str:
     return "; ".join(filter(None, clauses))
 
 
-def _nothing(mechanisms: Mechanisms) -> str:
+def _no_runs_text(mechanisms: Mechanisms) -> str:
     return f"no runs are recorded for {mechanisms.label}"
 
 

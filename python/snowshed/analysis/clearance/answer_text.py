@@ -36,7 +36,7 @@ def cause_label(cause: str) -> str:
     """Return the label of a cause of variance."""
     if cause == "winter":
         return "the winter's weather"
-    return CHANCE if cause == "chance" else UNCERTAIN[cause].meaning
+    return CHANCE if cause == "chance" else UNCERTAIN[cause].name
 
 
 def advice(answer: ClearanceResult) -> str:
@@ -49,7 +49,7 @@ def advice(answer: ClearanceResult) -> str:
     largest = shares[0]
     winter = next((share.part for share in answer.shares if share.cause == "winter"), 0.0)
     return (
-        f"Measuring the {UNCERTAIN[largest.cause].meaning} would reduce the uncertainty most: it "
+        f"Measuring the {UNCERTAIN[largest.cause].name} would reduce the uncertainty most: it "
         f"causes {100 * largest.part:.0f} % of the variance. The winter causes "
         f"{100 * winter:.0f} %, "
         "which no measurement reduces."
@@ -102,18 +102,25 @@ def _grid_error(answer: ClearanceResult) -> str:
 def assumptions(answer: ClearanceResult) -> list[str]:
     """Return the assumptions of the seasons, a sentence each."""
     season = answer.cases[0].settings
-    cover = "from the weather" if season.cover == "weather" else f"{season.cover}"
     return [
         "The panel is long across the slope: the simulation is of a strip (2D).",
         f"Grid cells are {100 * answer.design.dx:.3g} cm wide. Releases thinner than "
         f"{1000 * season.pool_below:.0f} mm slide with those that follow.",
-        f"The stack lies on the natural snow cover (its depth: {cover}), and nobody clears it.",
+        f"The stack lies on {_ground(season)}, and nobody clears it.",
         _settling(season),
         _strength(season),
         "Melt of the stack, rain, wind drift and snowfall on the stack (except on the cover) are "
         "left out.",
         "Winters are independent of each other: the climate does not change.",
     ]
+
+
+def _ground(season: SeasonSettings) -> str:
+    if season.cover == "weather":
+        return "the natural snow cover of the weather file"
+    if season.cover in ("none", 0):
+        return "bare ground"
+    return f"natural snow, {season.cover:g} m deep"
 
 
 def _settling(season: SeasonSettings) -> str:
@@ -131,6 +138,6 @@ def _strength(season: SeasonSettings) -> str:
 def range_rows(ranges: SnowRanges) -> list[tuple[str, str, str]]:
     """Return the uncertain parameters, each with its lowest and highest value."""
     return [
-        (UNCERTAIN[name].meaning, f"{low:g}", f"{high:g}")
+        (UNCERTAIN[name].label, f"{low:g}", f"{high:g}")
         for name, (low, high) in ranges.spans.items()
     ]

@@ -26,20 +26,28 @@ class UncertainParameter:
 
     Attributes
     ----------
-    meaning
-        Its meaning, with the unit.
+    name
+        Name in a sentence, without an article.
     limits
         Smallest and largest allowed value.
+    unit
+        Unit, or the quantity of which it is a multiple; empty: a plain number.
     default
-        Its range where none is given; None: it does not vary then.
+        Default range; None: the parameter does not vary by default.
     is_factor
         Whether it is a factor; its logarithm is then drawn evenly, not its value.
     """
 
-    meaning: str
+    name: str
     limits: Span
+    unit: str = ""
     default: Optional[Span] = None
     is_factor: bool = False
+
+    @property
+    def label(self) -> str:
+        """The name with the unit."""
+        return f"{self.name}, {self.unit}" if self.unit else self.name
 
 
 #: The uncertain parameters by name.
@@ -48,14 +56,15 @@ UNCERTAIN: Mapping[str, UncertainParameter] = {
         "static friction of snow on the panel", (0.0, 10.0), default=(0.3, 0.7)
     ),
     "adhesion": UncertainParameter(
-        "adhesion of snow to the panel, Pa", (0.0, 1e5), default=(0.0, 150.0)
+        "adhesion of snow to the panel", (0.0, 1e5), "Pa", default=(0.0, 150.0)
     ),
     "sliding_friction": UncertainParameter(
         "friction of sliding snow", (0.0, 10.0), default=(0.1, 0.4)
     ),
     "strength": UncertainParameter(
-        "strength of the snow, as a multiple of that for its density",
+        "strength of the snow",
         (0.01, 100.0),
+        "as a multiple of that for its density",
         default=(0.5, 2.0),
         is_factor=True,
     ),

@@ -36,7 +36,7 @@ class SeasonOutcome:
     height
         Height of the edge above the ground, m.
     margin
-        Distance from the highest snow to the edge, less a cell, m; not above 0 after a contact.
+        Distance from the highest snow to the edge minus a cell, m; at most 0 after a contact.
     contact
         The first contact, if any.
     """

@@ -186,30 +186,32 @@ def sensitivity_variants(
             changes = {name: _scaled(full["numerics"][name], factor) for name in names}
             if changes.get("density_scaling", 1.0) >= 1.0:  # ice is not made lighter
                 paths = {f"numerics.{name}": value for name, value in changes.items()}
-                words = _variant_title(varied, next(iter(changes.values())))
-                variants.append(Variant(words, varied, files, voxel, paths))
+                title = _variant_title(varied, next(iter(changes.values())))
+                variants.append(Variant(title, varied, files, voxel, paths))
     for factor in SPEEDS:
         speed = _scaled(full["loading"][0]["speed"], factor)
-        words, path = f"speed {1e3 * speed:g} mm/s", {"loading.0.speed": speed}
-        variants.append(Variant(words, "speed", files, voxel, path))
-    for times in ([coarser - 1] if finer else []) + [coarser + 1]:
-        variants.append(other_spheres(samples, folder, times))
+        title, path = f"speed {1e3 * speed:g} mm/s", {"loading.0.speed": speed}
+        variants.append(Variant(title, "speed", files, voxel, path))
+    for voxels_per_sphere in ([coarser - 1] if finer else []) + [coarser + 1]:
+        variants.append(sphere_size_variant(samples, folder, voxels_per_sphere))
     small = [sample.middle(SMALLER_EDGE).write(folder) for sample in base]
     variants.append(Variant("volume / 8", "volume", small, voxel))
     return Comparison(scene, variants, "grains-sensitivity")
 
 
-def other_spheres(samples: Sequence[LabelledSample], folder: Path, times: int) -> Variant:
-    """Return the variant whose spheres are some times as large as the samples' voxels.
+def sphere_size_variant(
+    samples: Sequence[LabelledSample], folder: Path, voxels_per_sphere: int
+) -> Variant:
+    """Return the variant whose spheres are `voxels_per_sphere` voxels of the samples wide.
 
     Raises
     ------
     InputError
-        If `times` is not positive, or too large for the samples.
+        If `voxels_per_sphere` is not positive, or too large for the samples.
     """
-    if times < 1:
+    if voxels_per_sphere < 1:
         raise InputError("finer spheres: the samples have no finer voxels; needs coarser above 1")
-    other = [sample.coarser(times) for sample in samples]
+    other = [sample.coarser(voxels_per_sphere) for sample in samples]
     size = other[0].voxel_size
     files = [sample.write(folder) for sample in other]
     return Variant(f"spheres {1e6 * size:g} um", "sphere size", files, size)

@@ -42,9 +42,9 @@ class SupportVectors:
 
 @dataclass
 class _Bounds:
-    """Multipliers alpha (or alpha^*) in (0, C), their room below C, and the bounds' multipliers.
+    """Multipliers alpha (or alpha^*) in (0, C), slacks C - alpha, and multipliers of both bounds.
 
-    The room is kept beside the value because the difference C - value would lose its digits.
+    The slack is kept beside the value because the difference C - value would lose its digits.
     """
 
     value: Floats

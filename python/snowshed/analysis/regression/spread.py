@@ -76,8 +76,8 @@ def _scales(floor: float, slope: float, predictions: Floats, deviations: Floats)
 
 def _quantile(ratios: Floats, part: float) -> float:
     """Return the quantile of sorted ratios that holds for a new case, not only for the given."""
-    place = int(np.ceil(part * (len(ratios) + 1))) - 1
-    return float(ratios[min(place, len(ratios) - 1)])
+    rank = int(np.ceil(part * (len(ratios) + 1))) - 1
+    return float(ratios[min(rank, len(ratios) - 1)])
 
 
 def predict_unseen_panels(

@@ -62,13 +62,13 @@ def _draw_indices(axes: Axes, rows: pd.DataFrame, number: int, events: int, colo
     """Draw the bars of one event, the `number`-th of `events`; hollow if noise could cause them."""
     width = BARS_SHARE / events
     positions = _bar_positions(len(rows), events, number)
-    for place, (_, row) in zip(positions, rows.iterrows()):
+    for position, (_, row) in zip(positions, rows.iterrows()):
         doubtful = row["distinct"] is not None and not row["distinct"]
         fill = "white" if doubtful else colour
-        axes.bar(place, row["s"], width, color=fill, edgecolor=colour, linewidth=1.2)
+        axes.bar(position, row["s"], width, color=fill, edgecolor=colour, linewidth=1.2)
         if np.isfinite(row["standard_error"]):
             half = STANDARD_ERRORS_95 * row["standard_error"]
-            axes.errorbar(place, row["s"], half, color=INK, linewidth=1, capsize=2)
+            axes.errorbar(position, row["s"], half, color=INK, linewidth=1, capsize=2)
 
 
 def _pair_label(table: pd.DataFrame, parameter: str) -> str:

@@ -45,7 +45,7 @@ def asked_fraction(ice_fraction: Optional[float], density: Optional[float]) -> f
 def one_of(
     name: str, value: Optional[float], other: str, instead: Optional[float], factor: float = 1.0
 ) -> float:
-    """Return the given one of two positive values; the second is multiplied by a factor.
+    """Return the given value of two alternatives, both positive; the second times `factor`.
 
     Examples
     --------

@@ -41,11 +41,11 @@ def segmentation_plan(file: VoxelFile, settings: ImageSettings) -> tuple[int, fl
     voxels = prod(cropped_shape(file, settings.crop))
     coarse = voxels // max(settings.downscale, 1) ** 3
     needed = BYTES_READ * voxels + BYTES_SEGMENTED * coarse
-    there = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    if needed > there:
+    available = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    if needed > available:
         raise InputError(
             f"{file.name}: {voxels:,} voxels take some {number(needed / 1e9, 2)} GB; this machine "
-            f"has {number(there / 1e9, 2)} GB: crop or downscale the image"
+            f"has {number(available / 1e9, 2)} GB: crop or downscale the image"
         )
     return needed, SECONDS_PER_VOXEL * coarse
 

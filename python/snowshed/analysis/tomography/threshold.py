@@ -167,7 +167,7 @@ def _checked_crop(file: VoxelFile, crop: Optional[Crop]) -> Crop:
     for axis, (low, high), count in zip("zyx", crop, file.shape):
         if not 0 <= low < high <= count:
             raise InputError(
-                f"{file.name}: crop {low}:{high} along {axis}; 0:{count} is all there is"
+                f"{file.name}: crop {low}:{high} along {axis} exceeds the image (0:{count})"
             )
     return crop
 
@@ -178,5 +178,5 @@ def _parts(file: VoxelFile, crop: Crop) -> Iterator[tuple[int, NDArray[Any]]]:
     for low in range(z0, z1, file.layers_at_once):
         part = file.layers(low, min(low + file.layers_at_once, z1))[:, y0:y1, x0:x1]
         if part.dtype.kind == "f" and not np.isfinite(part).all():
-            raise InputError(f"{file.name}: values that are not finite in layers from {low}")
+            raise InputError(f"{file.name}: non-finite values from layer {low} on")
         yield low - z0, part

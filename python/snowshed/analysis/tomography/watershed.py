@@ -35,13 +35,13 @@ class Basins:
     peaks: Floats
 
 
-def distance_from(there: Booleans, threads: int) -> SingleFloats:
-    """Return the distance of each voxel to the nearest voxel that is not `there`, in voxels.
+def distance_from(mask: Booleans, threads: int) -> SingleFloats:
+    """Return the distance of each voxel to the nearest voxel that is not `mask`, in voxels.
 
     The sides of the image do not count.
     """
     edt = require("edt", EXTRA, "finding grains")
-    return np.asarray(edt.edt(there, parallel=threads, black_border=False), dtype=np.float32)
+    return np.asarray(edt.edt(mask, parallel=threads, black_border=False), dtype=np.float32)
 
 
 def distance_basins(ice: Booleans, threads: int) -> Basins:

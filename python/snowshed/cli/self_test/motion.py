@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from snowshed.cli.self_test.drive import EventDriver
-from snowshed.cli.self_test.incline import GRAVITY, Incline
+from snowshed.analysis.accuracy.incline import GRAVITY, Incline
+from snowshed.running.event_driver import EventDriver
 from snowshed.scene.components import Body, Obstacle
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape

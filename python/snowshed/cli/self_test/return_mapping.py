@@ -3,27 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
 
 import snowshed._core as _core
-from snowshed.scene.components import Snow
-
-
-class Constants(NamedTuple):
-    """The constants of modified cohesive Cam-Clay."""
-
-    youngs_modulus: float
-    poissons_ratio: float
-    critical_state_slope: float
-    cohesion: float
-    hardening_factor: float
-
-
-def calibrated_snow() -> tuple[Constants, float]:
-    """Return the thesis's calibrated snow, and its initial p0, Pa."""
-    snow: dict[str, Any] = Snow.preset("calibrated").to_data()
-    return Constants(*(snow[name] for name in Constants._fields)), snow["preconsolidation_pressure"]
-
+from snowshed.analysis.accuracy.calibrated_snow import calibrated_snow
 
 #: Plastic volumetric strains of snow beyond its strength, in compression and tension.
 STRAINS = (-0.01, -1e-4, 1e-5, 1e-4)

@@ -12,8 +12,8 @@ import numpy as np
 
 import snowshed._core as _core
 from snowshed.base.arrays import Floats
-from snowshed.cli.self_test.drive import EventDriver
 from snowshed.io.vtk.vtp import read_particles
+from snowshed.running.event_driver import EventDriver
 from snowshed.scene.scene import Scene
 
 FINE = 0.0025  # m, cells that give enough particles for two threads

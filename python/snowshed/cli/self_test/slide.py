@@ -9,10 +9,10 @@ from typing import Literal
 
 import numpy as np
 
-from snowshed.cli.self_test.drive import EventDriver
-from snowshed.cli.self_test.incline import GRAVITY
+from snowshed.analysis.accuracy.incline import GRAVITY
 from snowshed.io.raster.raster import Raster, write_ascii_grid
 from snowshed.methods.slide.settings import SlideSettings
+from snowshed.running.event_driver import EventDriver
 from snowshed.scene.components import Area, Terrain
 from snowshed.scene.scene import Scene
 

@@ -29,7 +29,7 @@ def count_corners(wkb: bytes, where: str) -> int:
     3
     """
     try:
-        kind, place, order, _ = _head(wkb, 0)
+        kind, offset, byte_order, _ = _head(wkb, 0)
         if kind in CURVED_TYPES:
             raise InputError(
                 f"{where}: has curved edges; draw it with straight ones (QGIS: Segmentize)"
@@ -38,38 +38,38 @@ def count_corners(wkb: bytes, where: str) -> int:
             return _rings(wkb, 0)[0]
         if kind != MULTIPOLYGON:
             raise InputError(f"{where}: not a polygon")
-        (parts,) = struct.unpack_from(f"{order}I", wkb, place)
-        place, corners = place + 4, 0
+        (parts,) = struct.unpack_from(f"{byte_order}I", wkb, offset)
+        offset, corners = offset + 4, 0
         for _ in range(parts):
-            if _head(wkb, place)[0] != POLYGON:
+            if _head(wkb, offset)[0] != POLYGON:
                 raise InputError(f"{where}: not a polygon")
-            count, place = _rings(wkb, place)
+            count, offset = _rings(wkb, offset)
             corners += count
     except struct.error:
         raise InputError(f"{where}: its geometry is damaged") from None
     return corners
 
 
-def _head(wkb: bytes, place: int) -> tuple[int, int, str, int]:
+def _head(wkb: bytes, offset: int) -> tuple[int, int, str, int]:
     """Return kind, next offset, byte order, and number of coordinates of a corner."""
-    order = "<" if wkb[place : place + 1] == b"\1" else ">"
-    (code,) = struct.unpack_from(f"{order}I", wkb, place + 1)
-    place += 9 if code & 0x20000000 else 5  # an identifier of the coordinate system
+    byte_order = "<" if wkb[offset : offset + 1] == b"\1" else ">"
+    (code,) = struct.unpack_from(f"{byte_order}I", wkb, offset + 1)
+    offset += 9 if code & 0x20000000 else 5  # an identifier of the coordinate system
     base = code & 0x0FFFFFFF
     numbers = 2 + bool(code & 0x80000000) + bool(code & 0x40000000)
     numbers += {0: 0, 1: 1, 2: 1, 3: 2}.get(base // 1000, 0)
-    return base % 1000, place, order, numbers
+    return base % 1000, offset, byte_order, numbers
 
 
-def _rings(wkb: bytes, place: int) -> tuple[int, int]:
+def _rings(wkb: bytes, offset: int) -> tuple[int, int]:
     """Return the number of corners of a polygon, and the offset after it."""
-    _, place, order, numbers = _head(wkb, place)
-    (rings,) = struct.unpack_from(f"{order}I", wkb, place)
-    place, corners = place + 4, 0
+    _, offset, byte_order, numbers = _head(wkb, offset)
+    (rings,) = struct.unpack_from(f"{byte_order}I", wkb, offset)
+    offset, corners = offset + 4, 0
     for _ in range(rings):
-        (count,) = struct.unpack_from(f"{order}I", wkb, place)
-        place += 4 + count * numbers * 8
+        (count,) = struct.unpack_from(f"{byte_order}I", wkb, offset)
+        offset += 4 + count * numbers * 8
         corners += count
-        if place > len(wkb):
+        if offset > len(wkb):
             raise struct.error
-    return corners, place
+    return corners, offset

@@ -48,10 +48,10 @@ def packed_numbers(
         If it cannot be read.
     """
     with open_regular(data) as file:
-        there = max(os.fstat(file.fileno()).st_size - start, 0)
-    if size > there:
-        raise InputError(f"{name}: damaged: {there:,} packed bytes; its header says {size:,}")
-    check_unpacked(str(name), prod(shape) * dtype.itemsize, size or there)
+        file_bytes = max(os.fstat(file.fileno()).st_size - start, 0)
+    if size > file_bytes:
+        raise InputError(f"{name}: damaged: {file_bytes:,} packed bytes; its header says {size:,}")
+    check_unpacked(str(name), prod(shape) * dtype.itemsize, size or file_bytes)
     return VoxelFile(str(name), shape, dtype, _PackedLayers(str(name), data, shape, dtype, start))
 
 

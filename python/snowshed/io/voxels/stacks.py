@@ -83,16 +83,16 @@ def _pages(path: Path) -> tuple[list[PixelPicture], Description, Optional[float]
     big_endian = is_big_endian(path)
     descriptions: list[tuple[Description, Optional[float]]] = []
 
-    def look(tags: Tags) -> PixelPicture:
+    def read_page(tags: Tags) -> PixelPicture:
         picture = page_picture(path, tags, big_endian)
         if not descriptions:
             text = parse_description(str(path), tags.text(270), tags.ratio(282))
             descriptions.append((text, _printed_size(tags)))
         return picture
 
-    pictures = read_pages(path, look)
+    pictures = read_pages(path, read_page)
     if not pictures:
-        raise InputError(f"{path}: damaged: not read as TIFF: it has no pages")
+        raise InputError(f"{path}: damaged: not a readable TIFF: it has no pages")
     return (pictures, *descriptions[0])
 
 

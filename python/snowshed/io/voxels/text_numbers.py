@@ -69,6 +69,6 @@ def text_numbers(
     with np.errstate(invalid="ignore", over="ignore"):
         array = numbers.astype(native)
     if dtype.kind in "iu" and (array != numbers).any():
-        raise InputError(f"{name}: damaged: numbers that are no {native.name}")
+        raise InputError(f"{name}: damaged: numbers that do not fit {native.name}")
     array = array.reshape(shape)
     return VoxelFile(str(name), shape, native, lambda low, high: array[low:high])

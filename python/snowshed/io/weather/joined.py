@@ -145,7 +145,7 @@ def _on_clock(station: Station, offset: Optional[float]) -> Station:
 def _quantity_values(files: Sequence[_File], name: str, own: Optional[int]) -> list[_Value]:
     """Return the values of a quantity; each day uses the first file with a value."""
     order = list(range(len(files)))
-    if own is not None:  # `own` is the file of the temperature, which serves nothing else
+    if own is not None:  # the temperature file supplies only the temperature
         order = [order[own], *order[:own]] if name == TEMPERATURE else order[:own]
     taken: set[date] = set()
     values = []
@@ -168,9 +168,9 @@ def _days(row: Observation, name: str) -> set[date]:
 
 
 def _series_of_depth(files: Sequence[_File]) -> list[int]:
-    """Return, for each file, the first file of its series of depths: one sensor, year by year.
+    """Return for each file the index of the first file of the same depth sensor.
 
-    Files of one series have the same station and column, and equal values at common times.
+    Such files have the same station and column, and equal values at common times.
     """
     by_time = [
         {row.time: row.snow_depth for row in file.station.rows if row.snow_depth is not None}

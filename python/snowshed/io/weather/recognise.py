@@ -88,7 +88,7 @@ def _lines(content: bytes, path: Path) -> list[str]:
         raise InputError(f"{path}: text in UTF-16; save it in UTF-8")
     if b"\0" in content:
         line = content[: content.index(b"\0")].count(b"\n") + 1
-        raise InputError(f"{path}, line {line}: not text: it holds bytes that are 0")
+        raise InputError(f"{path}, line {line}: not text: it contains NUL bytes")
     if max(content.count(b"\n"), content.count(b"\r")) > MAX_WEATHER_LINES:
         raise InputError(f"{path}: more than {MAX_WEATHER_LINES} lines; cut it into parts")
     lines = re.split("\r\n|\n|\r", _decoded(content).rstrip("\r\n"))

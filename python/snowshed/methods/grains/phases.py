@@ -56,8 +56,8 @@ class Phases:
     strength
         Largest stress of all time steps that the sample carries from plate to plate, Pa; in
         compression, the largest below a strain of 5 %.
-    touched_from
-        Strain up to which no plate touched the snow.
+    contact_strain
+        Strain at the first contact of a plate with the snow.
     unknown
         Reason why no quantity is known; else empty.
     """
@@ -68,7 +68,7 @@ class Phases:
     hardening_onset: Optional[float]
     hardening_rate: Optional[float]
     strength: Optional[float]
-    touched_from: float = 0.0
+    contact_strain: float = 0.0
     unknown: str = ""
 
 

@@ -222,9 +222,9 @@ def _notes(
     phases = find_phases(first, kind) if kind != "penetrate" else NO_PHASES
     if phases.unknown:
         notes.append(f"{phases.unknown}: modulus, strength and mean stresses are unknown")
-    if phases.touched_from > 0.0:
+    if phases.contact_strain > 0.0:
         notes.append(
-            f"nothing touched the snow before a strain of {percent(phases.touched_from)}: the "
+            f"nothing touched the snow before a strain of {percent(phases.contact_strain)}: the "
             "modulus is fitted from there on; all strains count from the beginning"
         )
     linearity = phases.linearity

@@ -182,7 +182,7 @@ def common_system(named: Sequence[tuple[str, str]]) -> str:
 
 
 def _median_slope(terrain: Raster) -> float:
-    """Return the median slope between neighbouring nodes, degrees; from some rows if many."""
+    """Return the median slope between neighbouring nodes, degrees; large rasters are sampled."""
     z = terrain.heights
     if min(z.shape) < 2:
         return 0.0

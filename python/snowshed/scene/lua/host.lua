@@ -77,7 +77,7 @@ local function sorted_pairs(values)
   end
 end
 
-local chains = setmetatable({}, { __mode = "k" }) -- of tables: the key that follows each key
+local chains = setmetatable({}, { __mode = "k" }) -- by table: each key's successor
 
 local function begin_chain(values)
   local keys, chain = sorted_keys("next", values), {}
@@ -96,7 +96,7 @@ local function sorted_next(values, key)
   if not chains[values] then
     begin_chain(values)
   end
-  repeat -- keys that were removed meanwhile are left out
+  repeat -- skip keys that the loop has removed
     key = chains[values][key]
     if key == nil then
       error("next needs a key of the table", 0)
@@ -240,7 +240,7 @@ local function forbid()
   end
 end
 
-local function furnish()
+local function fill_environment()
   forbid()
   for _, name in next, ALLOWED_FUNCTIONS do
     env[name] = _G[name]
@@ -305,5 +305,5 @@ local function run(texts)
 end
 
 randomseed(0) -- the same script makes the same scene
-furnish()
+fill_environment()
 return { run = run, place = place, calls = calls, printed = printed }

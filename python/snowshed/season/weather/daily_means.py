@@ -183,7 +183,7 @@ def _read_at(rows: Sequence[Observation], hour: int, minute: int) -> Iterator[Ob
 def _depths(
     station: Station,
 ) -> tuple[dict[date, list[float]], dict[date, list[float]], set[date], list[tuple[date, float]]]:
-    """Return per day the readings of the depth, with and without jumps; the seams; the jumps."""
+    """Return the depths by day, the same with jumps removed, the days of seams, and the jumps."""
     depths: dict[date, list[float]] = {}
     levels: dict[date, list[float]] = {}
     seams: set[date] = set()

@@ -53,7 +53,7 @@ struct NodeKernels {
   }
 
   static void carried_motion(const T* tile, int reach, const T* const* sums,
-                             const T* const* velocities, CarriedMotion& motion) {
+                             const T* const* velocities, SleepingBlockMotion& motion) {
     double mass = 0, change[D] = {}, squared = 0;
     const auto add = [&](int neighbour, int node, int tile_node, auto length) {
       for (int k = 0; k < length; ++k) {

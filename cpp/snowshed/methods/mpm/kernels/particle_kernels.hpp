@@ -367,7 +367,7 @@ struct ParticleKernels {
       if (make_room(stencil, reach, tile)) scatter_chunk(stencil, s, tau, snow, n, tile.values());
     });
     stats.reach = int(bits_in(reach));
-    stats.speed_squared = double(largest(speed));
+    stats.max_speed_squared = double(largest(speed));
   }
 
   void probe_block(int first, int count, const T* velocities) const {

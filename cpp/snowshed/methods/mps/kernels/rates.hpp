@@ -1,9 +1,9 @@
 // Row sums over neighbours: gradients of pressure and velocity, approach speeds, and the shear rate
 // at the midpoint of each pair.
 //
-// A row is a particle. `offset` (D arrays), `slope` and `rate` have a value per pair. `value` and
-// `share` have a value per particle, `velocity` and `sum` a vector, and `gradient` a matrix by
-// columns, whose rows are components of the velocity.
+// A row is a particle. `offset` (D arrays, m), `slope` (1/m2) and `rate` (1/s) have a value per
+// pair. `value` and `share` (1) have a value per particle, `velocity` (m/s) and `sum` a vector, and
+// `gradient` a matrix by columns, whose rows are components of the velocity.
 #pragma once
 
 #include "snowshed/methods/mps/kernels/row_packs.hpp"
@@ -94,8 +94,9 @@ SNOWSHED_INLINE void sum_row_approaches(const PairRows& rows, const float* const
   for (int d = 0; d < D; ++d) sum[row * D + std::size_t(d)] = sum_lanes(total[d]);
 }
 
-/// rate[pair] = |G + G^T| / sqrt(2), at least for the pairs whose neighbour has the larger index. G
-/// is the mean of both gradients, except that along the separation it is the change of velocity.
+/// rate[pair] = |G + G^T| / sqrt(2), guaranteed only for pairs whose neighbour has the larger
+/// index. G is the mean of both gradients, except that along the separation it is the change of
+/// velocity.
 template <int D>
 SNOWSHED_INLINE void find_pair_rates(const PairRows& rows, const float* const* offset,
                                      const double* velocity, const double* gradient, float* rate,

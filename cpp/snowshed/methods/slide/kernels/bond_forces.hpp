@@ -1,13 +1,13 @@
 // The forces of bonds.
 #pragma once
 
-#include "snowshed/methods/slide/kernels/places.hpp"
+#include "snowshed/methods/slide/kernels/cell_positions.hpp"
 
 SNOWSHED_MODULE_VARIANT_BEGIN(methods::slide)
 
 /// The force of a bond is its modulus times its strain times its contact area, h L / sqrt 3.
-SNOWSHED_INLINE PackMask stretch_lanes(const View& s, const Lanes& l) {
-  const PackRecord r = taken_apart([&](int i) SNOWSHED_INLINE_LAMBDA {
+SNOWSHED_INLINE PackMask store_bond_forces(const View& s, const Lanes& l) {
+  const PackRecord r = transposed_to_packs([&](int i) SNOWSHED_INLINE_LAMBDA {
     const std::ptrdiff_t b = l.first + (i < l.count ? i : 0);
     const Quad first = load_row(s.predicted + 4 * std::ptrdiff_t(s.bond_first[b]));
     const Quad second = load_row(s.predicted + 4 * std::ptrdiff_t(s.bond_second[b]));
@@ -25,7 +25,7 @@ SNOWSHED_INLINE PackMask stretch_lanes(const View& s, const Lanes& l) {
 }
 
 /// The force of all bonds on a particle, N.
-SNOWSHED_INLINE Quad pull_on(const View& s, std::ptrdiff_t i) {
+SNOWSHED_INLINE Quad bond_force_on(const View& s, std::ptrdiff_t i) {
   static constexpr double signs[2] = {1, -1};
   Quad sum{};
   if (!s.bond_begin) return sum;

@@ -12,8 +12,8 @@ namespace {
 
 void locate(const View& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
   for_each_lanes(begin, end, [&](const Lanes& l) {
-    const PackPlace place = place_of(s, l.load(s.x), l.load(s.y));
-    store_place(s, l, place, ground_at(s, place).normal);
+    const PackCellPosition position = cell_position(s, l.load(s.x), l.load(s.y));
+    store_position(s, l, position, ground_at(s, position).normal);
   });
 }
 
@@ -31,7 +31,7 @@ void map_pressure(const View& s, int row) { map_pressure_row(s, row); }
 
 bool stretch_bonds(const View& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
   PackMask broken{};
-  for_each_lanes(begin, end, [&](const Lanes& l) { broken |= stretch_lanes(s, l); });
+  for_each_lanes(begin, end, [&](const Lanes& l) { broken |= store_bond_forces(s, l); });
   return any_lane(broken);
 }
 
@@ -48,8 +48,9 @@ void sum_row_on_nodes(const View& s, int row) { sum_on_nodes(s, row); }
 void raise_mean_speed_of_row(const View& s, int row) { raise_mean_speed(s, row); }
 
 void thickness(const View& s, std::ptrdiff_t begin, std::ptrdiff_t end) {
-  for_each_lanes(begin, end,
-                 [&](const Lanes& l) { l.store(s.thickness, flow_at(s, stored_place(s, l)).a); });
+  for_each_lanes(begin, end, [&](const Lanes& l) {
+    l.store(s.thickness, flow_at(s, stored_position(s, l)).a);
+  });
 }
 
 void bounds(const std::int32_t* values, std::ptrdiff_t count, std::int32_t& low,

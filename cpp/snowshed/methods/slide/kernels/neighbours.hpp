@@ -5,7 +5,7 @@
 #include <type_traits>
 
 #include "snowshed/core/angles.hpp"
-#include "snowshed/methods/slide/kernels/places.hpp"
+#include "snowshed/methods/slide/kernels/cell_positions.hpp"
 
 SNOWSHED_MODULE_VARIANT_BEGIN(methods::slide)
 

@@ -1,5 +1,5 @@
-// Packs of particles, and the nodes' records of four values, which are read for a pack of places at
-// once.
+// Packs of particles, and the nodes' records of four values, which are interpolated for a pack of
+// positions at once.
 #pragma once
 
 #include "snowshed/core/simd_quad.hpp"
@@ -7,7 +7,7 @@
 SNOWSHED_MODULE_VARIANT_BEGIN(methods::slide)
 
 /// A pack holds one value of four particles, or of eight if a register has room for them. It has at
-/// least as many lanes as a record has values, because records are taken apart into packs.
+/// least as many lanes as a record has values, because records are transposed to packs.
 inline constexpr int pack_bytes = simd_bytes > 32 ? simd_bytes : 32;
 inline constexpr int pack_lanes = pack_bytes / int(sizeof(double));
 typedef double Pack __attribute__((vector_size(pack_bytes), may_alias));
@@ -57,10 +57,10 @@ SNOWSHED_INLINE PackRecord transposed(const PackRecord& r) {
   return {rows[0], rows[1], rows[2], rows[3]};
 }
 
-/// The records of all lanes, taken apart into packs of their values; record(i) is the record of
-/// lane i.
+/// The records of all lanes, transposed to packs of their values; record(i) is the record of lane
+/// i.
 template <class RecordOf>
-SNOWSHED_INLINE PackRecord taken_apart(const RecordOf& record) {
+SNOWSHED_INLINE PackRecord transposed_to_packs(const RecordOf& record) {
 #ifdef __AVX512F__
   const auto both = [&](int i) SNOWSHED_INLINE_LAMBDA {
     return __builtin_shufflevector(record(i), record(i + 4), 0, 1, 2, 3, 4, 5, 6, 7);
@@ -71,11 +71,11 @@ SNOWSHED_INLINE PackRecord taken_apart(const RecordOf& record) {
 #endif
 }
 
-/// The values of each lane, put together into a record.
+/// The records of all lanes, one a row.
 struct PackRows {
   Quad of[pack_lanes];
 };
-SNOWSHED_INLINE PackRows put_together(const PackRecord& r) {
+SNOWSHED_INLINE PackRows transposed_to_rows(const PackRecord& r) {
   const PackRecord t = transposed(r);
 #ifdef __AVX512F__
   const auto low = [](const Pack& v) { return __builtin_shufflevector(v, v, 0, 1, 2, 3); };
@@ -88,11 +88,12 @@ SNOWSHED_INLINE PackRows put_together(const PackRecord& r) {
 
 SNOWSHED_INLINE Pack load_whole_pack(const double* p) { return load_pack<Pack>(p, pack_lanes); }
 
-/// Values that are made of the records of the four nodes around a place.
-enum class NodeRecord {
-  mean,             // the bilinear mean
-  mean_and_known,   // the same, but the last value is NaN if the first one of node 0 is
-  mean_and_middle,  // the bilinear mean of the first value, the plain means of the others
+/// Interpolation of the records of a cell's four nodes.
+enum class Interpolation {
+  bilinear,                    // the bilinear mean
+  bilinear_with_mask,          // the same, but the last value is NaN if the first one of node 0 is
+  bilinear_first_mean_others,  // the bilinear mean of the first value, the plain means of the
+                               // others
 };
 
 /// The bilinear weights of the nodes in the south-west (0), south-east, north-west and north-east.
@@ -102,21 +103,21 @@ struct NodeWeights {
 
 #ifdef __AVX512F__
 /// The nodes to the west and to the east are neighbours in memory and fill a register.
-template <NodeRecord record>
+template <Interpolation interpolation>
 SNOWSHED_INLINE Pack node_record(const Pack& south, const Pack& north, const Pack& south_weights,
                                  const Pack& north_weights) {
-  // The height has the same bits for every NodeRecord, so that snow at rest does not creep.
+  // The height has the same bits for every Interpolation, so that snow at rest does not creep.
   const Pack parts = (Pack)_mm512_fmadd_pd((__m512d)south_weights, (__m512d)south,
                                            _mm512_mul_pd((__m512d)north_weights, (__m512d)north));
-  if constexpr (record == NodeRecord::mean) return parts;
-  if constexpr (record == NodeRecord::mean_and_known)  // areas are finite
+  if constexpr (interpolation == Interpolation::bilinear) return parts;
+  if constexpr (interpolation == Interpolation::bilinear_with_mask)  // areas are finite
     return __builtin_shufflevector(parts, south, 0, 1, 2, 8, 4, 5, 6, 15);
   const Pack quarter = 0.25 * (south + north);
   return __builtin_shufflevector(parts, quarter, 0, 9, 10, 11, 4, 13, 14, 15);
 }
 
-/// Records of a pack of places, the first nodes of which are given.
-template <NodeRecord record>
+/// Interpolated records of a pack of positions; `first` are the south-west nodes of their cells.
+template <Interpolation interpolation>
 SNOWSHED_INLINE PackRecord records_of(const double* nodes, int columns, const PackIndex& first,
                                       const NodeWeights& weights) {
   Pack parts[8];
@@ -127,7 +128,7 @@ SNOWSHED_INLINE PackRecord records_of(const double* nodes, int columns, const Pa
   for (int i = 0; i < 8; ++i) {
     const double* south = nodes + 4 * std::ptrdiff_t(first[i]);
     const PackMask lane = PackMask{0, 0, 0, 0, 8, 8, 8, 8} + i;
-    parts[i] = node_record<record>(
+    parts[i] = node_record<interpolation>(
         load_whole_pack(south), load_whole_pack(south + 4 * std::ptrdiff_t(columns)),
         four_of(weights.of[0], weights.of[1], lane), four_of(weights.of[2], weights.of[3], lane));
   }
@@ -140,27 +141,27 @@ SNOWSHED_INLINE PackRecord records_of(const double* nodes, int columns, const Pa
   return transposed({record_of(0), record_of(1), record_of(2), record_of(3)});
 }
 #else
-template <NodeRecord record>
+template <Interpolation interpolation>
 SNOWSHED_INLINE Quad node_record(const Quad (&n)[4], const double (&w)[4]) {
   const Quad mean = w[0] * n[0] + w[1] * n[1] + w[2] * n[2] + w[3] * n[3];
-  if constexpr (record == NodeRecord::mean) return mean;
-  if constexpr (record == NodeRecord::mean_and_known)
+  if constexpr (interpolation == Interpolation::bilinear) return mean;
+  if constexpr (interpolation == Interpolation::bilinear_with_mask)
     return __builtin_shufflevector(mean, n[0], 0, 1, 2, 4);
   const Quad quarter = 0.25 * (n[0] + n[1] + n[2] + n[3]);
   return __builtin_shufflevector(mean, quarter, 0, 5, 6, 7);
 }
 
-/// Records of a pack of places, the first nodes of which are given.
-template <NodeRecord record>
+/// Interpolated records of a pack of positions; `first` are the south-west nodes of their cells.
+template <Interpolation interpolation>
 SNOWSHED_INLINE PackRecord records_of(const double* nodes, int columns, const PackIndex& first,
                                       const NodeWeights& weights) {
   alignas(pack_bytes) double w[4][pack_lanes];
   for (int k = 0; k < 4; ++k) store_pack(w[k], weights.of[k], pack_lanes);
-  return taken_apart([&](int i) SNOWSHED_INLINE_LAMBDA {
+  return transposed_to_packs([&](int i) SNOWSHED_INLINE_LAMBDA {
     const double* a = nodes + 4 * std::ptrdiff_t(first[i]);
     const double* b = a + 4 * std::ptrdiff_t(columns);
-    return node_record<record>({load_row(a), load_row(a + 4), load_row(b), load_row(b + 4)},
-                               {w[0][i], w[1][i], w[2][i], w[3][i]});
+    return node_record<interpolation>({load_row(a), load_row(a + 4), load_row(b), load_row(b + 4)},
+                                      {w[0][i], w[1][i], w[2][i], w[3][i]});
   });
 }
 #endif

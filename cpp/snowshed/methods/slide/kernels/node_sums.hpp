@@ -2,7 +2,7 @@
 // four nodes around them.
 #pragma once
 
-#include "snowshed/methods/slide/kernels/places.hpp"
+#include "snowshed/methods/slide/kernels/cell_positions.hpp"
 
 SNOWSHED_MODULE_VARIANT_BEGIN(methods::slide)
 

@@ -33,7 +33,7 @@ class YieldSurface:
 
 
 def fit_yield_surface(p: Floats, q: Floats) -> YieldSurface:
-    """Return the surface that is nearest to strengths: the least squares of q.
+    """Return the surface fitted to measured strengths by least squares in q.
 
     For a given beta q is proportional to M, so that only beta is searched for.
 
@@ -45,7 +45,7 @@ def fit_yield_surface(p: Floats, q: Floats) -> YieldSurface:
     Raises
     ------
     InputError
-        If no surface has strength where the grains do.
+        If no surface has strength at the measured pressures.
 
     Examples
     --------
@@ -75,5 +75,5 @@ def fit_yield_surface(p: Floats, q: Floats) -> YieldSurface:
         surface(float(COHESIONS[best])), surface(float(fine.x)), key=lambda s: s.residual
     )
     if not best_fit.slope > 0:
-        raise InputError("no yield surface of the law has strength where the grains do")
+        raise InputError("no yield surface fits: the law has no strength at the measured pressures")
     return best_fit

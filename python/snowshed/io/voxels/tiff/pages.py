@@ -178,10 +178,10 @@ def _layout(path: Path, tags: Tags, size: tuple[int, int], big_endian: bool) -> 
         raise InputError(f"{tags.name}: damaged: no lengths of its strips or tiles")
     end = path.stat().st_size
     most = coding.longest(*piece)
-    for place, count in zip(offsets, counts):
-        if place < 8 or count < 1 or place + count > end or count > most:
+    for offset, count in zip(offsets, counts):
+        if offset < 8 or count < 1 or offset + count > end or count > most:
             raise InputError(
-                f"{tags.name}: damaged: a strip or tile of {count:,} bytes at {place:,} in a file "
+                f"{tags.name}: damaged: a strip or tile of {count:,} bytes at {offset:,} in a file "
                 f"of {end:,}"
             )
     return Layout(size, piece, tiled, offsets, counts, coding)
@@ -236,12 +236,12 @@ class _PageReader:
         across = -(-width // columns)
         numbers: Optional[NDArray[Any]] = None
         with open_regular(self.path) as file:
-            for number, (place, count) in enumerate(zip(layout.offsets, layout.counts)):
-                packed = read_at(file, place, count, self.name)
+            for number, (offset, count) in enumerate(zip(layout.offsets, layout.counts)):
+                packed = read_at(file, offset, count, self.name)
                 y, x = number // across * rows, number % across * columns
-                there = layout.rows_of(number)
-                part = decoded(layout.coding, packed, there, columns, self.name)
-                if part.shape != (there, columns):
+                rows = layout.rows_of(number)
+                part = decoded(layout.coding, packed, rows, columns, self.name)
+                if part.shape != (rows, columns):
                     raise InputError(f"{self.name}: damaged: a strip of {part.shape} pixels")
                 if numbers is None:
                     numbers = np.empty((height, width), part.dtype.newbyteorder("="))
@@ -271,7 +271,7 @@ def contiguous_copies(picture: PixelPicture, count: int) -> list[PixelPicture]:
         raise TypeError("a page of a TIFF file is needed")
     layout = reader.layout
     begins = layout.offsets[0]
-    ends = [place + length for place, length in zip(layout.offsets, layout.counts)]
+    ends = [offset + length for offset, length in zip(layout.offsets, layout.counts)]
     contiguous = [*layout.offsets[1:], ends[-1]] == ends and layout.piece[1] == layout.size[1]
     length = ends[-1] - begins
     if layout.coding.compression != segments.NONE or not contiguous:
@@ -279,15 +279,15 @@ def contiguous_copies(picture: PixelPicture, count: int) -> list[PixelPicture]:
             f"{picture.name}: {count} slices in one page, which are read only uncompressed and in "
             "one piece; save the image as a sequence of images, or as raw"
         )
-    there = reader.path.stat().st_size
-    if begins + count * length > there:
+    file_bytes = reader.path.stat().st_size
+    if begins + count * length > file_bytes:
         raise InputError(
             f"{picture.name}: damaged: {count} slices end at byte {begins + count * length:,} of "
-            f"{there:,}"
+            f"{file_bytes:,}"
         )
     pictures = []
     for number in range(count):
-        offsets = tuple(place + number * length for place in layout.offsets)
+        offsets = tuple(offset + number * length for offset in layout.offsets)
         moved = replace(reader, layout=replace(layout, offsets=offsets))
         pictures.append(replace(picture, read=moved))
     return pictures

@@ -29,7 +29,7 @@ DIALECTS = (
     "is_imagej", "is_micromanager", "is_mmstack", "is_sis", "is_fluoview", "is_tvips", "is_eer",
 )  # fmt: skip
 #: Largest number of passes over a file to find its pages; three are normal.
-READ_OFTEN = 4
+MAX_PASSES = 4
 
 
 class Tags:
@@ -100,12 +100,12 @@ def tiff_errors(path: Path) -> Iterator[None]:
         raise
     except (OSError, struct.error, tifffile.TiffFileError, *DAMAGED) as error:
         text = shortened(str(error) or type(error).__name__, 200)
-        raise InputError(f"{path}: damaged: not read as TIFF: {text}") from None
+        raise InputError(f"{path}: damaged: not a readable TIFF: {text}") from None
     finally:
         log.setLevel(level)
 
 
-def read_pages(path: Path, look: Callable[[Tags], Page]) -> list[Page]:
+def read_pages(path: Path, read_page: Callable[[Tags], Page]) -> list[Page]:
     """Apply a function to the tags of each page of an open TIFF file, and return the results.
 
     Raises
@@ -119,7 +119,7 @@ def read_pages(path: Path, look: Callable[[Tags], Page]) -> list[Page]:
     with open_regular(path) as file, tiff_errors(path):
         off = dict.fromkeys(DIALECTS, False)
         with tifffile.TiffFile(_Bounded(file), name=path.name, **off) as tiff:
-            return [look(tags) for tags in _tags(tiff, path)]
+            return [read_page(tags) for tags in _tags(tiff, path)]
 
 
 def _tags(tiff: TiffFile, path: Path) -> Iterator[Tags]:
@@ -144,7 +144,7 @@ class _Bounded(io.RawIOBase):
 
     def __init__(self, file: BinaryIO) -> None:
         self._file = file
-        self._left = READ_OFTEN * os.fstat(file.fileno()).st_size + MAX_TAG_BYTES
+        self._left = MAX_PASSES * os.fstat(file.fileno()).st_size + MAX_TAG_BYTES
 
     def readable(self) -> bool:
         return True

@@ -6,7 +6,8 @@
 
 namespace snowshed::run {
 
-/// Requires a resolved scene: zeros that follow other fields are replaced.
+/// Requires a resolved scene, in which zeros that stand for values of other fields have been
+/// replaced.
 methods::SnowMotion estimate_motion(const scene::Scene& scene);
 
 }  // namespace snowshed::run

@@ -6,7 +6,7 @@
 namespace snowshed::methods::grains {
 
 /// A list of pairs and the arrays whose sizes depend on it.
-struct Listing {
+struct PairTables {
   PairList pairs;
   std::vector<GrainPose> poses;
   BodyGroups groups_by_body;
@@ -15,11 +15,11 @@ struct Listing {
 };
 
 /// Searches for the near pairs of these poses. Contacts in the history keep their state.
-Listing listing_of(const Model&, std::vector<GrainPose>, const Boundary&,
-                   const std::vector<PairHistory>&);
+PairTables search_pairs(const Model&, std::vector<GrainPose>, const Boundary&,
+                        const std::vector<PairHistory>&);
 
 /// The pairs that are bonded at the beginning: the bonds of the sample, pairs across the sides of a
-/// periodic sample, and with bonded plates pairs that touch a plate.
+/// periodic sample, and, if plates are bonded, the pairs that touch a plate.
 std::vector<PairHistory> initial_bonds(const Model&, const std::vector<GrainPose>&,
                                        const Boundary&);
 

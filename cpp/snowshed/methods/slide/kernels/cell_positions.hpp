@@ -1,4 +1,5 @@
-// A pack of particles: their places on the ground, and the values of the ground there.
+// A pack of particles: their positions in the cells of the ground, and the values of the ground at
+// them.
 #pragma once
 
 #include "snowshed/core/simd_vec.hpp"
@@ -41,7 +42,7 @@ struct Lanes {
       for (int i = 0; i < count; ++i) p[first + i] = set[i] != 0;
   }
   SNOWSHED_INLINE void store_records(double* p, const PackRecord& r) const {
-    const PackRows rows = put_together(r);
+    const PackRows rows = transposed_to_rows(r);
     if (count == pack_lanes)
       for (int i = 0; i < pack_lanes; ++i) store_row(p + 4 * (first + i), rows.of[i]);
     else
@@ -54,7 +55,7 @@ struct Lanes {
   }
 };
 
-/// The entries of a range from its k-th pack on.
+/// The k-th pack of a range.
 SNOWSHED_INLINE Lanes lanes_of(std::ptrdiff_t begin, std::ptrdiff_t end, int k) {
   const std::ptrdiff_t first = begin + std::ptrdiff_t(k) * pack_lanes;
   return {first, first + pack_lanes <= end ? pack_lanes : int(end - first)};
@@ -66,8 +67,8 @@ SNOWSHED_INLINE void for_each_lanes(std::ptrdiff_t begin, std::ptrdiff_t end, co
   for (; begin < end; begin += pack_lanes) f(lanes_of(begin, end, 0));
 }
 
-/// Packs that go through a kernel together, phase by phase. The phases of one pack wait for each
-/// other; those of several packs do not.
+/// Number of packs that a kernel processes together. The phases of one pack depend on each other;
+/// interleaving packs hides their latency.
 inline constexpr int packs_in_batch = 64 / pack_lanes;
 
 /// Calls f(begin, end, packs) for batches of a range.
@@ -80,20 +81,22 @@ SNOWSHED_INLINE void for_each_batch(std::ptrdiff_t begin, std::ptrdiff_t end, co
   }
 }
 
-/// Places in a grid. Places outside get the first cell, so that reading there does no harm.
-struct PackPlace {
+/// Cells in a grid, and positions within them. Positions outside the grid get the first cell, so
+/// that reading does no harm.
+struct PackCellPosition {
   PackIndex column, row;
   Pack east, north;
   PackMask inside;
 };
 
-SNOWSHED_INLINE PackPlace stored_place(const View& s, const Lanes& l) {
+/// The cells of particles, and positions within them (0 to 1).
+SNOWSHED_INLINE PackCellPosition stored_position(const View& s, const Lanes& l) {
   return {l.load(s.column), l.load(s.row), l.load(s.east), l.load(s.north), all_lanes};
 }
 
-/// See `Terrain::place`.
-SNOWSHED_INLINE PackPlace place_of(const View& s, const Pack& x, const Pack& y) {
-  PackPlace p;
+/// See `Terrain::cell_position`.
+SNOWSHED_INLINE PackCellPosition cell_position(const View& s, const Pack& x, const Pack& y) {
+  PackCellPosition p;
   Pack i = x * s.per_cell, j = y * s.per_cell;
   p.inside = (i >= 0.0) & (j >= 0.0) & (i < double(s.columns - 1)) & (j < double(s.rows - 1));
   i = select(p.inside, i, Pack{});
@@ -105,18 +108,20 @@ SNOWSHED_INLINE PackPlace place_of(const View& s, const Pack& x, const Pack& y) 
   return p;
 }
 
-/// Records of a grid at some places: see NodeRecord.
-template <NodeRecord record>
-SNOWSHED_INLINE PackRecord records_at(const double* nodes, int columns, const PackPlace& p) {
+/// Interpolated records of a grid, see Interpolation.
+template <Interpolation interpolation>
+SNOWSHED_INLINE PackRecord records_at(const double* nodes, int columns, const PackCellPosition& p) {
   const Pack west = 1.0 - p.east, south = 1.0 - p.north;
-  return records_of<record>(nodes, columns, p.row * columns + p.column,
-                            {{west * south, p.east * south, west * p.north, p.east * p.north}});
+  return records_of<interpolation>(
+      nodes, columns, p.row * columns + p.column,
+      {{west * south, p.east * south, west * p.north, p.east * p.north}});
 }
 
-SNOWSHED_INLINE PackRecord flow_at(const View& s, PackPlace p) {
+/// Thickness (m) and velocity (m/s) of the snow.
+SNOWSHED_INLINE PackRecord flow_at(const View& s, PackCellPosition p) {
   p.column -= s.flow_column;
   p.row -= s.flow_row;
-  return records_at<NodeRecord::mean>(s.flow, s.flow_columns, p);
+  return records_at<Interpolation::bilinear>(s.flow, s.flow_columns, p);
 }
 
 /// The upward unit normal of a slope.
@@ -132,13 +137,14 @@ struct PackGround {
   PackVec normal;
   PackMask known;
 };
-SNOWSHED_INLINE PackGround ground_at(const View& s, const PackPlace& p) {
-  const PackRecord r = records_at<NodeRecord::mean_and_known>(s.ground, s.columns, p);
+SNOWSHED_INLINE PackGround ground_at(const View& s, const PackCellPosition& p) {
+  const PackRecord r = records_at<Interpolation::bilinear_with_mask>(s.ground, s.columns, p);
   return {r.a, upward(r.b, r.c), r.d == r.d};
 }
 /// The same with the normal in the middle of the cell.
-SNOWSHED_INLINE PackGround cell_ground(const View& s, const PackPlace& p) {
-  const PackRecord r = records_at<NodeRecord::mean_and_middle>(s.ground, s.columns, p);
+SNOWSHED_INLINE PackGround cell_ground(const View& s, const PackCellPosition& p) {
+  const PackRecord r =
+      records_at<Interpolation::bilinear_first_mean_others>(s.ground, s.columns, p);
   return {r.a, upward(r.b, r.c), all_lanes};
 }
 
@@ -146,33 +152,33 @@ SNOWSHED_INLINE PackGround cell_ground(const View& s, const PackPlace& p) {
 /// times, as in AvaFrame and SamosAT. Points that left the grid are not inside.
 struct PackReprojection {
   Pack x, y;
-  PackPlace on_ground;
+  PackCellPosition on_ground;
 };
 SNOWSHED_INLINE PackReprojection reproject(const View& s, Pack x, Pack y, Pack z,
                                            const PackMask& moves) {
-  PackPlace place = place_of(s, x, y);
-  const PackIndex column = place.column, row = place.row;
-  PackMask moving = moves & place.inside;
+  PackCellPosition position = cell_position(s, x, y);
+  const PackIndex column = position.column, row = position.row;
+  PackMask moving = moves & position.inside;
   for (int k = 0; k < 5 && any_lane(moving); ++k) {
-    const PackGround ground = cell_ground(s, place);
+    const PackGround ground = cell_ground(s, position);
     const Pack distance = (ground.height - z) * ground.normal.z;
     x = select(moving, Pack(x + distance * ground.normal.x), x);
     y = select(moving, Pack(y + distance * ground.normal.y), y);
     z = select(moving, Pack(z + distance * ground.normal.z), z);
-    place = place_of(s, x, y);  // unchanged where x and y are
-    const PackIndex same = (place.column == column) & (place.row == row);
-    moving &= place.inside & ~as_mask(same);
+    position = cell_position(s, x, y);  // unchanged where x and y are
+    const PackIndex same = (position.column == column) & (position.row == row);
+    moving &= position.inside & ~as_mask(same);
   }
-  return {x, y, place};
+  return {x, y, position};
 }
 
-/// Keeps places of particles and the normals of the ground there.
-SNOWSHED_INLINE void store_place(const View& s, const Lanes& l, const PackPlace& place,
-                                 const PackVec& normal) {
-  l.store(s.column, place.column);
-  l.store(s.row, place.row);
-  l.store(s.east, place.east);
-  l.store(s.north, place.north);
+/// Stores the cell positions of particles and the normals of the ground at them.
+SNOWSHED_INLINE void store_position(const View& s, const Lanes& l, const PackCellPosition& position,
+                                    const PackVec& normal) {
+  l.store(s.column, position.column);
+  l.store(s.row, position.row);
+  l.store(s.east, position.east);
+  l.store(s.north, position.north);
   l.store(s.nx, s.ny, s.nz, normal);
 }
 

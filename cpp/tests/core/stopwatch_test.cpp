@@ -1,4 +1,4 @@
-#include "snowshed/core/timer.hpp"
+#include "snowshed/core/stopwatch.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "snowshed/methods/grains/listing.hpp"
+#include "snowshed/methods/grains/pair_tables.hpp"
 
 #include <algorithm>
 
@@ -32,16 +32,16 @@ std::vector<GrainPose> poses_of(const std::vector<GrainBody>& bodies) {
   return poses;
 }
 
-Listing listing_of(const Model& model, std::vector<GrainPose> poses, const Boundary& boundary,
-                   const std::vector<PairHistory>& past) {
-  Listing listing;
+PairTables search_pairs(const Model& model, std::vector<GrainPose> poses, const Boundary& boundary,
+                        const std::vector<PairHistory>& past) {
+  PairTables tables;
   const PairSearch search = search_of(model);
-  listing.pairs = make_list(search, find_pairs(search, poses, boundary), past);
-  listing.groups_by_body = groups_of_bodies(listing.pairs, poses.size());
-  listing.results.resize(listing.pairs.groups.size());
-  listing.max_step = max_step(model, boundary, listing.pairs, poses);
-  listing.poses = std::move(poses);
-  return listing;
+  tables.pairs = make_list(search, find_pairs(search, poses, boundary), past);
+  tables.groups_by_body = groups_of_bodies(tables.pairs, poses.size());
+  tables.results.resize(tables.pairs.groups.size());
+  tables.max_step = max_step(model, boundary, tables.pairs, poses);
+  tables.poses = std::move(poses);
+  return tables;
 }
 
 std::vector<PairHistory> initial_bonds(const Model& model, const std::vector<GrainPose>& poses,

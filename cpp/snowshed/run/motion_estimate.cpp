@@ -1,4 +1,4 @@
-#include "snowshed/run/snow_motion.hpp"
+#include "snowshed/run/motion_estimate.hpp"
 
 #include <algorithm>
 #include <cmath>
