@@ -176,7 +176,7 @@ def test_adjacent_single_precision_values_have_a_threshold(tmp_path):
         (np.full((9, 9, 9), 255, dtype=np.uint8), {}, "empty: every voxel has the value 255"),
         (grey(), {"threshold": 65_535}, "no ice"),
         (grey(), {"threshold": -1}, "all is ice"),
-        (np.full((9, 9, 9), np.nan), {}, "not finite"),
+        (np.full((9, 9, 9), np.nan), {}, "non-finite"),
         (SNOW.ice, {"voxel_size": None}, "voxel size is not known"),
         (SNOW.ice, {"voxel_size": -1e-5}, "above 0"),
         (SNOW.ice, {"threshold": float("nan")}, "finite"),

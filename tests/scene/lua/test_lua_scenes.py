@@ -277,7 +277,7 @@ VALID = 'preset "lab-50"\n'
         (
             VALID + "slab { width = 1 }",
             "panel { friction = 1 }",
-            "init.lua:2: /slab/width: 1 m exceeds",
+            "init.lua:2: /slab/width: 1 m is wider than the panel",
         ),
         (VALID + "run '../out'", None, "init.lua:2: run needs a name for its folder"),
         (VALID + "run()", None, "init.lua:2: run needs a name for its folder"),
