@@ -45,10 +45,10 @@ SLOPES: Mapping[int, Sequence[tuple[float, float]]] = {
 }
 RELEASED_SLAB = (12.0, 10.0, 1.5)  # m, length, width and height of the slab that is released
 LAYER_WIDTH = 20.0  # m
-#: Shear rate at which the dilatant branch begins: about that of snow sliding along a wall at
-#: 10 m/s, for the particles of the wooden slope...
+#: Shear rate at which the dilatant branch begins on the wooden slope. Snow that slides along a wall
+#: at 10 m/s has about this shear rate, with the particles of that slope.
 WOOD_LIMIT = 1000.0  # 1/s
-#: ... and for those of slopes 1 and 2.
+#: The same for slopes 1 and 2, whose particles are larger.
 SLOPE_LIMIT = 50.0  # 1/s
 STRESS_GROWTH = 1000.0  # s
 

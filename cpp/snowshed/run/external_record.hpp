@@ -22,7 +22,8 @@ class ExternalRecord {
   void add_note(const std::string& note);
   /// Sets further facts about the machine, by key.
   void describe_machine(std::map<std::string, std::string> facts);
-  /// Sets the steps and the wall time (s) of the finished events, for a run.json that lacks them.
+  /// Sets the number of steps and the wall time (s) of all finished events. Runs of the version
+  /// before need this, because their run.json does not list these events.
   void set_finished_work(std::int64_t steps, double wall);
   void set_tables(RunRecord::Tables tables);
   void set_files(RunRecord::Files files);

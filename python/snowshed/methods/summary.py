@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import typing
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
@@ -27,7 +28,7 @@ FORMER_NAMES = {
 
 
 @dataclass(frozen=True)
-class Summary:
+class Summary(ABC):
     """The figures of a run; a method's summary is a subclass whose fields are the figures."""
 
     #: File in the results folder.
@@ -76,9 +77,9 @@ class Summary:
         """Write the summary into a results folder."""
         write_text(folder / self.FILE, json.dumps(asdict(self), indent=2) + "\n")
 
+    @abstractmethod
     def lines(self) -> Mapping[str, str]:
         """Return the lines that people read, by name."""
-        raise NotImplementedError
 
 
 def _may_be_none(summary: type[Summary], name: str) -> bool:

@@ -145,10 +145,6 @@ def _panel(frame: Mapping[str, Any]) -> Solid:
     return _box("panel", "panel", np.asarray(frame["center"]) - 0.5 * board, edges)
 
 
-def _width(part: Mapping[str, Any]) -> float:
-    return float(part.get("width") or 0.0)
-
-
 def _ground(tilt: float, focus: Box, flat: bool) -> Solid:
     size = float(focus.size.max())
     grid = float(10.0 ** np.floor(np.log10(max(size, 1e-9))))
@@ -284,7 +280,8 @@ def _plate(centre: Floats, normal: Floats, shape: Mapping[str, Any]) -> Solid:
     slope = np.cross(across, up)
     slope /= np.linalg.norm(slope)
     across = np.cross(up, slope)
-    edges = (shape["length"] * slope, _width(shape) * across, shape["thickness"] * up)
+    width = float(shape.get("width") or 0.0)
+    edges = (shape["length"] * slope, width * across, shape["thickness"] * up)
     return _box("plate", "solid", centre - 0.5 * shape["thickness"] * up, edges)
 
 

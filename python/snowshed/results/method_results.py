@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, cast
 
 if TYPE_CHECKING:
@@ -9,16 +10,16 @@ if TYPE_CHECKING:
     import xarray
 
 
-class MethodResults:
+class MethodResults(ABC):
     """Results that only some methods have: at the end of a run, or of a simulation up to now.
 
     If the scene's method has no such result, the attribute raises an InputError that is also an
     AttributeError, so that `hasattr` returns False.
     """
 
+    @abstractmethod
     def result(self, name: str) -> object:
         """Return a result of the scene's method by its name, such as "maps"."""
-        raise NotImplementedError
 
     @property
     def maps(self) -> xarray.Dataset:
