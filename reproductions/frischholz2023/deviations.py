@@ -2,23 +2,23 @@
 
 The preset ``thesis`` undoes all deviations; each can be undone alone. A choice where the thesis
 leaves a value open, such as the panel's friction, is not a deviation; the docs state these choices.
-The settings are those of `snowshed.analysis.regression.deviations`, which `snowshed geometry
---deviation` offers.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.analysis.regression.deviations import ALL, FRAME_RATE, deviations_named
-from snowshed.analysis.regression.deviations import deviating_settings as panel_settings
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING
 
+#: Stands for all deviations together.
+ALL = "all"
 #: Frames of an event by the thesis's chapters: Tables 3.2.1, 4.1.1, 5.1.1.
 FRAMES: Mapping[int, int] = {3: 50, 4: 60, 5: 100}
+#: Frames in a second, which is not published, but usual.
+FRAME_RATE = 24.0
 #: Size of the thesis's grid cells, m.
 THESIS_DX = 0.01
 
@@ -33,6 +33,8 @@ class Deviation:
         Name of the deviation in options.
     thesis, here, reason
         Choice of the thesis, our default, and its reason; sentences.
+    settings
+        Settings of the thesis by dotted paths; those of ``frames`` hold for chapter 5.
     trimming
         The trimming rule (A.4.2) for measuring stacks, if the deviation changes it.
     """
@@ -41,6 +43,7 @@ class Deviation:
     thesis: str
     here: str
     reason: str
+    settings: Mapping[str, object] = field(default_factory=dict)
     trimming: Optional[str] = None
 
     @property
@@ -58,6 +61,7 @@ DEVIATIONS: Mapping[str, Deviation] = {
             "Snow may leave the panel's face.",
             "With SLIP taken literally, snow leaves the panel's plane only over its edge, and the "
             "rear of a slab that tips over the edge is held down.",
+            {"panel.condition": "slip"},
         ),
         Deviation(
             "damping",
@@ -65,18 +69,21 @@ DEVIATIONS: Mapping[str, Deviation] = {
             "Panels of chapter 5 are damped at the rate of this share with the thesis's cells.",
             "A share in each step makes the damping depend on the step, and so on the cells: a "
             "shorter step damps more.",
+            {"numerics.transfer": "flip", "numerics.flip_ratio": 0.99},
         ),
         Deviation(
             "reseed",
             "Between events, the stack becomes a solid and is reseeded.",
             "The particles stay as they are.",
             "Reseeding heals broken bonds, discards compaction, and moves the stack.",
+            {"events.between": "reseed"},
         ),
         Deviation(
             "grid",
             "Cells of 1 cm.",
             "Cells of 1.5 cm for the panels of chapter 5, 1 cm elsewhere.",
             "Cells of 1 cm take 3.4 times as long; we use this time for more seedings.",
+            {"numerics.dx": THESIS_DX},
         ),
         Deviation(
             "frames",
@@ -85,6 +92,7 @@ DEVIATIONS: Mapping[str, Deviation] = {
             "An event is over when the snow rests.",
             "A long slab on a rough panel slides longer than that, and snow in motion is no stack "
             "yet.",
+            {"events.max_time": FRAMES[5] / FRAME_RATE},
         ),
         Deviation(
             "trimming",
@@ -98,6 +106,26 @@ DEVIATIONS: Mapping[str, Deviation] = {
         ),
     )
 }
+
+
+def deviations_named(names: Sequence[str]) -> list[Deviation]:
+    """Return deviations in their order; "all" stands for every one.
+
+    Raises
+    ------
+    InputError
+        If a name is unknown.
+
+    Examples
+    --------
+    >>> [deviation.name for deviation in deviations_named(["frames", "slip"])]
+    ['slip', 'frames']
+    """
+    for name in names:
+        if name not in DEVIATIONS and name != ALL:
+            allowed = ", ".join([*DEVIATIONS, ALL])
+            raise InputError(f"deviation: {name!r} is unknown; allowed: {allowed}")
+    return [deviation for deviation in DEVIATIONS.values() if {deviation.name, ALL} & set(names)]
 
 
 def deviating_settings(chapter: int, names: Sequence[str] = (ALL,)) -> dict[str, object]:
@@ -127,7 +155,9 @@ def deviating_settings(chapter: int, names: Sequence[str] = (ALL,)) -> dict[str,
     """
     if chapter not in FRAMES:
         raise InputError(f"chapter: {chapter!r}; allowed: {', '.join(map(str, FRAMES))}")
-    settings = panel_settings(names)
+    settings: dict[str, object] = {}
+    for deviation in deviations_named(names):
+        settings.update(deviation.settings)
     if "events.max_time" in settings:
         settings["events.max_time"] = FRAMES[chapter] / FRAME_RATE
     return settings
@@ -135,5 +165,5 @@ def deviating_settings(chapter: int, names: Sequence[str] = (ALL,)) -> dict[str,
 
 def deviating_trimming(names: Sequence[str] = (ALL,)) -> str:
     """Return the trimming rule of A.4.2 by which stacks are measured with some deviations."""
-    named = (DEVIATIONS[name].trimming for name in deviations_named(names))
+    named = (deviation.trimming for deviation in deviations_named(names))
     return next((trimming for trimming in named if trimming), DEFAULT_TRIMMING)

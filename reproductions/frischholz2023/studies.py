@@ -6,14 +6,19 @@ from collections.abc import Mapping, Sequence
 from itertools import product
 from typing import Any
 
-from reproductions.frischholz2023.deviations import DEVIATIONS
+from reproductions.frischholz2023.deviations import (
+    ALL,
+    DEVIATIONS,
+    THESIS_DX,
+    deviating_settings,
+    deviations_named,
+)
 from reproductions.frischholz2023.settings import MEASURED_FRICTION, Settings
 from snowshed import Scene
 from snowshed.analysis.calibration.grid_study import calibration_study
 from snowshed.analysis.calibration.measurements import Measurement
 from snowshed.analysis.calibration.parameter_grid import COHESION, PRESSURE, SLOPE
 from snowshed.analysis.regression.dataset import MODEL_BETWEEN
-from snowshed.analysis.regression.deviations import ALL
 from snowshed.analysis.regression.geometry import (
     DAMPING_RATE,
     FRICTION,
@@ -165,6 +170,29 @@ def variations(settings: Settings) -> list[Study]:
     return studies
 
 
+def deviating_panels(names: Sequence[str], *, dx: float = THESIS_DX) -> Study:
+    """Return the panels of chapter 5 with deviations undone.
+
+    Parameters
+    ----------
+    names
+        Names of the deviations, or "all".
+    dx
+        Size of the grid cells, m, unless the deviation ``grid`` is undone.
+
+    Examples
+    --------
+    >>> deviating_panels(["all"]).name
+    'geometry-thesis'
+    """
+    named = deviations_named(names)
+    settings = deviating_settings(5, names)
+    between = str(settings.get("events.between", MODEL_BETWEEN))
+    others = [item.name for item in named if item.simulated and item.name != between]
+    parts = [THESIS] if len(named) == len(DEVIATIONS) else [between, *others]
+    return geometry_study(between, dx=dx, settings=settings, name="-".join(["geometry", *parts]))
+
+
 def study_of(variant: str) -> str:
     """Return the name of the study that has the runs of a variant or a variation."""
     if variant in VARIATIONS:
@@ -185,7 +213,7 @@ def sampled_panels(settings: Settings) -> dict[str, list[Any]]:
 
 
 def _variant(settings: Settings, name: str, names: Sequence[str]) -> Study:
-    study = geometry_study(MODEL_BETWEEN, deviations=names)
+    study = deviating_panels(names)
     ours, thesis = settings.deviation_dx
     finer = "grid" in names or ALL in names
     scene = study.scene.set("numerics.dx", thesis if finer else ours)

@@ -9,7 +9,7 @@ import numpy as np
 
 from reproductions.common.hypothesis_tests import SIGMAS, Estimate
 from reproductions.common.section import Content
-from reproductions.frischholz2023.deviations import DEVIATIONS
+from reproductions.frischholz2023.deviations import DEVIATIONS, FRAME_RATE
 from reproductions.frischholz2023.printed import THESIS_QUARTILES, THESIS_ROWS
 from reproductions.frischholz2023.stages import ThesisComputation
 from reproductions.frischholz2023.studies import DEFAULTS, PANEL, THESIS, VARIANTS, VARIATIONS
@@ -21,7 +21,6 @@ from reproductions.frischholz2023.variants import (
     quartiles,
     read_variants,
 )
-from snowshed.analysis.regression.deviations import FRAME_RATE
 from snowshed.analysis.regression.geometry import DAMPING_RATE
 from snowshed.analysis.regression.summary import QUARTILES
 from snowshed.base.formatting import MISSING, percent

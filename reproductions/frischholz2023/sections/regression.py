@@ -15,12 +15,16 @@ from reproductions.frischholz2023.claims.regression import (
     RegressionResults,
     validation,
 )
-from reproductions.frischholz2023.printed import THESIS_ERRORS, THESIS_QUARTILES, THESIS_ROWS
+from reproductions.frischholz2023.printed import (
+    THESIS_ERRORS,
+    THESIS_QUARTILES,
+    THESIS_ROWS,
+    thesis_relative_error,
+)
 from reproductions.frischholz2023.regression_stage import KINDS, TARGET, Part
 from reproductions.frischholz2023.stages import ThesisComputation
 from reproductions.frischholz2023.tables import SAVED_DPI
 from snowshed._core import InputError
-from snowshed.analysis.regression.published import published
 from snowshed.analysis.regression.rows import StackRows, read_rows
 from snowshed.analysis.regression.summary import QUARTILES, quartiles
 from snowshed.base.formatting import percent
@@ -148,7 +152,7 @@ def errors_grid(data: Mapping[str, RegressionResults]) -> HtmlTable:
     rows = []
     for model in KINDS:
         score = f"about {VALIDATION_SCORE}" if model == "rbf" else ""
-        printed = [*_numbers(THESIS_ERRORS[model]), percent(published().relative_error(model), 2)]
+        printed = [*_numbers(THESIS_ERRORS[model]), percent(thesis_relative_error(model), 2)]
         rows.append([f"{NAMES[model]}, thesis", "rows of one seed", *printed, "", score])
         for name, regressed in data.items():
             row = regressed.errors.loc[model]

@@ -7,12 +7,11 @@ from reproductions.frischholz2023.deviations import (
     DEVIATIONS,
     deviating_settings,
     deviating_trimming,
+    deviations_named,
 )
+from reproductions.frischholz2023.studies import deviating_panels
 
 from snowshed import InputError, Scene
-from snowshed.analysis.regression import deviations as package
-from snowshed.analysis.regression import geometry_study
-from snowshed.analysis.regression.deviations import deviations_named
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS
 from snowshed.study.table import value_at
 
@@ -36,11 +35,6 @@ def test_the_preset_has_the_printed_settings():
 def test_events_end_at_the_last_frame_of_each_chapter(chapter, seconds):
     settings = deviating_settings(chapter, ["frames"])
     assert settings == {"events.max_time": pytest.approx(seconds, abs=1e-4)}
-
-
-def test_the_package_has_the_same_deviations_for_panels():
-    assert list(package.DEVIATIONS) == list(DEVIATIONS)
-    assert package.deviating_settings() == deviating_settings(5)
 
 
 @pytest.mark.parametrize("name", DEVIATIONS)
@@ -69,7 +63,7 @@ def test_unknown_deviations_and_chapters_are_refused():
 
 def test_studies_of_panels_take_deviations():
     def scenes(*names):
-        study = geometry_study("carry", dx=0.015, deviations=names)
+        study = deviating_panels(names, dx=0.015)
         return study, [json.loads(run.scene) for run in study.runs()]
 
     study, frames = scenes("frames", "trimming")

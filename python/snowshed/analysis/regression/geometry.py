@@ -4,13 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from math import ceil, inf
+from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.analysis.regression.deviations import (
-    DEVIATIONS,
-    deviating_settings,
-    deviations_named,
-)
 from snowshed.scene.accuracy_settings import ACCURACY
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import Scene
@@ -49,7 +45,8 @@ def geometry_study(
     friction: float = FRICTION,
     dx: float = 0.01,
     seeds: int = 1,
-    deviations: Sequence[str] = (),
+    settings: Optional[Mapping[str, object]] = None,
+    name: str = "",
     trial: bool = False,
 ) -> Study:
     """Return the study of the geometry data set, Tables 5.1.1 and 5.2.1.
@@ -70,9 +67,10 @@ def geometry_study(
         Number of stacks for each panel up to 1 m, with different random seedings. Longer panels
         take more time and scatter less: panels up to 2 m have a third as many, up to 4 m a sixth,
         the others a sixteenth, rounded up.
-    deviations
-        Names of `snowshed.analysis.regression.deviations`, or "all": settings of the published
-        study. They override `between` and `dx`; the trial has none.
+    settings
+        Further values by dotted paths. They override `between` and `dx`.
+    name
+        Name of the study. [default: from its treatment of the stack]
     trial
         Whether to return a trial: a few panels on a coarse grid, which take seconds; its numbers
         are meaningless.
@@ -80,19 +78,21 @@ def geometry_study(
     Raises
     ------
     InputError
-        If `between` or a deviation is unknown.
+        If `between` is unknown, or the scene has no such setting.
 
     Examples
     --------
     >>> len(geometry_study("reseed").runs())  # panels
     122
     """
-    check_between(between)
     scene = Scene.preset("geometry").update({"snow": Snow.preset("calibrated").to_data()})
     if trial:
+        if settings:
+            raise InputError("settings: the trial has its own; allowed: none")
         return _trial(scene, between, friction, seeds)
-    changes = deviating_settings(deviations)
+    changes = dict(settings or {})
     between = str(changes.pop("events.between", between))
+    check_between(between)
     scene.update(
         {
             "dimension": 2,
@@ -113,10 +113,7 @@ def geometry_study(
         for share in SHARES.values()
         if (some := [length for length in lengths if _share(length) == share])
     ]
-    undone = deviations_named(deviations)
-    others = [name for name in undone if DEVIATIONS[name] and name != between]
-    name = ["thesis"] if len(undone) == len(DEVIATIONS) else [between, *others]
-    return Study(scene, parts, "-".join(["geometry", *name]), description=DESCRIPTION)
+    return Study(scene, parts, name or f"geometry-{between}", description=DESCRIPTION)
 
 
 def _trial(scene: Scene, between: str, friction: float, seeds: int) -> Study:

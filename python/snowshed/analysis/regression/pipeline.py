@@ -15,8 +15,7 @@ from snowshed.analysis.regression.folds import CrossValidation
 from snowshed.analysis.regression.kinds import Kind, kinds_named
 from snowshed.analysis.regression.model_file import STORED_KINDS, Member, StackModel, save_model
 from snowshed.analysis.regression.nested import Results, cross_validate
-from snowshed.analysis.regression.published import compare_with_published, published
-from snowshed.analysis.regression.rows import INPUTS, TARGETS, StackRows
+from snowshed.analysis.regression.rows import TARGETS, StackRows
 from snowshed.analysis.regression.spread import predict_unseen_panels, stack_spread
 from snowshed.analysis.regression.threads import one_thread
 from snowshed.base.arrays import Floats
@@ -45,15 +44,12 @@ class TargetReport:
         Tables 5.3.1 and 5.3.2; see `snowshed.analysis.regression.summary`.
     expression
         The linear model as a formula; otherwise empty.
-    checks
-        Verdicts on published claims about the ratio, a sentence each.
     """
 
     target: str
     quartiles: pd.DataFrame
     errors: pd.DataFrame
     expression: str
-    checks: tuple[str, ...] = ()
 
 
 def regress(
@@ -190,24 +186,14 @@ class _Output:
         folder.mkdir(exist_ok=True)
         values = self._rows.targets[target]
         linear = elected.get("linear")
-        quartiles = summary.quartile_table(elected, values, target)
-        comparable = (
-            target == "ratio"
-            and len(values) == published().rows
-            and tuple(self._rows.names) == INPUTS
-        )
-        errors = summary.error_table(elected, self._rows, target, unseen)
         report = TargetReport(
             target,
-            quartiles,
-            errors,
+            summary.quartile_table(elected, values),
+            summary.error_table(elected, self._rows, target, unseen),
             summary.linear_expression(linear, self._rows, target) if linear else "",
-            tuple(compare_with_published(quartiles, errors)) if comparable else (),
         )
         write_csv(report.quartiles.reset_index(), folder / "quartiles.csv", float_format="%.6g")
         write_csv(report.errors.reset_index(), folder / "errors.csv", float_format="%.6g")
-        if report.checks:
-            write_text(folder / "thesis.txt", "\n".join(report.checks) + "\n")
         if report.expression:
             write_text(folder / "linear.txt", report.expression + "\n")
         of_target = {kind: member for (name, kind), member in members.items() if name == target}

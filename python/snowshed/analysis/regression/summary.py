@@ -10,7 +10,6 @@ import numpy as np
 from snowshed.analysis.regression.ensemble import Ensemble
 from snowshed.analysis.regression.fold_result import FoldResult
 from snowshed.analysis.regression.nested import Results
-from snowshed.analysis.regression.published import published
 from snowshed.analysis.regression.rows import TARGETS, StackRows
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.base.arrays import Floats
@@ -65,16 +64,13 @@ def held_out_errors(results: Sequence[FoldResult], values: Floats) -> Floats:
     return np.concatenate([result.held_out - values[result.validation] for result in results])
 
 
-def quartile_table(elected: Elected, values: Floats, target: str) -> pd.DataFrame:
-    """Return quartiles of the data and of mean predictions; for the ratio also published ones."""
+def quartile_table(elected: Elected, values: Floats) -> pd.DataFrame:
+    """Return quartiles of the data and of mean predictions."""
     import pandas as pd
 
-    printed = published().quartiles if target == "ratio" else {}
     rows = {"data": quartiles(values)}
     for kind, results in elected.items():
         rows[kind] = quartiles(mean_prediction(results))
-        if kind in printed:
-            rows[f"{kind}, thesis"] = printed[kind]
     table = pd.DataFrame.from_dict(rows, orient="index", columns=list(QUARTILES))
     return table.rename_axis("model")
 
@@ -93,7 +89,7 @@ def quartiles(values: Floats) -> tuple[float, ...]:
 def error_table(
     elected: Elected, data: StackRows, target: str, unseen: Mapping[str, Floats]
 ) -> pd.DataFrame:
-    """Return the errors on all rows, the published errors, and errors on unseen rows and panels.
+    """Return the errors on all rows, on unseen rows and on unseen panels.
 
     Parameters
     ----------
@@ -105,23 +101,16 @@ def error_table(
     import pandas as pd
 
     values, scatter = data.targets[target], data.scatter(target)
-    known = published()
-    printed = known.errors if target == "ratio" else {}
-    nothing = (np.nan, np.nan)
     rows = []
     for kind, results in elected.items():
         errors = np.abs([result.predictions - values for result in results])
-        printed_error, printed_deviation = printed.get(kind, nothing)
         panels = np.abs(unseen[kind]) if kind in unseen else None
         rows.append(
             {
                 "model": kind,
                 "mean_absolute_error": errors.mean(),
                 "standard_deviation": errors.std(),
-                "thesis_error": printed_error,
-                "thesis_deviation": printed_deviation,
                 "relative_error": errors.mean() / np.median(mean_prediction(results)),
-                "thesis_relative_error": known.relative_error(kind) if kind in printed else np.nan,
                 "most_seeds": data.most_seeds,
                 "held_out_error": np.abs(held_out_errors(results, values)).mean(),
                 "unseen_panel_error": np.nan if panels is None else panels.mean(),

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Optional
 
 import click
 from click.core import ParameterSource
 
-from snowshed.analysis.regression.deviations import ALL, DEVIATIONS
 from snowshed.analysis.regression.geometry import FRICTION
 from snowshed.cli.options.common import PATH, quiet_notes_option
 from snowshed.cli.output.terminal import write_out
@@ -43,14 +41,6 @@ from snowshed.cli.output.terminal import write_out
     help="Seeds of each panel up to 1 m long; the regression uses the mean of their stacks. Longer "
     "panels get fewer: a third up to 2 m, a sixth up to 4 m, a sixteenth beyond (rounded up).",
 )
-@click.option(
-    "--deviation",
-    "deviations",
-    multiple=True,
-    type=click.Choice([*DEVIATIONS, ALL]),
-    help="Use the thesis's choice for this setting. Repeatable; `all` for every setting. "
-    "Overrides --between and --dx.",
-)
 @click.option("--trial", is_flag=True, help="A few panels on a coarse grid: seconds.")
 @click.option("-o", "--output", "file", type=PATH, help="File to write.  [default: stdout]")
 @quiet_notes_option
@@ -61,7 +51,6 @@ def geometry(
     friction: float,
     dx: float,
     seeds: int,
-    deviations: Sequence[str],
     trial: bool,
     file: Optional[Path],
 ) -> None:
@@ -78,11 +67,7 @@ def geometry(
 
     if trial and context.get_parameter_source("dx") == ParameterSource.COMMANDLINE:
         raise click.UsageError("--dx has no effect with --trial, which has its own cell size")
-    if trial and deviations:
-        raise click.UsageError("--deviation has no effect with --trial")
-    study = geometry_study(
-        between, friction=friction, dx=dx, seeds=seeds, deviations=deviations, trial=trial
-    )
+    study = geometry_study(between, friction=friction, dx=dx, seeds=seeds, trial=trial)
     if file is None:
         write_out(study.to_toml())
     else:

@@ -145,7 +145,7 @@ def _condition(text: str) -> tuple[str, str]:
 
 
 def print_reports(reports: Sequence[TargetReport]) -> None:
-    """Print Tables 5.3.1 and 5.3.2 of the thesis for each target."""
+    """Print errors and quartiles for each target."""
     from snowshed.analysis.regression.rows import TARGETS
     from snowshed.analysis.regression.summary import QUARTILES
 
@@ -160,23 +160,15 @@ def print_reports(reports: Sequence[TargetReport]) -> None:
         for model, row in report.quartiles.iterrows():
             quartiles.add_row(str(model), *(f"{row[name]:.3f}" for name in QUARTILES))
         wide_console().print(quartiles)
-        for check in report.checks:
-            wide_console().print(f" {check}")
         if report.expression:
             wide_console().print(f" {report.expression}\n")
 
 
 def _error_table(report: TargetReport, unit: str) -> Table:
-    thesis = bool(report.errors["thesis_error"].notna().any())
-    headings = ["model", "all rows", *(["thesis"] if thesis else []), "not trained\non"]
-    headings += ["unseen\npanels", "fits", "cpu time\ns"]
+    headings = ["model", "all rows", "not trained\non", "unseen\npanels", "fits", "cpu time\ns"]
     table = narrow_table(f"Mean absolute error of the {report.target}{unit}", headings)
     for model, row in report.errors.iterrows():
         cells = [f"{row['mean_absolute_error']:.4f} ± {row['standard_deviation']:.4f}"]
-        if thesis:
-            has_error = row["thesis_error"] == row["thesis_error"]
-            error = f"{row['thesis_error']:.3f} ± {row['thesis_deviation']:.3f}"
-            cells.append(error if has_error else "")
         cells += [f"{row['held_out_error']:.4f}", _or_nothing(row["unseen_panel_error"])]
         cells += [f"{row['fits']:,.0f}", f"{row['cpu_s']:,.1f}"]
         table.add_row(str(model), *cells)
