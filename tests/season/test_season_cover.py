@@ -3,10 +3,12 @@
 from dataclasses import replace
 from datetime import datetime, timedelta
 
+import numpy as np
 import pandas as pd
 import pytest
 
 from snowshed import InputError, Scene
+from snowshed.scene.components import Obstacle, Shape
 from snowshed.season import SeasonSettings, accumulate
 from snowshed.season.cover import natural_cover
 from snowshed.season.panel_contact import first_contact
@@ -84,6 +86,31 @@ def slab_snow(density, settings):
     gathered = accumulate(days(0.2, density=density), settings, 50.0)
     scene = season_scene(base, gathered, settings).data
     return scene["slab"]["layers"][0]["snow"]
+
+
+def panel_height(cover, **values):
+    """Return the height of the panel in the scene of two slide-offs on a natural cover."""
+    base = Scene.preset("lab-50").update({"dimension": 2, "panel.height": 1.0, **values}).resolve()
+    settings = SeasonSettings(friction=0.1, cover=cover)
+    gathered = accumulate(days(0.2, 0.3, density=100.0), settings, 50.0)
+    return season_scene(base, gathered, settings).data["panel"]["height"]
+
+
+def test_snow_falls_on_the_natural_cover():
+    assert panel_height("none") == 1.0
+    assert panel_height(0.3) == pytest.approx(0.7)
+    settings = SeasonSettings(friction=0.1)
+    depths = natural_cover(days(0.2, 0.3, density=100.0), settings)
+    assert panel_height("weather") == pytest.approx(1.0 - np.mean(depths))
+
+
+def test_a_panel_in_the_cover_stands_on_the_ground_of_the_slide_offs():
+    assert panel_height(1.4) == 0.0
+
+
+def test_obstacles_keep_the_ground():
+    fence = Obstacle(name="fence", shape=Shape.box((2.0, 0.5), (0.1, 1.0)))
+    assert panel_height(0.3, obstacles=[fence.to_data()]) == 1.0
 
 
 def test_light_snow_is_weak_and_soft():

@@ -18,7 +18,7 @@ from snowshed.results.season_folder import SeasonFolder
 from snowshed.running.run import run_events
 from snowshed.scene.scene import ResolvedScene, SceneLike, resolve_scene
 from snowshed.season.accumulation import WinterDay, accumulate, stack_ageing
-from snowshed.season.notes import assumptions, first_staying, notes
+from snowshed.season.notes import assumptions, fall_notes, first_staying, notes
 from snowshed.season.panel_contact import PanelContact, first_contact, first_reached, panel_ends
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.slabs import season_scene
@@ -174,9 +174,10 @@ class SeasonPlan:
     slides: Optional[ResolvedScene]
 
     @property
-    def scene(self) -> ResolvedScene:
-        """The scene of the slide-offs; without a release, the scene of the panel."""
-        return self.slides or self.panel
+    def scene(self) -> Mapping[str, Any]:
+        """The scene of the slide-offs, with the panel at its height above the ground."""
+        slides = self.slides or self.panel
+        return {**slides.data, "panel": self.panel.data["panel"]}
 
 
 def plan_season(
@@ -209,9 +210,9 @@ def _result(plan: SeasonPlan, settings: SeasonSettings, folder: SeasonFolder) ->
     scene, days = plan.scene, plan.days
     events = _table_or_empty(folder.run.events)
     outlines = _table_or_empty(folder.run.outlines)
-    table = season_table(scene.data, days, settings, events, outlines)
+    table = season_table(scene, days, settings, events, outlines)
     simulated = table[pd.notna(table["event"]) & pd.notna(table["stack_height_m"])]
-    dx = resolution_of(scene.data)
+    dx = resolution_of(scene)
     first_staying_event = first_staying(events)
     return SeasonResult(
         table,
@@ -226,6 +227,7 @@ def _result(plan: SeasonPlan, settings: SeasonSettings, folder: SeasonFolder) ->
             *plan.record.notes,
             *plan.winters.shortfalls,
             *assumptions(table, days, settings),
+            *fall_notes(plan.panel.data, days, settings),
             *notes(dx, days, settings, events, first_staying_event),
         ],
     )
@@ -239,7 +241,7 @@ def _table_or_empty(table: Table) -> pd.DataFrame:
 
 def _write(
     result: SeasonResult,
-    scene: ResolvedScene,
+    scene: Mapping[str, Any],
     settings: SeasonSettings,
     folder: SeasonFolder,
     *,
@@ -255,7 +257,7 @@ def _write(
         from snowshed.plot.figure_style import save_figure
 
         outlines = _table_or_empty(folder.run.outlines)
-        save_figure(season_result_figure(result, outlines, scene.data), folder.figure)
+        save_figure(season_result_figure(result, outlines, scene), folder.figure)
 
 
 def season_result_figure(

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Optional
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed.season.accumulation import WinterDay
 from snowshed.season.cover import end_of_readings
 from snowshed.season.settings import SeasonSettings
+from snowshed.season.slabs import cover_below_slides
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -69,6 +70,28 @@ def assumptions(
             f"whose slabs are at least {1000 * settings.pool_below:g} mm thick (the last may be "
             "thinner)"
         )
+
+
+def fall_notes(
+    scene: Mapping[str, Any], days: Sequence[WinterDay], settings: SeasonSettings
+) -> Iterator[str]:
+    """Yield a note on the height from which the snow falls.
+
+    Parameters
+    ----------
+    scene
+        The complete scene of the panel.
+    days, settings
+        Days and settings of the season.
+    """
+    cover = cover_below_slides(scene, days, settings)
+    if cover:
+        yield (
+            f"the snow falls on the natural cover: in the simulation and its film the panel stands "
+            f"{cover:.2f} m lower, by the mean depth of the cover at the slide-offs"
+        )
+    elif scene.get("obstacles") and settings.cover not in ("none", 0.0):
+        yield "the snow falls on bare ground, because the scene has obstacles, which stand on it"
 
 
 def notes(

@@ -1,7 +1,8 @@
 """The scene of a season: one slide-off for every release, each with its own slab.
 
 Every release is a layer of the scene's slab, laid at the start of its event. It has the mass and
-the mean density of the accumulated snow, and strength and stiffness to match.
+the mean density of the accumulated snow, and strength and stiffness to match. The snow falls on the
+natural cover, so the panel stands lower above the ground of this scene.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from snowshed._core import InputError
 from snowshed.scene.components import Layer, Slab, Snow
 from snowshed.scene.scene import ResolvedScene, Scene
 from snowshed.season.accumulation import WinterDay
+from snowshed.season.cover import natural_cover
 from snowshed.season.settings import SeasonSettings
 from snowshed.snow.relations.stiffness import YOUNGS_MODULUS
 from snowshed.snow.relations.strength import TENSILE_STRENGTH
@@ -30,11 +32,12 @@ def season_scene(
     ----------
     base
         The scene with panel, ground, obstacles, snow and method. The length and width of its slab
-        hold. The slab's thickness, the density of the snow and the number of events are replaced.
+        hold. The slab's thickness, the density of the snow and the number of events are replaced,
+        and the panel is lowered by `cover_below_slides`.
     days
         From `accumulate`; at least one of them has an event.
     settings
-        Settings of the slab's strength. [default: `SeasonSettings()`]
+        Settings of the slab's strength and the cover. [default: `SeasonSettings()`]
 
     Raises
     ------
@@ -49,7 +52,12 @@ def season_scene(
         raise InputError("/bodies: a season lays its own snow; remove further bodies")
     natural: dict[str, Any] = scene["snow"]
     slab = scene.pop("slab", None) or {}
-    strength = (settings or SeasonSettings()).strength
+    settings = settings or SeasonSettings()
+    cover = cover_below_slides(base.data, days, settings)
+    if cover:
+        scene["panel"]["height"] -= cover
+        subject = scene.get("title") or "Slide-offs of a season"
+        scene["title"] = f"{subject}, on {cover:.2f} m of natural snow"
     scene_of_season = Scene.from_data(scene)
     scene_of_season._base_dir = base.base_dir
     scene_of_season.slab = Slab(
@@ -58,7 +66,7 @@ def season_scene(
         layers=[
             Layer(
                 day.slab_load / density,
-                snow_of_density(natural, density, strength),
+                snow_of_density(natural, density, settings.strength),
                 day.event,
             )
             for day, density in zip(released, _densities(released))
@@ -66,6 +74,32 @@ def season_scene(
     )
     scene_of_season.set("events.count", len(released))
     return scene_of_season.resolve()
+
+
+def cover_below_slides(
+    scene: Mapping[str, Any], days: Sequence[WinterDay], settings: SeasonSettings
+) -> float:
+    """Return the mean depth of the natural cover on which the slide-offs fall, m.
+
+    Parameters
+    ----------
+    scene
+        The complete scene, with a panel. If it has obstacles, the depth is 0, because they stand on
+        the ground, too.
+    days, settings
+        Days and settings of the season.
+
+    Returns
+    -------
+    float
+        The depth, at most the height of the panel.
+    """
+    if scene.get("obstacles"):
+        return 0.0
+    cover = natural_cover([day.weather for day in days], settings, scene["gravity"])
+    depths = [depth for day, depth in zip(days, cover) if day.event is not None]
+    mean = sum(depths) / len(depths) if depths else 0.0
+    return min(mean, float(scene["panel"]["height"]))
 
 
 def snow_of_density(base: Mapping[str, Any], density: float, strength: Optional[str]) -> Snow:

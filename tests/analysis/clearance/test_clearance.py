@@ -18,16 +18,11 @@ from snowshed.analysis.clearance import (
     answer_text,
     required_clearance,
     split_winters,
-    statistics,
 )
 from snowshed.analysis.clearance.answer import STUDY, expected_duration
 from snowshed.analysis.clearance.report import write_report
-from snowshed.analysis.clearance.statistics import (
-    CauseShare,
-    burial_interval,
-    levels_of,
-    shares_of,
-)
+from snowshed.analysis.clearance.seasons import cases_of
+from snowshed.analysis.clearance.statistics import CauseShare
 from snowshed.cli.main import main
 from snowshed.results.folder import read_events
 from snowshed.results.season_folder import SeasonFolder
@@ -139,7 +134,7 @@ def report(answer, tmp_path_factory):
 
 def test_page_and_summary_contain_the_answer(report):
     page = (report / "clearance.html").read_text()
-    assert "must be" in page and "Assumptions" in page and "Gumbel" in page
+    assert "a scenario, not a statistic" in page and "Assumptions" in page
     assert "http" not in page.replace("http://www.w3.org", "")
     summary = json.loads((report / "clearance.json").read_text())
     assert [level["probability"] for level in summary["panels"][0]["levels"]] == [0.5, 0.9, 0.98]
@@ -181,8 +176,6 @@ def test_burial_probability_is_the_share_of_winters(tmp_path):
 
 
 def answer_cases(winters):
-    from snowshed.analysis.clearance.seasons import cases_of
-
     return cases_of(DESIGN, winters, KNOWN.draw(len(winters)), SeasonSettings(), {})
 
 
@@ -202,7 +195,8 @@ def test_the_error_of_the_grid_follows_from_the_scheme(answer, winters):
     ):
         cases = [replace(case, base=base) for case in result.cases]
         warning = answer_text.warnings([replace(result, cases=cases)])[0]
-        assert warning.startswith(f"the intervals leave out the error of the grid: {text}")
+        assert warning.startswith("the intervals contain an error of the grid: ±")
+        assert f"of the height of shed snow: {text}" in warning
 
 
 def test_disabled_relations_are_stated(answer):
@@ -235,43 +229,40 @@ def test_the_report_says_on_which_ground_the_stack_lies(answer, cover, ground):
 
 def test_the_advice_names_the_parameter_without_its_unit(answer, monkeypatch):
     result, _ = answer
-    monkeypatch.setattr(type(result), "shares", [CauseShare("adhesion", 0.5)])
-    text = answer_text.advice(result)
-    assert text.startswith("Measuring the adhesion of snow to the panel would reduce the ")
+    low, high = result.highest[1:]
+    share = CauseShare("adhesion", 0.5, low, 0.5 * (low + high))
+    monkeypatch.setattr(type(result), "shares", [share])
+    text = answer_text.interval_reasons(result)
+    assert "comes from the adhesion of snow to the panel (50 %). Measuring the adhesion of " in text
     rows = answer_text.range_rows(SnowRanges({"adhesion": (0.0, 150.0)}))
     assert rows == [("adhesion of snow to the panel, Pa", "0", "150")]
 
 
-def test_confidence_intervals_have_their_coverage(monkeypatch):
-    """Required heights from a known Gumbel distribution, 30 winters with two draws each."""
-    monkeypatch.setattr(statistics, "RESAMPLES", 200)
-    random = np.random.default_rng(5)
-    true = 2.0 - 0.3 * np.log(-np.log(0.9))
-    inside = 0
-    for _ in range(100):
-        winter = random.gumbel(2.0, 0.3, 30)
-        required = np.repeat(winter, 2) + random.normal(0.0, 0.02, 60)
-        level = levels_of(required, np.repeat(np.arange(30.0), 2))[1]
-        inside += level.low <= true <= level.high
-    assert inside >= 75
+def test_no_measurement_is_advised_that_hardly_narrows_the_interval(answer, monkeypatch):
+    result, _ = answer
+    low, high = result.highest[1:]
+    share = CauseShare("adhesion", 0.02, low, high - 0.05 * (high - low))
+    monkeypatch.setattr(type(result), "shares", [share])
+    text = answer_text.interval_reasons(result)
+    assert text.endswith("No measurement of the panel or the snow would narrow it by a tenth.")
 
 
-def test_causes_get_the_variance_that_they_contribute():
-    random = np.random.default_rng(1)
-    winters = np.repeat(np.arange(20.0), 5)
-    adhesion, friction = random.random(100), random.random(100)
-    required = 0.5 * adhesion + random.normal(0, 0.3, 20)[winters.astype(int)]
-    parts = {
-        share.cause: share.part
-        for share in shares_of(required, winters, {"adhesion": adhesion, "friction": friction})
-    }
-    assert parts["friction"] < 0.02 and parts["chance"] < 0.02
-    assert parts["adhesion"] == pytest.approx(0.25 / 12 / (0.25 / 12 + 0.09), abs=0.12)
+def test_slabs_and_pooling_follow_the_cells_but_the_margin_does_not(winters):
+    values = KNOWN.draw(len(winters))
+    for dx in (0.04, 0.02):
+        case = cases_of(DESIGN, winters, values, SeasonSettings(), {"numerics.dx": dx})[0]
+        assert case.settings.pool_below == pytest.approx(2.0 * dx)
+        assert case.panel_scene(HEIGHT).data["numerics"]["dx"] == dx
+        assert case.margin == 0.1
 
 
-def test_no_burial_in_ten_winters_leaves_a_wide_interval():
-    assert burial_interval(0.0, 10) == (0.0, pytest.approx(0.259, abs=1e-3))
-    assert burial_interval(1.0, 10)[1] == 1.0
+def test_the_height_is_split_into_cover_shed_snow_and_margin(answer):
+    result, _ = answer
+    for index, required in enumerate(result.required):
+        parts = result.height_parts(index)
+        assert parts.cover + parts.pile + parts.margin == pytest.approx(required)
+        assert parts.cover >= 0.0 and parts.margin == 0.1
+    assert 0.0 < result.shed_part < 1.0
 
 
 # --- synthetic winters --------------------------------------------------------------------------
@@ -345,8 +336,8 @@ def test_the_answer_states_how_many_winters_count(tmp_path, capsys):
     ranges = ["--range", "friction=0.4", "--range", "adhesion=500", "--range", "sliding=0.2"]
     assert main([*command, *ranges, "--heights", "0.5,2", "-o", str(out)]) == 0
     shown = " ".join(capsys.readouterr().out.split())
-    assert "1 of 3 winters and the uncertain snow parameters, without the error of the" in shown
-    assert "the intervals leave out the error of the grid: stacks of lab-50 in 2D, event 5" in shown
+    assert "a scenario, not a statistic, because only 1 of 3 winters counts. In it, the" in shown
+    assert "the intervals contain an error of the grid: ±35 % of the height of shed snow" in shown
     assert "left out are the winters" in shown and "2001/02 to 2002/03 (0 %)" in shown
     assert "Where the snow comes from" in shown and "new snow" in shown
     summary = json.loads((out / "clearance.json").read_text())

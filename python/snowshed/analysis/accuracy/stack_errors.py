@@ -185,14 +185,8 @@ def recorded_bias(dimension: int, events: int, mechanisms: Optional[Mechanisms] 
     True
     """
     mechanisms = mechanisms or Mechanisms()
-    stacks = nearest(
-        _plain_stacks(load_recorded(), mechanisms),
-        {"dimension": dimension, "events": events},
-    )
-    cells = {
-        PRESET_THICKNESS / float(stack.settings[ORDER_IN]): stack.biases[0] for stack in stacks
-    }
-    resolved = {n: bias for n, bias in cells.items() if n > MIN_CELLS_ACROSS - 1e-9}
+    stacks = _nearest_stacks(dimension, events, mechanisms)
+    resolved = resolved_biases(dimension, events, mechanisms)
     if not resolved:
         return _no_runs_text(mechanisms)
     low, high = 100 * min(resolved.values()), 100 * max(resolved.values())
@@ -201,6 +195,31 @@ def recorded_bias(dimension: int, events: int, mechanisms: Optional[Mechanisms] 
         f"{_numbers(min(resolved), max(resolved))} cells in the slab, relative to the finest "
         "recorded grid of this scheme",
         mechanisms.calibration_note,
+    )
+
+
+def resolved_biases(
+    dimension: int, events: int, mechanisms: Optional[Mechanisms] = None
+) -> dict[float, float]:
+    """Return the relative error of recorded heights by the cells across the slab.
+
+    The parameters are those of `recorded_bias`. Grids with too few cells are left out.
+
+    Examples
+    --------
+    >>> sorted(resolved_biases(2, 5))
+    [2.0, 4.0]
+    """
+    stacks = _nearest_stacks(dimension, events, mechanisms or Mechanisms())
+    biases = {
+        PRESET_THICKNESS / float(stack.settings[ORDER_IN]): stack.biases[0] for stack in stacks
+    }
+    return {cells: bias for cells, bias in biases.items() if cells > MIN_CELLS_ACROSS - 1e-9}
+
+
+def _nearest_stacks(dimension: int, events: int, mechanisms: Mechanisms) -> list[RecordedStack]:
+    return nearest(
+        _plain_stacks(load_recorded(), mechanisms), {"dimension": dimension, "events": events}
     )
 
 

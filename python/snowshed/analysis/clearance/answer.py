@@ -9,15 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 
 from snowshed._core import InputError
+from snowshed.analysis.clearance.grid_error import GridError, recorded_grid_error
 from snowshed.analysis.clearance.panel_design import PanelDesign, SnowRanges
 from snowshed.analysis.clearance.seasons import SeasonCase, SeasonOutcome, cases_of
-from snowshed.analysis.clearance.statistics import CauseShare, Level, levels_of, shares_of
+from snowshed.analysis.clearance.statistics import CauseShare, Level, RequiredHeights
 from snowshed.analysis.clearance.winters import Winter
 from snowshed.base.arrays import Floats
 from snowshed.base.formatting import plural
@@ -39,6 +41,21 @@ height_key = attrgetter("height")
 
 
 @dataclass(frozen=True)
+class HeightParts:
+    """Parts of the required height of a season.
+
+    Attributes
+    ----------
+    cover, pile, margin
+        The natural snow cover, the shed snow on it, and the distance that the edge keeps, m.
+    """
+
+    cover: float
+    pile: float
+    margin: float
+
+
+@dataclass(frozen=True)
 class ClearanceResult:
     """The height of the lower edge that a panel needs.
 
@@ -52,6 +69,8 @@ class ClearanceResult:
         Every winter with its draws.
     outcomes
         The simulated outcomes of each case, by rising height.
+    ranges
+        Ranges of the uncertain snow parameters.
     failed
         Number of runs that could not be computed; their cases are left out.
     winters
@@ -64,19 +83,45 @@ class ClearanceResult:
     heights: Sequence[float]
     cases: Sequence[SeasonCase]
     outcomes: Sequence[Sequence[SeasonOutcome]]
+    ranges: SnowRanges
     failed: int = 0
     winters: Sequence[str] = field(default_factory=list)
     winter_list: Optional[WinterList] = None
 
-    @property
+    @cached_property
     def required(self) -> Floats:
         """The height that each case needs (n,), m."""
         return np.array([required_height(outcomes) for outcomes in self.outcomes])
 
     @property
+    def shed_part(self) -> float:
+        """Part of the required height that is shed snow, in the winters that need most."""
+        highest = np.flatnonzero(self.required >= np.median(self.required))
+        parts = [self.height_parts(int(index)) for index in highest]
+        heights = sum(self.required[highest])
+        return sum(part.pile for part in parts) / heights if heights > 0.0 else 1.0
+
+    @cached_property
+    def grid_error(self) -> GridError:
+        """The error of heights by the grid, from recorded runs."""
+        return recorded_grid_error(self.cases[0].panel_scene(self.heights[0]).data)
+
+    @cached_property
+    def heights_by_probability(self) -> RequiredHeights:
+        """The required height as a distribution with its uncertainty."""
+        names = [case.winter.name for case in self.cases]
+        return RequiredHeights(
+            self.required,
+            np.unique(names, return_inverse=True)[1].astype(float),
+            self.ranges.positions([case.values for case in self.cases]),
+            self.grid_error.size,
+            self.shed_part,
+        )
+
+    @property
     def levels(self) -> list[Level]:
-        """The heights that stay clear in 50, 90 and 98 % of winters."""
-        return levels_of(self.required, self._winter_numbers)
+        """The heights that stay clear in 50, 90 and 98 % of winters; none of a single winter."""
+        return self.heights_by_probability.levels
 
     def at(self, probability: float) -> Level:
         """Return the height that stays clear with a probability of 0.5, 0.9 or 0.98 in a winter.
@@ -84,22 +129,27 @@ class ClearanceResult:
         Raises
         ------
         InputError
-            If the probability is none of these.
+            If the probability is none of these, or only one winter counts.
         """
         levels = {level.probability: level for level in self.levels}
+        if not levels:
+            raise InputError(
+                "one winter has no probabilities; its height is ClearanceResult.highest"
+            )
         if probability not in levels:
             allowed = ", ".join(f"{value:g}" for value in levels)
             raise InputError(f"probability: {probability:g}; allowed: {allowed}")
         return levels[probability]
 
     @property
+    def highest(self) -> tuple[float, float, float]:
+        """The height that the worst winter of the record needed, and its 90 % interval, m."""
+        return self.heights_by_probability.highest
+
+    @property
     def shares(self) -> list[CauseShare]:
-        """The causes of the variance of the required height, the largest first."""
-        values = {
-            name: np.array([case.values[name] for case in self.cases])
-            for name in self.cases[0].values
-        }
-        return shares_of(self.required, self._winter_numbers, values)
+        """Causes of the width of the interval for 90 % of winters, the largest first."""
+        return self.heights_by_probability.shares
 
     @property
     def worst_case_index(self) -> int:
@@ -107,8 +157,31 @@ class ClearanceResult:
         return int(np.argmax(self.required))
 
     def burial_probability(self, height: float) -> float:
-        """Return the probability that snow reaches a lower edge at a height, m, in a winter."""
-        return float((self.required > height).mean())
+        """Return the probability that snow reaches a lower edge at a height, m, in a winter.
+
+        Raises
+        ------
+        InputError
+            If only one winter counts.
+        """
+        burial = self.heights_by_probability.burial(height)
+        if burial is None:
+            raise InputError("one winter has no probability of burial")
+        return burial[0]
+
+    def height_parts(self, index: int) -> HeightParts:
+        """Return the parts of the required height of a case."""
+        margin = self.cases[index].margin
+        outcome = min(
+            self.outcomes[index], key=lambda outcome: abs(outcome.height - self.required[index])
+        )
+        cover = min(outcome.cover, self.required[index] - margin)
+        return HeightParts(cover, float(self.required[index]) - margin - cover, margin)
+
+    @property
+    def typical_case_index(self) -> int:
+        """Index of the case whose required height is nearest to the median."""
+        return int(np.argmin(np.abs(self.required - np.median(self.required))))
 
     @property
     def winters_text(self) -> str:
@@ -117,11 +190,6 @@ class ClearanceResult:
         if self.winter_list is None or len(self.winter_list.winters) == number:
             return plural(number, "winter")
         return self.winter_list.counted_text
-
-    @property
-    def _winter_numbers(self) -> Floats:
-        names = [case.winter.name for case in self.cases]
-        return np.unique(names, return_inverse=True)[1].astype(float)
 
     def table(self) -> pd.DataFrame:
         """Return one row per case and simulated height."""
@@ -205,7 +273,7 @@ def required_clearance(
     settings
         Settings of the seasons, except those that vary. [default: `SeasonSettings()`]
     scene
-        Values of the scene by dotted path, such as ``numerics.dx``.
+        Values of the scene by dotted path. Slabs and margin follow ``numerics.dx``.
     winter_list
         All winters of the file (`SeasonRecord.winters`), which the answer's text mentions.
     jobs
@@ -223,7 +291,8 @@ def required_clearance(
     candidates = sorted(set(heights))
     if not candidates or not 0.0 < candidates[0] <= candidates[-1] <= 100.0:
         raise InputError(f"heights: {candidates}; needed: at least one from 0 to 100 m")
-    values = (ranges or SnowRanges()).draw(len(winters))
+    ranges = ranges or SnowRanges()
+    values = ranges.draw(len(winters))
     cases = cases_of(design, winters, values, settings or SeasonSettings(), scene or {})
     search = _Search(cases, candidates)
     while search.undecided():
@@ -238,6 +307,7 @@ def required_clearance(
         candidates,
         [cases[number] for number in complete],
         [sorted(search.outcomes[number], key=height_key) for number in complete],
+        ranges,
         len(cases) - len(complete),
         [winter.name for winter in winters],
         winter_list,

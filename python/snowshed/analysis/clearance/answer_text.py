@@ -4,75 +4,140 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from snowshed.analysis.accuracy.mechanisms import Mechanisms
-from snowshed.analysis.accuracy.stack_errors import recorded_bias
 from snowshed.analysis.clearance.answer import ClearanceResult
-from snowshed.analysis.clearance.panel_design import UNCERTAIN, SnowRanges
+from snowshed.analysis.clearance.panel_design import MIN_CELLS, UNCERTAIN, SnowRanges
+from snowshed.analysis.clearance.statistics import (
+    FIRST_PROBABILITY,
+    GRID,
+    STATISTIC_WINTERS,
+    WINTERS,
+    CauseShare,
+    Level,
+)
 from snowshed.base.formatting import plural
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.weather.season_record import whole_percent
 
-FIRST_PROBABILITY = 0.9  # of the answer's first sentence
-#: Number of slide-offs in a typical winter, for which recorded runs give the error of the grid.
-TYPICAL_SLIDE_OFFS = 5
-CHANCE = "chance: positions of particles, and interactions of causes"
+#: Most panels that the first sentence lists.
+MAX_LISTED = 4
+#: A cause is worth removing if the interval becomes narrower by this share.
+WORTHWHILE = 0.1
+
+
+def first_level(answer: ClearanceResult) -> Level:
+    """Return the height of the answer's first sentence."""
+    return answer.at(FIRST_PROBABILITY)
 
 
 def sentence(answers: Sequence[ClearanceResult]) -> str:
-    """Return the answer for the first panel in a sentence."""
-    answer = answers[0]
-    design = answer.design
-    level = next(level for level in answer.levels if level.probability == FIRST_PROBABILITY)
-    panel = f" of the panel of {design.slope_length:g} m at {design.tilt:g}°"
-    return (
-        f"To stay clear of shed snow in 9 of 10 winters, the lower edge"
-        f"{panel if len(answers) > 1 else ''} must be at least {level.height:.1f} m above ground "
-        f"(90 % interval {level.low:.1f} to {level.high:.1f} m, from {answer.winters_text} and "
-        "the uncertain snow parameters, without the error of the grid)."
-    )
-
-
-def cause_label(cause: str) -> str:
-    """Return the label of a cause of variance."""
-    if cause == "winter":
-        return "the winter's weather"
-    return CHANCE if cause == "chance" else UNCERTAIN[cause].name
-
-
-def advice(answer: ClearanceResult) -> str:
-    """Return which measurement would reduce the uncertainty of the required height most."""
-    shares = [share for share in answer.shares if share.cause in UNCERTAIN]
-    if not shares:
+    """Return the answer for all panels in one or two sentences."""
+    winters = len(answers[0].winters)
+    if winters < STATISTIC_WINTERS:
+        worst = "In it" if winters == 1 else "In the worst of them"
         return (
-            "There are too few seasons to separate the causes. Use more winters, or more --draws."
+            f"This is a scenario, not a statistic, because only {answers[0].winters_text} "
+            f"{'counts' if winters == 1 else 'count'}. {worst}, the lower edge had to be at least "
+            f"{_heights(answers)} above the ground to stay clear of shed snow."
         )
-    largest = shares[0]
-    winter = next((share.part for share in answer.shares if share.cause == "winter"), 0.0)
     return (
-        f"Measuring the {UNCERTAIN[largest.cause].name} would reduce the uncertainty most: it "
-        f"causes {100 * largest.part:.0f} % of the variance. The winter causes "
-        f"{100 * winter:.0f} %, "
-        "which no measurement reduces."
+        f"To stay clear of shed snow in 9 of 10 winters, the lower edge must be at least "
+        f"{_heights(answers)} above the ground. The answer is from {answers[0].winters_text}."
     )
+
+
+def _heights(answers: Sequence[ClearanceResult]) -> str:
+    """Return the height of each panel with its interval, or their span if there are many."""
+    if len(answers) == 1:
+        return _height(answers[0])
+    if len(answers) > MAX_LISTED:
+        heights = [_numbers(answer)[0] for answer in answers]
+        return f"{min(heights):.1f} to {max(heights):.1f} m, depending on the panel,"
+    texts = [f"{_height(answer)} for the panel of {panel_name(answer)}" for answer in answers]
+    return ", ".join(texts[:-1]) + f" and {texts[-1]}"
+
+
+def _height(answer: ClearanceResult) -> str:
+    height, low, high = _numbers(answer)
+    return f"{height:.1f} m (90 % interval {low:.1f} to {high:.1f} m)"
+
+
+def _numbers(answer: ClearanceResult) -> tuple[float, float, float]:
+    if len(answer.winters) < STATISTIC_WINTERS:
+        return answer.highest
+    level = first_level(answer)
+    return level.height, level.low, level.high
+
+
+def panel_name(answer: ClearanceResult) -> str:
+    """Return the size and the tilt of a panel, such as "4 m at 60°"."""
+    return f"{answer.design.slope_length:g} m at {answer.design.tilt:g}°"
+
+
+def cause_label(cause: str, answer: ClearanceResult) -> str:
+    """Return the label of a cause of uncertainty."""
+    if cause == WINTERS:
+        return f"the number of winters ({len(answer.winters)})"
+    return "the grid" if cause == GRID else f"the {UNCERTAIN[cause].name}"
+
+
+def interval_reasons(answer: ClearanceResult) -> str:
+    """Return why the interval is as wide as it is, and what would narrow it."""
+    shares = answer.shares
+    if not shares:
+        return "Nothing is uncertain in this answer but its assumptions."
+    largest = [share for share in shares if share.part >= 0.05] or shares[:1]
+    texts = [f"{cause_label(s.cause, answer)} ({100 * s.part:.0f} %)" for s in largest]
+    listed = ", ".join(texts[:-1]) + f" and {texts[-1]}" if len(texts) > 1 else texts[0]
+    return f"The width of the interval comes from {listed}. {_narrowing(answer)}"
+
+
+def _narrowing(answer: ClearanceResult) -> str:
+    """Return sentences on what would narrow the interval."""
+    _, low, high = _numbers(answer)
+    helpful = [
+        share
+        for share in answer.shares
+        if share.high - share.low < (1.0 - WORTHWHILE) * (high - low)
+    ]
+    measurable = [share for share in helpful if share.cause in UNCERTAIN]
+    sentences = [
+        f"Measuring the {UNCERTAIN[share.cause].name} would narrow it to {_span(share)}."
+        for share in measurable[:1]
+    ] or ["No measurement of the panel or the snow would narrow it by a tenth."]
+    others = {share.cause: share for share in helpful}
+    if WINTERS in others:
+        sentences.append(f"Many more winters would narrow it to {_span(others[WINTERS])}.")
+    if GRID in others:
+        sentences.append(f"Without the error of the grid it would be {_span(others[GRID])}.")
+    return " ".join(sentences)
+
+
+def _span(share: CauseShare) -> str:
+    return f"{share.low:.1f} to {share.high:.1f} m"
 
 
 def warnings(answers: Sequence[ClearanceResult]) -> list[str]:
     """Return warnings that the answer is extrapolated or incomplete."""
     notes = [*_excluded_winters(answers[0]), _grid_error(answers[0])]
     for answer in answers:
-        name = f"{answer.design.slope_length:g} m at {answer.design.tilt:g}°"
+        name = panel_name(answer)
         for level in answer.levels:
+            percentage = f"{100 * level.probability:g} %"
             if level.height > answer.heights[-1]:
                 notes.append(
-                    f"{name}: {level.height:.1f} m for {100 * level.probability:g} % lies above "
-                    f"all candidate heights (up to {answer.heights[-1]:g} m); give higher --heights"
+                    f"{name}: {level.height:.1f} m for {percentage} lies above all candidate "
+                    f"heights (up to {answer.heights[-1]:g} m); give higher --heights"
                 )
-            elif not level.counted:
+            if level.extrapolated:
                 notes.append(
-                    f"{name}: {100 * level.probability:g} % is extrapolated (Gumbel) from "
-                    f"{plural(len(answer.winters), 'winter')}; counting it needs at least "
-                    f"{level.return_period:.0f}"
+                    f"{name}: {percentage} is extrapolated: a return period of "
+                    f"{level.return_period:.0f} years from {plural(len(answer.winters), 'winter')}"
                 )
+        if not answer.heights_by_probability.separable:
+            notes.append(
+                f"{name}: there are too few seasons to separate the snow parameters from the "
+                "weather, so they count as changing from winter to winter; give more --draws"
+            )
         if answer.failed:
             notes.append(
                 f"{name}: {answer.failed} seasons could not be simulated, and are left out"
@@ -93,22 +158,23 @@ def _excluded_winters(answer: ClearanceResult) -> list[str]:
 
 
 def _grid_error(answer: ClearanceResult) -> str:
-    """Return a sentence on the grid's error in recorded runs, which no interval contains."""
-    scene = answer.cases[0].panel_scene(answer.heights[0]).data
-    bias = recorded_bias(2, TYPICAL_SLIDE_OFFS, Mechanisms.of_scene(scene))
-    return f"the intervals leave out the error of the grid: {bias}"
+    return f"the intervals contain an error of the grid: {answer.grid_error.text}"
 
 
 def assumptions(answer: ClearanceResult) -> list[str]:
     """Return the assumptions of the seasons, a sentence each."""
-    season = answer.cases[0].settings
+    case = answer.cases[0]
     return [
         "The panel is long across the slope: the simulation is of a strip (2D).",
-        f"Grid cells are {100 * answer.design.dx:.3g} cm wide. Releases thinner than "
-        f"{1000 * season.pool_below:.0f} mm slide with those that follow.",
-        f"The stack lies on {_ground(season)}, and nobody clears it.",
-        _settling(season),
-        _strength(season),
+        f"Grid cells are {100 * case.dx:.3g} cm wide. Releases thinner than {MIN_CELLS:g} cells, "
+        f"{1000 * case.settings.pool_below:.0f} mm, slide with those that follow.",
+        f"The edge keeps a distance of {100 * case.margin:.0f} cm from the snow.",
+        "The snow parameters are unknown, but the same in every winter. Only the weather and "
+        "chance change from winter to winter.",
+        "The highest snow of a winter has a generalised extreme value distribution.",
+        f"The stack lies on {_ground(case.settings)}, and nobody clears it.",
+        _settling(case.settings),
+        _strength(case.settings),
         "Melt of the stack, rain, wind drift and snowfall on the stack (except on the cover) are "
         "left out.",
         "Winters are independent of each other: the climate does not change.",

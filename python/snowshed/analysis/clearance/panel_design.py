@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Optional
 
 import numpy as np
 
 from snowshed._core import InputError
+from snowshed.base.arrays import Floats
 from snowshed.scene.components import Ground, Panel, Slab
 from snowshed.scene.scene import ResolvedScene, Scene
 from snowshed.season.settings import SeasonSettings
 
 MIN_CELL, MAX_CELL = 0.04, 0.1  # m
-CELLS = 40  # cells along the slope
+CELLS = 60  # cells along the slope
+#: Fewest cells across a slab; thinner releases slide with those that follow.
+MIN_CELLS = 2.0
+#: Distance that an edge keeps from the highest snow, m. It does not depend on the grid.
+MARGIN = 0.1
 
 Span = tuple[float, float]
 
@@ -100,8 +105,8 @@ class PanelDesign:
             raise InputError(f"tilt: {self.tilt:g} degrees; allowed: 5 to 85")
 
     @property
-    def dx(self) -> float:
-        """Size of the grid cells, m."""
+    def default_dx(self) -> float:
+        """Size of the grid cells, m, unless another is chosen."""
         return float(np.clip(self.slope_length / CELLS, MIN_CELL, MAX_CELL))
 
 
@@ -161,13 +166,32 @@ class SnowRanges:
                     draw[name] = float(low + (high - low) * share)
         return values
 
+    def positions(self, values: Sequence[Mapping[str, float]]) -> dict[str, Floats]:
+        """Return the position of drawn values in their ranges, from -0.5 to 0.5, by name.
+
+        Examples
+        --------
+        >>> SnowRanges({"strength": (0.5, 2.0)}).positions([{"strength": 1.0}])
+        {'strength': array([0.])}
+        """
+        positions = {}
+        for name, (low, high) in self.spans.items():
+            drawn = np.array([value[name] for value in values])
+            if not low < high:
+                positions[name] = np.zeros(len(drawn))
+            elif UNCERTAIN[name].is_factor:
+                positions[name] = np.log(drawn / low) / np.log(high / low) - 0.5
+            else:
+                positions[name] = (drawn - low) / (high - low) - 0.5
+        return positions
+
 
 def season_settings(base: SeasonSettings, values: Mapping[str, float], dx: float) -> SeasonSettings:
-    """Return a season's settings with drawn values; releases thinner than 1.5 cells are pooled."""
+    """Return a season's settings with drawn values; releases thinner than 2 cells are pooled."""
     drawn: dict[str, Any] = {
         name: values[name] for name in ("friction", "adhesion", "catch") if name in values
     }
-    return replace(base, **drawn, pool_below=max(base.pool_below, 1.5 * dx))
+    return replace(base, **drawn, pool_below=max(base.pool_below, MIN_CELLS * dx))
 
 
 def panel_scene(
@@ -197,7 +221,7 @@ def panel_scene(
             "panel.length": design.slope_length,
             "panel.tilt": design.tilt,
             "panel.friction": values.get("sliding_friction", 0.3),
-            "numerics.dx": design.dx,
+            "numerics.dx": design.default_dx,
             "seeding.particles_per_voxel": 4,
             "seeding.seed": seed,
             "events.max_time": 6.0,

@@ -7,15 +7,25 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Optional
 
+import numpy as np
+
 from snowshed.analysis.clearance import answer_text
 from snowshed.analysis.clearance.answer import ClearanceResult
 from snowshed.analysis.clearance.panel_design import SnowRanges
-from snowshed.analysis.clearance.statistics import burial_interval
+from snowshed.analysis.clearance.statistics import FIRST_PROBABILITY
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
-from snowshed.plot.clearance_figure import burial_figure, causes_figure, design_figure
+from snowshed.plot.clearance_figure import (
+    burial_figure,
+    causes_figure,
+    design_figure,
+    parts_figure,
+)
 from snowshed.plot.html_page import HtmlTable, Picture, template
 from snowshed.season.weather.quality_table import ALIGN, HEAD, quality_rows, title
+
+#: Heights at which the curve of burials is drawn.
+CURVE_POINTS = 80
 
 
 def write_report(
@@ -47,7 +57,8 @@ def write_report(
         sentence=answer_text.sentence(answers),
         warnings=answer_text.warnings(answers),
         panels=[_panel(answer, folder) for answer in answers],
-        chart=_chart(answers) if len(answers) > 1 else None,
+        designs=_design_grid(answers) if len(answers) > 1 else None,
+        chart=_chart(answers) if len(answers) > 1 and answers[0].levels else None,
         winter_table=_winter_table(answers[0]),
         notes=notes,
         ranges=HtmlTable(
@@ -74,17 +85,27 @@ def summary(
         "panels": [
             {
                 **vars(answer.design),
+                "dx": answer.cases[0].dx,
                 "winters": list(answer.winters),
                 "levels": [vars(level) for level in answer.levels],
-                "heights": [
-                    {"height": height, "buried": answer.burial_probability(height)}
-                    for height in answer.heights
-                ],
-                "shares": {share.cause: share.part for share in answer.shares},
+                "worst_winter": dict(zip(("height", "low", "high"), answer.highest)),
+                "heights": _burials(answer),
+                "shares": [vars(share) for share in answer.shares],
+                "grid_error": vars(answer.grid_error),
             }
             for answer in answers
         ],
     }
+
+
+def _burials(answer: ClearanceResult) -> list[dict[str, float]]:
+    """Return the probability of burial at each candidate height; none of a single winter."""
+    burials = []
+    for height in answer.heights:
+        burial = answer.heights_by_probability.burial(height)
+        if burial is not None:
+            burials.append({"height": height, **dict(zip(("buried", "low", "high"), burial))})
+    return burials
 
 
 def _winter_table(answer: ClearanceResult) -> Optional[tuple[str, HtmlTable]]:
@@ -97,31 +118,73 @@ def _winter_table(answer: ClearanceResult) -> Optional[tuple[str, HtmlTable]]:
 
 def _panel(answer: ClearanceResult, folder: Path) -> dict[str, Any]:
     """Return the section of a panel, and write the moving view of its worst winter."""
-    levels = [(level.probability, level.height, level.low, level.high) for level in answer.levels]
-    shares = {answer_text.cause_label(share.cause): share.part for share in answer.shares}
+    shares = {answer_text.cause_label(share.cause, answer): share.part for share in answer.shares}
     name = f"{answer.design.slope_length:g}-{answer.design.tilt:g}"
     causes: Optional[Picture] = None
-    if shares:
-        caption = "Shares of the variance over all seasons; linear effects."
+    if len(shares) > 1:
+        caption = "Shares of the variance of the height's logarithm."
         causes = Picture.drawn(causes_figure(shares), f"causes-{name}", "Causes", caption)
     view = folder / f"worst-winter-{name}.html"
     picture = _worst_picture(answer, view)
     return {
         "title": f"Slope length {answer.design.slope_length:g} m, tilt {answer.design.tilt:g}°",
-        "levels": _level_grid(answer),
-        "heights": _height_grid(answer),
-        "burial": Picture.drawn(
-            burial_figure(answer.required, levels),
-            f"burial-{name}",
-            "Probability of burial",
-            "Steps: the simulated seasons. Points: the answer, with 90 % confidence.",
-        ),
+        "parts": _parts_picture(answer, name),
+        "levels": _level_grid(answer) if answer.levels else None,
+        "heights": _height_grid(answer) if answer.levels else None,
+        "burial": _burial_picture(answer, name) if answer.levels else None,
         "causes": causes,
-        "advice": answer_text.advice(answer),
+        "reasons": answer_text.interval_reasons(answer),
         "worst": _worst(answer),
         "picture": picture,
         "view": view.name if picture else None,
     }
+
+
+def _parts_picture(answer: ClearanceResult, name: str) -> Picture:
+    cases = {"the worst winter": answer.worst_case_index}
+    if len(answer.winters) > 1:
+        cases = {"a typical winter": answer.typical_case_index, **cases}
+    bars = {
+        f"{label}, {answer.cases[index].winter.name}": vars(answer.height_parts(index))
+        for label, index in cases.items()
+    }
+    caption = "Simulated seasons, without the error of the grid."
+    return Picture.drawn(parts_figure(bars), f"parts-{name}", "What makes the height", caption)
+
+
+def _burial_picture(answer: ClearanceResult, name: str) -> Picture:
+    levels = [(level.probability, level.height, level.low, level.high) for level in answer.levels]
+    most = max(levels[-1][1], levels[1][3])
+    heights = np.linspace(0.0, 1.2 * most, CURVE_POINTS)
+    curves = [answer.heights_by_probability.burial(height) for height in heights]
+    return Picture.drawn(
+        burial_figure(heights, np.array(curves), answer.heights_by_probability.per_winter, levels),
+        f"burial-{name}",
+        "Probability of burial",
+        "Points: the winters. Line: the fitted distribution, with its 90 % interval.",
+    )
+
+
+def _design_grid(answers: Sequence[ClearanceResult]) -> HtmlTable:
+    """Return the heights of all panels."""
+    probabilities = [level.probability for level in answers[0].levels]
+    rows = []
+    for answer in answers:
+        height, low, high = answer.highest
+        rows.append(
+            (
+                f"{answer.design.slope_length:g}",
+                f"{answer.design.tilt:g}",
+                f"{height:.2f} ({low:.2f} to {high:.2f})",
+                *(
+                    f"{level.height:.2f} ({level.low:.2f} to {level.high:.2f})"
+                    for level in answer.levels
+                ),
+            )
+        )
+    clear = [f"clear in {100 * probability:g} %, m" for probability in probabilities]
+    head = ("slope length, m", "tilt, degrees", "the worst winter, m", *clear)
+    return HtmlTable(head, rows, "r" * len(head))
 
 
 def _level_grid(answer: ClearanceResult) -> HtmlTable:
@@ -131,25 +194,31 @@ def _level_grid(answer: ClearanceResult) -> HtmlTable:
             f"{level.height:.2f}",
             f"{level.low:.2f} to {level.high:.2f}",
             f"{level.return_period:.0f}",
-            "counted" if level.counted else "extrapolated (Gumbel)",
+            "shorter: extrapolated" if level.extrapolated else "long enough",
         )
         for level in answer.levels
     ]
-    head = ("stays clear in", "height, m", "90 % interval, m", "return period, years", "method")
+    head = ("stays clear in", "height, m", "90 % interval, m", "return period, years", "record")
     return HtmlTable(head, rows, "lrrrl")
 
 
 def _height_grid(answer: ClearanceResult) -> HtmlTable:
-    rows = []
-    for height in answer.heights:
-        buried = answer.burial_probability(height)
-        low, high = burial_interval(buried, len(answer.winters))
-        years = f"{1 / buried:.1f}" if buried else f"more than {len(answer.winters)}"
-        rows.append(
-            (f"{height:g}", f"{100 * buried:.0f}", f"{100 * low:.0f} to {100 * high:.0f}", years)
+    rows = [
+        (
+            f"{burial['height']:g}",
+            f"{100 * burial['buried']:.0f}",
+            f"{100 * burial['low']:.0f} to {100 * burial['high']:.0f}",
+            _years(burial["buried"]),
         )
+        for burial in _burials(answer)
+    ]
     head = ("height, m", "buried in, %", "90 % interval, %", "return period, years")
     return HtmlTable(head, rows, "rrrr")
+
+
+def _years(buried: float) -> str:
+    years = 1.0 / max(buried, 1e-9)
+    return f"{years:.1f}" if years < 100.0 else "more than 100"
 
 
 def _worst(answer: ClearanceResult) -> str:
@@ -190,14 +259,12 @@ def _worst_picture(answer: ClearanceResult, view: Path) -> Optional[Picture]:
 
 def _chart(answers: Sequence[ClearanceResult]) -> Picture:
     heights = []
-    probability = answer_text.FIRST_PROBABILITY
     for answer in answers:
-        level = next(level for level in answer.levels if level.probability == probability)
-        design = answer.design
+        level, design = answer_text.first_level(answer), answer.design
         heights.append((design.slope_length, design.tilt, level.height, (level.low, level.high)))
     return Picture.drawn(
-        design_figure(heights, probability),
+        design_figure(heights, FIRST_PROBABILITY),
         "designs",
         "Required height",
-        "Bars: 90 % confidence over winters.",
+        "Bars: 90 % intervals.",
     )

@@ -13,7 +13,12 @@ from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 
-from snowshed.analysis.clearance.panel_design import PanelDesign, panel_scene, season_settings
+from snowshed.analysis.clearance.panel_design import (
+    MARGIN,
+    PanelDesign,
+    panel_scene,
+    season_settings,
+)
 from snowshed.analysis.clearance.winters import Winter
 from snowshed.scene.scene import ResolvedScene
 from snowshed.season.accumulation import WinterDay, accumulate, stack_ageing
@@ -36,14 +41,18 @@ class SeasonOutcome:
     height
         Height of the edge above the ground, m.
     margin
-        Distance from the highest snow to the edge minus a cell, m; at most 0 after a contact.
+        Distance from the highest snow to the edge, less the distance that it must keep, m; at most
+        0 after a contact.
     contact
         The first contact, if any.
+    cover
+        Depth of the natural snow cover when the snow was highest, m.
     """
 
     height: float
     margin: float
     contact: Optional[PanelContact]
+    cover: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -71,10 +80,20 @@ class SeasonCase:
     base_settings: SeasonSettings
     base: Mapping[str, Any]
 
+    @property
+    def dx(self) -> float:
+        """Size of the grid cells, m."""
+        return float(self.base.get("numerics.dx", self.design.default_dx))
+
+    @property
+    def margin(self) -> float:
+        """Distance that the edge must keep from the highest snow, m."""
+        return max(MARGIN, self.dx)
+
     @cached_property
     def settings(self) -> SeasonSettings:
         """The settings of the season."""
-        return season_settings(self.base_settings, self.values, self.design.dx)
+        return season_settings(self.base_settings, self.values, self.dx)
 
     @cached_property
     def days(self) -> list[WinterDay]:
@@ -111,11 +130,11 @@ class SeasonCase:
         table = season_table(
             self.panel_scene(height).data, self.days, self.settings, events, outlines
         )
-        dx = self.design.dx
-        contact = first_contact(table, dx)
-        sunk = table["stack_height_m"] - table["settled_height_m"]
-        margin = float((table["crest_clearance_m"] + sunk).min()) - dx
-        return SeasonOutcome(height, min(margin, 0.0) if contact else margin, contact)
+        contact = first_contact(table, self.margin)
+        distance = table["crest_clearance_m"] + table["stack_height_m"] - table["settled_height_m"]
+        margin = float(distance.min()) - self.margin
+        cover = float(table["cover_m"].iloc[int(distance.argmin())])
+        return SeasonOutcome(height, min(margin, 0.0) if contact else margin, contact, cover)
 
 
 def cases_of(

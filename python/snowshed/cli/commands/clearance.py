@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
 
@@ -25,10 +25,11 @@ from snowshed.cli.output.winters_table import print_quality
 
 if TYPE_CHECKING:
     from snowshed.analysis.clearance.answer import ClearanceResult
-    from snowshed.analysis.clearance.panel_design import PanelDesign, SnowRanges
+    from snowshed.analysis.clearance.panel_design import PanelDesign
     from snowshed.analysis.clearance.winters import Winter
-    from snowshed.season.weather.season_record import SeasonRecord, WinterList
+    from snowshed.season.weather.season_record import SeasonRecord
 
+SCHEMES = ("thesis", "objective")
 EXAMPLE = "example"  # this word instead of a file: synthetic winters
 #: Names of `--range` that are shorter than those in Python.
 SHORT_NAMES = {"sliding": "sliding_friction"}
@@ -56,6 +57,19 @@ SHORT_NAMES = {"sliding": "sliding_friction"}
 )
 @click.option("--draws", type=int, default=3, show_default=True, help="Seasons for each winter.")
 @click.option("--seed", type=int, default=1, show_default=True, help="Random seed.")
+@click.option(
+    "--dx",
+    type=click.FloatRange(0.005, 0.5),
+    help="Size of the grid cells [m]. Releases thinner than two cells slide with those that "
+    "follow.  [default: 1/60 of the shortest slope length, 0.04 to 0.1]",
+)
+@click.option(
+    "--scheme",
+    type=click.Choice(SCHEMES),
+    default=SCHEMES[0],
+    show_default=True,
+    help="Numerical scheme. The error of the grid in the interval follows from it.",
+)
 @weather_options
 @jobs_option("Processes")
 @click.option(
@@ -76,6 +90,8 @@ def clearance(
     spans: tuple[str, ...],
     draws: int,
     seed: int,
+    dx: Optional[float],
+    scheme: str,
     coverage: float,
     snow_from: str,
     temperature: Optional[Path],
@@ -113,11 +129,14 @@ def clearance(
     for note in () if quiet else notes:
         say(f"note: {note}")
     winters = counted_winters(winter_list)
+    size = dx or min(design.default_dx for design in designs)  # the same for all panels
+    options: dict[str, Any] = {
+        "ranges": ranges,
+        "jobs": jobs,
+        "scene": {"numerics.dx": size, "numerics.scheme": scheme},
+    }
     if dry_run or not quiet:
-        costs = [
-            expected_duration(design, winters, candidates, ranges=ranges, jobs=jobs)
-            for design in designs
-        ]
+        costs = [expected_duration(design, winters, candidates, **options) for design in designs]
         seconds, seasons = (sum(values) for values in zip(*costs))
         say(
             f"{winter_list.counted_text}, {plural(len(designs), 'panel')}, "
@@ -125,7 +144,8 @@ def clearance(
         )
     if dry_run:
         return
-    answers = _answers(designs, winter_list, winters, candidates, ranges, folder, jobs, quiet=quiet)
+    options["winter_list"] = winter_list
+    answers = _answers(designs, winters, candidates, folder, options, quiet=quiet)
     write_report(answers, ranges, folder, notes)
     if not quiet:
         print_answers(answers, folder)
@@ -133,12 +153,10 @@ def clearance(
 
 def _answers(
     designs: list[PanelDesign],
-    winter_list: WinterList,
     winters: list[Winter],
     heights: list[float],
-    ranges: SnowRanges,
     folder: Path,
-    jobs: Optional[int],
+    options: Mapping[str, Any],
     *,
     quiet: bool,
 ) -> list[ClearanceResult]:
@@ -147,7 +165,6 @@ def _answers(
     from snowshed.study.errors import StudyInterrupted
 
     folder.mkdir(parents=True, exist_ok=True)
-    options: dict[str, Any] = {"ranges": ranges, "jobs": jobs, "winter_list": winter_list}
     answers = []
     try:
         for design in designs:
@@ -202,7 +219,11 @@ def print_answers(answers: Sequence[ClearanceResult], folder: Path) -> None:
                 f"{level.height:.2f}",
                 f"{level.low:.2f} to {level.high:.2f}",
             )
-    console.print(table)
+    if table.row_count:
+        console.print(table)
+    for answer in answers:
+        panel = f"{answer_text.panel_name(answer)}: " if len(answers) > 1 else ""
+        console.print(f"{panel}{answer_text.interval_reasons(answer)}")
     if answers[0].winter_list is not None:
         print_quality(console, answers[0].winter_list)
     for warning in answer_text.warnings(answers):
