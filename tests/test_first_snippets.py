@@ -104,10 +104,9 @@ def test_a_panel_is_predicted():
 
 
 def test_a_clearance_is_computed(tmp_path):
-    days = pd.Series([date(2023, 9, 1) + timedelta(n) for n in range(366)])
-    weather = pd.DataFrame(
-        {"date": days, "snowfall_m": 0.2 * (days == date(2024, 1, 5)), "temperature_c": -3.0}
-    )
+    days = pd.Series([date(2022, 9, 1) + timedelta(n) for n in range(731)])
+    snowfall = 0.15 * (days == date(2023, 1, 9)) + 0.2 * (days == date(2024, 1, 5))
+    weather = pd.DataFrame({"date": days, "snowfall_m": snowfall, "temperature_c": -3.0})
     answer = snowshed.clearance(
         weather, str(tmp_path), slope_length=0.5, tilt=60, heights=[0.5],
         ranges=SnowRanges(draws=1), scene={"numerics.dx": 0.05}, jobs=1,

@@ -128,7 +128,10 @@ def test_unusual_scenes_and_results_are_noted(tmp_path, capsys):
 def test_help_names_unit_and_default(capsys):
     assert main(["panel", "--help"]) == 0
     text = " ".join(capsys.readouterr().out.split())
-    assert "--density FLOAT Initial bulk density [kg/m3; default 210.0]" in text
+    assert (
+        "--density FLOAT Initial bulk density; sets E and p0 unless given [kg/m3; default 210.0]"
+        in text
+    )
 
 
 def test_panel_runs_quietly(tmp_path, capsys):

@@ -2,6 +2,7 @@
 
 import datetime
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -58,6 +59,45 @@ def test_with_adhesion_snow_gathers_up_to_the_closed_form():
     needed = math.floor(limit / load_per_day) + 1
     assert [i + 1 for i, event in enumerate(events) if event] == list(range(needed, 21, needed))
     assert [event for event in events if event] == list(range(1, 20 // needed + 1))
+
+
+def warm_spell(temperature, **settings):
+    """Return snow of 10 kg/m2 on a panel of 60 degrees that held it, and the days after it."""
+    cold, *later = season(0.2, 0.0, 0.0, 0.0, 0.0)
+    days = [cold, *(replace(day, temperature=temperature) for day in later)]
+    return accumulate(days, SeasonSettings(settling=None, **settings), 60.0)
+
+
+def test_snow_on_the_panel_melts_by_degree_days():
+    days = warm_spell(1.5, friction=5.0)
+    expected = [10.0, 10.0, 4.0, 0.0, 0.0]  # 4 mm of water per day and degree, from the next row on
+    assert [day.load for day in days] == pytest.approx(expected)
+    assert not any(day.released for day in days)
+    unchanged = pytest.approx([10.0] * 5)
+    assert [day.load for day in warm_spell(0.0, friction=5.0)] == unchanged
+    assert [day.load for day in warm_spell(1.5, friction=5.0, melt_factor=0.0)] == unchanged
+
+
+def test_wet_snow_does_not_adhere():
+    released = [day.released for day in warm_spell(0.5, friction=0.5, adhesion=500.0)]
+    assert released == [False, True, False, False, False]
+    assert not any(day.released for day in warm_spell(-0.5, friction=0.5, adhesion=500.0))
+    dry = warm_spell(0.5, friction=0.5, adhesion=500.0, thaw=None)
+    assert not any(day.released for day in dry)
+
+
+def test_the_adhesion_of_a_row_holds_in_warm_air_too():
+    cold, warm = season(0.2, 0.0)
+    warm = replace(warm, temperature=2.0, adhesion=500.0)
+    days = accumulate([cold, warm], SeasonSettings(friction=0.5, adhesion=500.0), 60.0)
+    assert not any(day.released for day in days)
+
+
+def test_an_unknown_criterion_of_thaw_is_refused():
+    with pytest.raises(InputError, match="thaw: 'sun'; allowed: marion-2013, none"):
+        SeasonSettings(thaw="sun")
+    with pytest.raises(InputError, match="melt factor: -1 is outside the allowed range"):
+        SeasonSettings(melt_factor=-1.0)
 
 
 def test_mass_per_area_of_ground_agrees_with_the_snowfall():

@@ -1,6 +1,8 @@
 // The parameters of snow and its constitutive laws.
 #pragma once
 
+#include <cmath>
+
 namespace snowshed::material {
 
 enum class SnowModel { cam_clay, elastic };
@@ -19,6 +21,15 @@ struct Snow {
   double preconsolidation_pressure = 7.0e3;  // p0, Pa, initial value
   double cohesion = 0.2;                     // beta, -
   double hardening_factor = 0.1;             // xi, -
+
+  /// Scales stiffness and strength from another density to this one, by powers of the density
+  /// (Sigrist 2006, thesis 16736, ETH Zurich). Only ratios are used, because loose snow has a
+  /// fraction of the strength and stiffness of these laws.
+  void scale_from_density(double other) {
+    const double ratio = density / other;
+    youngs_modulus *= std::pow(ratio, 2.94);
+    preconsolidation_pressure *= std::pow(ratio, 2.44);
+  }
 };
 
 }  // namespace snowshed::material

@@ -51,7 +51,10 @@ inline constexpr const char* condition_doc =
 template <class V>
 void describe(V& v, material::Snow& s) {
   v.choice("model", s.model, "Law: cohesive Modified Cam-Clay, or elastic without yielding");
-  v.number("density", s.density, "kg/m3", methods::positive.up_to(1000.0), "Initial bulk density");
+  const double before = s.density;
+  v.number("density", s.density, "kg/m3", methods::positive.up_to(1000.0),
+           "Initial bulk density; sets E and p0 unless given");
+  if (s.density != before) s.scale_from_density(before);
   v.number("youngs_modulus", s.youngs_modulus, "Pa", methods::allowed::pressure,
            "Young's modulus E");
   v.number("poissons_ratio", s.poissons_ratio, "", methods::non_negative.below(0.5),

@@ -52,10 +52,36 @@ void add_files(const ShapeSpec& shape, std::vector<std::string>& files) {
   for (const auto& part : shape.shapes) add_files(part, files);
 }
 
+/// Returns a positive number of a snow, or what it is unless given; wrong values are refused later.
+double given_or(const nlohmann::json& snow, const char* key, double usual) {
+  const auto found = snow.find(key);
+  if (found == snow.end() || !found->is_number()) return usual;
+  const double value = found->get<double>();
+  return value > 0 ? value : usual;
+}
+
+/// Scales stiffness and strength that the scene's snow gives to the density of a part's own snow.
+void scale_to_density(const nlohmann::json& own, nlohmann::json& complete) {
+  const material::Snow usual;
+  const double before = given_or(complete, "density", usual.density);
+  material::Snow scaled;
+  scaled.density = given_or(own, "density", before);
+  scaled.youngs_modulus = given_or(complete, "youngs_modulus", usual.youngs_modulus);
+  scaled.preconsolidation_pressure =
+      given_or(complete, "preconsolidation_pressure", usual.preconsolidation_pressure);
+  if (scaled.density == before) return;
+  scaled.scale_from_density(before);
+  for (const auto& [key, value] :
+       {std::pair{"youngs_modulus", scaled.youngs_modulus},
+        std::pair{"preconsolidation_pressure", scaled.preconsolidation_pressure}})
+    if (complete.contains(key) && complete[key].is_number()) complete[key] = value;
+}
+
 /// Adds the values that the snow of a layer or body lacks from the scene's snow, both as given.
 void complete_snow(const nlohmann::json& of_scene, nlohmann::json& part) {
   if (!part.is_object() || !part.contains("snow") || !part["snow"].is_object()) return;
   nlohmann::json complete = of_scene;
+  scale_to_density(part["snow"], complete);
   complete.update(part["snow"]);
   part["snow"] = std::move(complete);
 }

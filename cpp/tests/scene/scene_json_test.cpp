@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -46,10 +47,48 @@ TEST(SceneJson, PartialSnowInheritsFromTheScenesSnow) {
   EXPECT_EQ(scene.slab->layers[0].event, 0);
   material::Snow light = scene.snow, elastic = scene.snow;
   light.density = 90;
+  light.scale_from_density(300);
   elastic.model = material::SnowModel::elastic;
   EXPECT_EQ(light.cohesion, 0.3);
-  EXPECT_TRUE(scene.slab->layers[1] == (Layer{0.2, light, 1}));
+  ASSERT_TRUE(scene.slab->layers[1].snow);
+  material::Snow layer = *scene.slab->layers[1].snow;
+  EXPECT_NEAR(layer.youngs_modulus / light.youngs_modulus, 1, 1e-12);
+  EXPECT_NEAR(layer.preconsolidation_pressure / light.preconsolidation_pressure, 1, 1e-12);
+  layer.youngs_modulus = light.youngs_modulus;
+  layer.preconsolidation_pressure = light.preconsolidation_pressure;
+  EXPECT_TRUE(layer == light);
+  EXPECT_EQ(scene.slab->layers[1].event, 1);
   EXPECT_TRUE(scene.bodies[0].snow == elastic);
+}
+
+TEST(SceneJson, StiffnessAndStrengthFollowFromTheDensityUnlessTheyAreGiven) {
+  const auto snow = [](const char* text) {
+    return parse_scene(std::string(R"({"snowshed": 2, "bodies": [{"shape": {"type": "sphere",
+      "radius": 1}}], "snow": )") +
+                       text + "}")
+        .snow;
+  };
+  const material::Snow usual, light = snow(R"({"density": 105})");
+  EXPECT_NEAR(light.youngs_modulus / usual.youngs_modulus, std::pow(0.5, 2.94), 1e-12);
+  EXPECT_NEAR(light.preconsolidation_pressure / usual.preconsolidation_pressure,
+              std::pow(0.5, 2.44), 1e-12);
+  EXPECT_EQ(light.cohesion, usual.cohesion);
+  const material::Snow given = snow(R"({"youngs_modulus": 5e5, "density": 105})");
+  EXPECT_EQ(given.youngs_modulus, 5e5);
+  EXPECT_EQ(given.preconsolidation_pressure, light.preconsolidation_pressure);
+  EXPECT_TRUE(snow(R"({"density": 210})") == usual);
+}
+
+TEST(SceneJson, ALayersStrengthFollowsFromTheGivenStrengthOfTheScenesSnow) {
+  const Scene scene =
+      parse_scene(R"({"snowshed": 2, "panel": {"height": 1, "length": 1, "width": 1},
+    "slab": {"layers": [{"thickness": 0.1, "snow": {"density": 105}},
+                        {"thickness": 0.1, "snow": {"density": 105, "youngs_modulus": 3e5}}]},
+    "snow": {"density": 210, "youngs_modulus": 2e6, "preconsolidation_pressure": 4000}})");
+  const material::Snow& light = *scene.slab->layers[0].snow;
+  EXPECT_NEAR(light.youngs_modulus, 2e6 * std::pow(0.5, 2.94), 1e-6);
+  EXPECT_NEAR(light.preconsolidation_pressure, 4000 * std::pow(0.5, 2.44), 1e-9);
+  EXPECT_EQ(scene.slab->layers[1].snow->youngs_modulus, 3e5);
 }
 
 TEST(SceneJson, EveryFieldIsRead) {

@@ -96,7 +96,7 @@ TEST(SceneSchema, ObjectsAreClosedAndFieldsAreDescribed) {
 TEST(SceneSchema, ContainsUnitsLimitsDefaultsAndChoices) {
   const json& properties = schema()["properties"];
   const json& numerics = properties["numerics"]["anyOf"][0]["properties"];
-  const json density = {{"description", "Initial bulk density"},
+  const json density = {{"description", properties["snow"]["properties"]["density"]["description"]},
                         {"type", "number"},
                         {"exclusiveMinimum", 0.0},
                         {"maximum", 1000.0},

@@ -23,6 +23,8 @@ MAX_DEPTH = 64  # the same as in the core
 
 RecordType = TypeVar("RecordType", bound="Record")
 Value = TypeVar("Value")
+#: Names of fields by the name of another field.
+FieldsByField = Mapping[str, "tuple[str, ...]"]
 
 #: Key under which the metadata of a field hold its default.
 _DEFAULT = "default"
@@ -107,7 +109,10 @@ class Record(metaclass=_RecordClass):
     INSTEAD_OF: ClassVar[Mapping[str, str]] = {}
     #: Fields that name a choice of several others. A new choice unsets these other
     #: fields, because it decides them; values that are set with it or after it stay.
-    ADOPTS: ClassVar[Mapping[str, tuple[str, ...]]] = {}
+    ADOPTS: ClassVar[FieldsByField] = {}
+    #: Fields whose values follow from another field unless they are given. If the other one is
+    #: given, they read as None, because the core computes them.
+    FOLLOWS: ClassVar[FieldsByField] = {}
     #: Fields with records whose missing values come from another part of the scene. These values
     #: read as None, because the defaults do not hold.
     INHERITS: ClassVar[tuple[str, ...]] = ()
@@ -251,7 +256,7 @@ class Record(metaclass=_RecordClass):
         for pair in self.INSTEAD_OF.items():
             if name in pair and held.get(pair[1 - pair.index(name)]) is not None:
                 return None
-        for choice, decided in self.ADOPTS.items():
+        for choice, decided in {**self.ADOPTS, **self.FOLLOWS}.items():
             if name in decided and held.get(choice) not in (None, defaults.get(choice)):
                 return None
         return defaults[name]

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any, Optional
 
 import snowshed._core as _core
 from snowshed.methods.registry import method_of, resolution_of
+from snowshed.scene.components import Snow
+from snowshed.snow.relations.strength import TENSILE_STRENGTH
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -15,6 +17,8 @@ if TYPE_CHECKING:
 
 MIN_CELLS_ACROSS = 2.0  # with fewer cells across the slab its stack is coarse
 NEARLY_ALL = 0.98  # share of the snow
+#: The relation by which strength follows from density.
+LAW = "sigrist-2006"
 MAX_SEEDED_PARTICLES = 100_000  # particles; seeding so many takes two seconds
 #: Parts of a scene, besides a panel, on which snow can land.
 FLOORS = ("ground", "obstacles", "domain")
@@ -44,6 +48,7 @@ def notes_before(scene: Mapping[str, Any]) -> list[str]:
             "the scene has no ground, no domain and no obstacles: snow falls for as long as "
             "events.max_time; add ground"
         )
+    notes += _density_notes(scene.get("snow") or {})
     size = resolution_of(scene)
     thickness = _slab_thickness(scene)
     if thickness is not None and thickness < MIN_CELLS_ACROSS * size:
@@ -53,6 +58,39 @@ def notes_before(scene: Mapping[str, Any]) -> list[str]:
             f"{method.settings.RESOLUTION} = {thickness / MIN_CELLS_ACROSS:.2g} m"
         )
     return notes
+
+
+def _density_notes(snow: Mapping[str, Any]) -> list[str]:
+    """Return a note if the strength of snow follows from its density, or does not although it may.
+
+    Examples
+    --------
+    >>> from snowshed.scene.components import Snow
+    >>> from snowshed.scene.scene import Scene
+    >>> light = Scene.preset("lab-50").set("snow", Snow(density=80)).resolve().data["snow"]
+    >>> _density_notes(light)[0][:60]
+    'stiffness and strength follow from the density of 80 kg/m3 ('
+    """
+    usual: Mapping[str, Any] = Snow.preset("calibrated").to_data()
+    density = snow.get("density")
+    if density in (None, usual["density"]) or snow.get("model") != usual["model"]:
+        return []
+    own = f"the density of {density:g} kg/m3"
+    strength = float(snow["preconsolidation_pressure"])
+    law = TENSILE_STRENGTH[LAW]
+    expected = usual["preconsolidation_pressure"] * law(density) / law(usual["density"])
+    if abs(strength / expected - 1.0) < 1e-6:
+        return [
+            f"stiffness and strength follow from {own} ({LAW}): Young's modulus "
+            f"{snow['youngs_modulus'] / 1e6:.3g} MPa, preconsolidation pressure "
+            f"{strength / 1e3:.3g} kPa"
+        ]
+    if strength == usual["preconsolidation_pressure"]:
+        return [
+            f"the strength is that of snow of {usual['density']:g} kg/m3; for {own}, {LAW} gives a "
+            f"preconsolidation pressure of {expected / 1e3:.3g} kPa"
+        ]
+    return []
 
 
 def notes_of_beginning(scene: ResolvedScene) -> list[str]:

@@ -15,7 +15,7 @@ from typing import ClassVar, List, Literal, Optional, Union
 
 from snowshed._core import InputError, snow_preset
 from snowshed.base.paths import PathLike
-from snowshed.base.record import Alias, Record, default
+from snowshed.base.record import Alias, FieldsByField, Record, default
 from snowshed.io.json_file import read_object
 from snowshed.scene.shape import Shape, Vector
 
@@ -41,7 +41,7 @@ class Snow(Record):
     model : {"cam_clay", "elastic"}
         Law: cohesive Modified Cam-Clay, or elastic without yielding. Default "cam_clay".
     density : float
-        Initial bulk density [kg/m3]. 0 < value <= 1000; default 210.
+        Initial bulk density; sets E and p0 unless given [kg/m3]. 0 < value <= 1000; default 210.
     youngs_modulus : float
         Young's modulus E [Pa]. 0 < value <= 1e+12; default 1e+06.
     poissons_ratio : float
@@ -64,6 +64,8 @@ class Snow(Record):
     preconsolidation_pressure: Optional[float] = default(7000.0)
     cohesion: Optional[float] = default(0.2)
     hardening_factor: Optional[float] = default(0.1)
+
+    FOLLOWS: ClassVar[FieldsByField] = {"density": ("youngs_modulus", "preconsolidation_pressure")}
 
     @classmethod
     def preset(cls, name: str) -> Snow:

@@ -57,8 +57,8 @@ def accumulate(
     """Return the snow on a panel at every row of a season.
 
     Snow of a depth h on level ground has the thickness h cos(Phi) normal to the panel, because its
-    mass per area of the ground is the same. All snow is released at once (`snow_balance`). Melting
-    and wind are left out.
+    mass per area of the ground is the same. All snow is released at once (`snow_balance`). It melts
+    by degree-days (`SeasonSettings.melt`). Sunshine and wind are left out.
 
     Parameters
     ----------
@@ -92,6 +92,7 @@ def accumulate(
         if earlier is not None:
             elapsed = (row.date - earlier.date).total_seconds()
             snow.settle(settings.settling_law, elapsed, earlier.temperature)
+            snow.melt(settings.melt(earlier.temperature, elapsed))
         density = _density(row, settings)
         if density is not None:
             snow.add(settings.catch * density * row.snowfall * slope, density)
@@ -157,5 +158,6 @@ def _balance(
     row: Weather, settings: SeasonSettings, load: float, tilt: float, gravity: float
 ) -> SnowBalance:
     friction = settings.friction if row.friction is None else row.friction
-    adhesion = settings.adhesion if row.adhesion is None else row.adhesion
+    usual = 0.0 if settings.is_wet(row.temperature) else settings.adhesion
+    adhesion = usual if row.adhesion is None else row.adhesion
     return snow_balance(load, tilt, friction, adhesion, gravity)

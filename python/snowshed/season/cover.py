@@ -12,15 +12,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Optional
 
-from snowshed.season.settings import SeasonSettings
+from snowshed.season.settings import DAY, SeasonSettings
 from snowshed.season.settling_column import SnowColumn
 from snowshed.season.weather.row import Weather
 from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
 
-DAY = 86400.0  # s
-#: Melt, kg/m2 (mm of water) per day and degree above 0 degrees C, in the middle of the values for
-#: snow in Hock 2003, J. Hydrol. 282, 104-115, which differ by a factor of four.
-DEGREE_DAY_FACTOR = 4.0
 #: Longest time between two readings that are joined by a straight line, days.
 MAX_INTERPOLATED_DAYS = 61
 #: Density, kg/m3, of a cover of known depth only, in the middle of the bulk densities of seasonal
@@ -68,7 +64,7 @@ def natural_cover(
         if earlier is not None:
             elapsed = (row.date - earlier.date).total_seconds()
             snow.settle(settings.settling_law, elapsed, earlier.temperature)
-            snow.melt(DEGREE_DAY_FACTOR * max(earlier.temperature, 0.0) * elapsed / DAY)
+            snow.melt(settings.melt(earlier.temperature, elapsed))
         if row.snowfall:
             density = row.density or NEW_SNOW_DENSITY[settings.density](row.temperature)
             snow.add(density * row.snowfall, density)

@@ -57,6 +57,7 @@ def assumptions(
                 f"{last.snow_depth:.2f} m; from then on, the cover settles and melts by the "
                 "temperature, and grows by the snowfalls"
             )
+    yield from _melt_assumptions(settings)
     if settings.settling is None:
         yield "no snow settles"
     if settings.strength is None:
@@ -70,6 +71,16 @@ def assumptions(
             f"whose slabs are at least {1000 * settings.pool_below:g} mm thick (the last may be "
             "thinner)"
         )
+
+
+def _melt_assumptions(settings: SeasonSettings) -> Iterator[str]:
+    if settings.melt_factor:
+        yield (
+            f"snow on the panel and on the ground melts by {settings.melt_factor:g} mm of water "
+            "per day and degree of the air above 0 °C; the stack does not melt"
+        )
+    if settings.thaw:
+        yield f"snow does not adhere to the panel in air warmer than 0 °C ({settings.thaw})"
 
 
 def fall_notes(

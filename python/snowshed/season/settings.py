@@ -15,6 +15,13 @@ from snowshed.snow.relations.settling import SETTLING_LAWS, SettlingLaw
 from snowshed.snow.relations.strength import TENSILE_STRENGTH
 
 COVERS = ("weather", "none")  # or a depth
+#: Criteria for wet snow. Snow slid off panels in air warmer than 0 degrees C, or colder in sunshine
+#: (Marion et al. 2013, Solar Energy 92, 167-174); without radiation, the first part is left.
+THAWS = ("marion-2013",)
+#: Melt, kg/m2 (mm of water) per day and degree above 0 degrees C, in the middle of the values for
+#: snow in Hock 2003, J. Hydrol. 282, 104-115, which differ by a factor of four.
+DEGREE_DAY_FACTOR = 4.0
+DAY = 86400.0  # s
 
 
 @dataclass(frozen=True)
@@ -49,6 +56,12 @@ class SeasonSettings:
     pool_below
         Releases are combined into one slide-off until their slab has at least this thickness, m
         normal to the panel; 0: each slides alone.
+    melt_factor
+        Melt of the snow on the panel and on the ground, kg/m2 (mm of water) per day and degree of
+        the air above 0 degrees C. The stack does not melt.
+    thaw
+        Name of a criterion in `THAWS` for wet snow, which does not adhere to the panel; None: the
+        adhesion does not depend on the weather.
 
     Raises
     ------
@@ -66,6 +79,8 @@ class SeasonSettings:
     strength: Optional[str] = "sigrist-2006"
     cover: Union[str, float] = "weather"
     pool_below: float = 0.0
+    melt_factor: float = DEGREE_DAY_FACTOR
+    thaw: Optional[str] = THAWS[0]
 
     def __post_init__(self) -> None:
         _check("release friction", self.friction, 0.0, 10.0, "")
@@ -79,6 +94,9 @@ class SeasonSettings:
         elif self.cover not in COVERS:
             raise InputError(f"cover: {self.cover!r}; allowed: weather, none, a depth in m")
         _check("pool below", self.pool_below, 0.0, 10.0, "m")
+        _check("melt factor", self.melt_factor, 0.0, 100.0, "kg/m2 per day and degree")
+        if self.thaw is not None and self.thaw not in THAWS:
+            raise InputError(f"thaw: {self.thaw!r}; allowed: {', '.join(THAWS)}, none")
         self.ageing({})
 
     def ageing(self, pauses: Mapping[int, Sequence[Interval]]) -> Ageing:
@@ -89,6 +107,20 @@ class SeasonSettings:
     def ages(self) -> bool:
         """True if the stack settles or sinters."""
         return bool(self.settling or self.sintering)
+
+    def melt(self, temperature: float, seconds: float) -> float:
+        """Return the melt in some time at a temperature of the air, degrees C, kg/m2.
+
+        Examples
+        --------
+        >>> SeasonSettings().melt(3.0, 43200.0), SeasonSettings().melt(-3.0, 43200.0)
+        (6.0, 0.0)
+        """
+        return self.melt_factor * max(temperature, 0.0) * seconds / DAY
+
+    def is_wet(self, temperature: float) -> bool:
+        """Return whether snow on the panel is wet at a temperature of the air, degrees C."""
+        return self.thaw is not None and temperature > 0.0
 
     @property
     def settling_law(self) -> Optional[SettlingLaw]:

@@ -123,7 +123,7 @@ class SeasonPart:
 def _setting(key: str, value: object) -> object:
     """Return a setting for `SeasonSettings`; "none" switches off settings that may be None."""
     usual = getattr(SeasonSettings(), key)
-    may_be_none = key in ("settling", "sintering", "strength")
+    may_be_none = key in ("settling", "sintering", "strength", "thaw")
     if may_be_none and value == "none":
         return None
     numbers: tuple[type, ...] = (int, float) if key == "cover" or _is_number(usual) else ()

@@ -224,7 +224,14 @@ def test_the_report_says_on_which_ground_the_stack_lies(answer, cover, ground):
     result, _ = answer
     cases = [replace(case, base_settings=SeasonSettings(cover=cover)) for case in result.cases]
     texts = answer_text.assumptions(replace(result, cases=cases))
-    assert f"The stack lies on {ground}, and nobody clears it." in texts
+    assert f"The ground is level. The stack lies on {ground}, and nobody clears it." in texts
+
+
+def test_the_report_says_how_the_ground_falls(answer):
+    result, _ = answer
+    cases = [replace(case, base={"ground.tilt": 12.0}) for case in result.cases]
+    texts = " ".join(answer_text.assumptions(replace(result, cases=cases)))
+    assert "The ground falls by 12° in the slide direction." in texts
 
 
 def test_the_advice_names_the_parameter_without_its_unit(answer, monkeypatch):

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from snowshed.analysis.clearance.answer import ClearanceResult
 from snowshed.analysis.clearance.panel_design import MIN_CELLS, UNCERTAIN, SnowRanges
+from snowshed.analysis.clearance.seasons import SeasonCase
 from snowshed.analysis.clearance.statistics import (
     FIRST_PROBABILITY,
     GRID,
@@ -172,13 +173,22 @@ def assumptions(answer: ClearanceResult) -> list[str]:
         "The snow parameters are unknown, but the same in every winter. Only the weather and "
         "chance change from winter to winter.",
         "The highest snow of a winter has a generalised extreme value distribution.",
-        f"The stack lies on {_ground(case.settings)}, and nobody clears it.",
+        f"The ground {_slope(case)}. The stack lies on {_ground(case.settings)}, and nobody clears "
+        "it.",
         _settling(case.settings),
         _strength(case.settings),
+        *_thaw(case.settings),
         "Melt of the stack, rain, wind drift and snowfall on the stack (except on the cover) are "
         "left out.",
         "Winters are independent of each other: the climate does not change.",
     ]
+
+
+def _slope(case: SeasonCase) -> str:
+    tilt = float(case.base.get("ground.tilt", 0.0))
+    if tilt == 0.0:
+        return "is level"
+    return f"{'falls' if tilt > 0.0 else 'rises'} by {abs(tilt):g}° in the slide direction"
 
 
 def _ground(season: SeasonSettings) -> str:
@@ -187,6 +197,12 @@ def _ground(season: SeasonSettings) -> str:
     if season.cover in ("none", 0):
         return "bare ground"
     return f"natural snow, {season.cover:g} m deep"
+
+
+def _thaw(season: SeasonSettings) -> list[str]:
+    melt = "Snow on panel and ground melts in air warmer than 0 °C, but not in sunshine."
+    wet = f"In air warmer than 0 °C, snow does not adhere to the panel ({season.thaw})."
+    return [*([melt] if season.melt_factor else []), *([wet] if season.thaw else [])]
 
 
 def _settling(season: SeasonSettings) -> str:

@@ -73,6 +73,13 @@ UNCERTAIN: Mapping[str, UncertainParameter] = {
         default=(0.5, 2.0),
         is_factor=True,
     ),
+    "melt_factor": UncertainParameter(
+        "melt of snow on panel and ground",
+        (0.01, 100.0),
+        "mm of water per day and degree above 0 °C",
+        default=(2.0, 8.0),
+        is_factor=True,
+    ),
     "catch": UncertainParameter("share of the snowfall that the panel catches", (0.0, 1.0)),
 }
 
@@ -118,7 +125,8 @@ class SnowRanges:
     ----------
     spans
         Smallest and largest value of ``friction``, ``adhesion`` [Pa], ``sliding_friction``,
-        ``strength`` (a factor) and ``catch`` (a share); the same value twice if it is known.
+        ``strength`` (a factor), ``melt_factor`` (mm of water per day and degree above 0 degrees C)
+        and ``catch`` (a share); the same value twice if it is known.
     draws
         Number of simulations of each winter, each with other values.
     seed
@@ -188,9 +196,8 @@ class SnowRanges:
 
 def season_settings(base: SeasonSettings, values: Mapping[str, float], dx: float) -> SeasonSettings:
     """Return a season's settings with drawn values; releases thinner than 2 cells are pooled."""
-    drawn: dict[str, Any] = {
-        name: values[name] for name in ("friction", "adhesion", "catch") if name in values
-    }
+    of_season = ("friction", "adhesion", "catch", "melt_factor")
+    drawn: dict[str, Any] = {name: values[name] for name in of_season if name in values}
     return replace(base, **drawn, pool_below=max(base.pool_below, MIN_CELLS * dx))
 
 

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 SCHEMES = ("thesis", "objective")
 EXAMPLE = "example"  # this word instead of a file: synthetic winters
 #: Names of `--range` that are shorter than those in Python.
-SHORT_NAMES = {"sliding": "sliding_friction"}
+SHORT_NAMES = {"sliding": "sliding_friction", "melt": "melt_factor"}
 
 
 @click.command()
@@ -52,11 +52,18 @@ SHORT_NAMES = {"sliding": "sliding_friction"}
     "spans",
     multiple=True,
     metavar="NAME=LOW:HIGH",
-    help="Range of an uncertain parameter: friction, adhesion, sliding, strength, catch. "
+    help="Range of an uncertain parameter: friction, adhesion, sliding, strength, melt, catch. "
     "Repeatable; NAME=VALUE sets a known value.",
 )
 @click.option("--draws", type=int, default=3, show_default=True, help="Seasons for each winter.")
 @click.option("--seed", type=int, default=1, show_default=True, help="Random seed.")
+@click.option(
+    "--ground-tilt",
+    type=click.FloatRange(-60.0, 60.0, min_open=True, max_open=True),
+    default=0.0,
+    show_default=True,
+    help="Tilt of the ground; positive falls in the slide direction [degrees].",
+)
 @click.option(
     "--dx",
     type=click.FloatRange(0.005, 0.5),
@@ -90,6 +97,7 @@ def clearance(
     spans: tuple[str, ...],
     draws: int,
     seed: int,
+    ground_tilt: float,
     dx: Optional[float],
     scheme: str,
     coverage: float,
@@ -133,7 +141,11 @@ def clearance(
     options: dict[str, Any] = {
         "ranges": ranges,
         "jobs": jobs,
-        "scene": {"numerics.dx": size, "numerics.scheme": scheme},
+        "scene": {
+            "ground.tilt": ground_tilt,
+            "numerics.dx": size,
+            "numerics.scheme": scheme,
+        },
     }
     if dry_run or not quiet:
         costs = [expected_duration(design, winters, candidates, **options) for design in designs]

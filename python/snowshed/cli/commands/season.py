@@ -134,6 +134,22 @@ SETTLED_COLUMN = {"settled\nheight, m": ("settled_height_m", "{:.2f}")}
     show_default=True,
     help="Natural snow cover below the stack: weather (from the file), none, or a depth [m].",
 )
+@click.option(
+    "--melt-factor",
+    type=float,
+    default=DEFAULTS.melt_factor,
+    show_default=True,
+    help="Melt of the snow on the panel and the ground, per day and degree of the air above 0 °C "
+    "[mm of water].",
+)
+@click.option(
+    "--thaw",
+    metavar="NAME",
+    default=DEFAULTS.thaw,
+    show_default=True,
+    help="Criterion for wet snow, which does not adhere to the panel: marion-2013 (air warmer than "
+    "0 °C), or none.",
+)
 @weather_options
 @resume_flag("Resume an interrupted season.")
 @dry_run_option("Print the releases, and the cost of the slide-offs, and exit.")
@@ -152,6 +168,8 @@ def season(
     strength_age: float,
     strength: str,
     cover: str,
+    melt_factor: float,
+    thaw: str,
     coverage: float,
     snow_from: str,
     temperature: Optional[Path],
@@ -184,6 +202,8 @@ def season(
         strength_age,
         none_or(strength),
         depth_or_word(cover),
+        melt_factor=melt_factor,
+        thaw=none_or(thaw),
     )
     scene = _scene(scene_file, preset, snow_preset, options)
     reading = {"coverage": coverage, "snow_from": snow_from, "temperature": temperature}
