@@ -130,23 +130,23 @@ class PanelContact:
         return dict(CAUSES)[self.cause]
 
 
-def first_contact(table: pd.DataFrame, dx: float) -> Optional[PanelContact]:
+def first_contact(table: pd.DataFrame, gap: float) -> Optional[PanelContact]:
     """Return the first contact with the panel in a season, if any.
 
     Parameters
     ----------
     table
         As in season.csv.
-    dx
-        Size of the grid cells, m: a gap of one cell counts as none.
+    gap
+        Largest gap that counts as a contact, m, such as a cell of the grid.
     """
     import pandas as pd
 
     sunk = table["stack_height_m"] - table["settled_height_m"]
     reached = {
         "slab": table["joined"] > 0,
-        "below": table["settled_clearance_m"] <= dx,
-        "crest": table["crest_clearance_m"] + sunk <= dx,
+        "below": table["settled_clearance_m"] <= gap,
+        "crest": table["crest_clearance_m"] + sunk <= gap,
     }
     touched = pd.DataFrame(reached).to_numpy()
     rows = np.flatnonzero(touched.any(axis=1))

@@ -254,13 +254,12 @@ def test_no_measurement_is_advised_that_hardly_narrows_the_interval(answer, monk
     assert text.endswith("No measurement of the panel or the snow would narrow it by a tenth.")
 
 
-def test_slabs_and_pooling_follow_the_cells_but_the_margin_does_not(winters):
+def test_slabs_and_pooling_follow_the_cells(winters):
     values = KNOWN.draw(len(winters))
     for dx in (0.04, 0.02):
         case = cases_of(DESIGN, winters, values, SeasonSettings(), {"numerics.dx": dx})[0]
         assert case.settings.pool_below == pytest.approx(2.0 * dx)
         assert case.panel_scene(HEIGHT).data["numerics"]["dx"] == dx
-        assert case.margin == 0.1
 
 
 def test_the_height_is_split_into_cover_shed_snow_and_margin(answer):

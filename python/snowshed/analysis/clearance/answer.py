@@ -17,7 +17,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.clearance.grid_error import GridError, recorded_grid_error
-from snowshed.analysis.clearance.panel_design import PanelDesign, SnowRanges
+from snowshed.analysis.clearance.panel_design import MARGIN, PanelDesign, SnowRanges
 from snowshed.analysis.clearance.seasons import SeasonCase, SeasonOutcome, cases_of
 from snowshed.analysis.clearance.statistics import CauseShare, Level, RequiredHeights
 from snowshed.analysis.clearance.winters import Winter
@@ -171,12 +171,11 @@ class ClearanceResult:
 
     def height_parts(self, index: int) -> HeightParts:
         """Return the parts of the required height of a case."""
-        margin = self.cases[index].margin
         outcome = min(
             self.outcomes[index], key=lambda outcome: abs(outcome.height - self.required[index])
         )
-        cover = min(outcome.cover, self.required[index] - margin)
-        return HeightParts(cover, float(self.required[index]) - margin - cover, margin)
+        cover = min(outcome.cover, self.required[index] - MARGIN)
+        return HeightParts(cover, float(self.required[index]) - MARGIN - cover, MARGIN)
 
     @property
     def typical_case_index(self) -> int:

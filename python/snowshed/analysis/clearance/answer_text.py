@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from snowshed.analysis.clearance.answer import ClearanceResult
-from snowshed.analysis.clearance.panel_design import MIN_CELLS, UNCERTAIN, SnowRanges
+from snowshed.analysis.clearance.panel_design import MARGIN, MIN_CELLS, UNCERTAIN, SnowRanges
 from snowshed.analysis.clearance.seasons import SeasonCase
 from snowshed.analysis.clearance.statistics import (
     FIRST_PROBABILITY,
@@ -77,7 +77,7 @@ def panel_name(answer: ClearanceResult) -> str:
 def cause_label(cause: str, answer: ClearanceResult) -> str:
     """Return the label of a cause of uncertainty."""
     if cause == WINTERS:
-        return f"the number of winters ({len(answer.winters)})"
+        return f"the record of {plural(len(answer.winters), 'winter')}"
     return "the grid" if cause == GRID else f"the {UNCERTAIN[cause].name}"
 
 
@@ -169,7 +169,7 @@ def assumptions(answer: ClearanceResult) -> list[str]:
         "The panel is long across the slope: the simulation is of a strip (2D).",
         f"Grid cells are {100 * case.dx:.3g} cm wide. Releases thinner than {MIN_CELLS:g} cells, "
         f"{1000 * case.settings.pool_below:.0f} mm, slide with those that follow.",
-        f"The edge keeps a distance of {100 * case.margin:.0f} cm from the snow.",
+        f"The edge keeps a distance of {100 * MARGIN:.0f} cm from the snow.",
         "The snow parameters are unknown, but the same in every winter. Only the weather and "
         "chance change from winter to winter.",
         "The highest snow of a winter has a generalised extreme value distribution.",

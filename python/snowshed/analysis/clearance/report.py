@@ -223,13 +223,13 @@ def _years(buried: float) -> str:
 
 def _worst(answer: ClearanceResult) -> str:
     case, outcomes = answer.cases[answer.worst_case_index], answer.outcomes[answer.worst_case_index]
-    first = next((outcome for outcome in outcomes if outcome.contact), None)
+    last = next((outcome for outcome in reversed(outcomes) if outcome.contact), None)
     snowfall = f"{case.winter.name}: {case.winter.snowfall:.1f} m of new snow in all. "
-    if first is None or first.contact is None:
+    if last is None or last.contact is None:
         return f"{snowfall}Its snow reaches none of the heights."
-    contact = first.contact
+    contact = last.contact
     return (
-        f"{snowfall}At {first.height:g} m, {contact.text} on {contact.date[:10]}; an edge at "
+        f"{snowfall}At {last.height:g} m, {contact.text} on {contact.date[:10]}; an edge at "
         f"{answer.required[answer.worst_case_index]:.2f} m would have stayed clear."
     )
 

@@ -85,11 +85,6 @@ class SeasonCase:
         """Size of the grid cells, m."""
         return float(self.base.get("numerics.dx", self.design.default_dx))
 
-    @property
-    def margin(self) -> float:
-        """Distance that the edge must keep from the highest snow, m."""
-        return max(MARGIN, self.dx)
-
     @cached_property
     def settings(self) -> SeasonSettings:
         """The settings of the season."""
@@ -130,9 +125,9 @@ class SeasonCase:
         table = season_table(
             self.panel_scene(height).data, self.days, self.settings, events, outlines
         )
-        contact = first_contact(table, self.margin)
+        contact = first_contact(table, MARGIN)
         distance = table["crest_clearance_m"] + table["stack_height_m"] - table["settled_height_m"]
-        margin = float(distance.min()) - self.margin
+        margin = float(distance.min()) - MARGIN
         cover = float(table["cover_m"].iloc[int(distance.argmin())])
         return SeasonOutcome(height, min(margin, 0.0) if contact else margin, contact, cover)
 
