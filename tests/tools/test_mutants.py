@@ -3,6 +3,7 @@
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 
 import pytest
 from helpers.paths import ROOT
@@ -90,6 +91,13 @@ def test_old_text_must_occur_once(tmp_path, text, message):
     (tmp_path / "sum.py").write_text(text, encoding="utf-8")
     with pytest.raises(FaultError, match=message):
         check_places([fault()], tmp_path)
+
+
+def test_a_switch_is_a_whole_expression(tmp_path):
+    (tmp_path / "sum.cpp").write_text("x = sums::add(a);", encoding="utf-8")
+    part = replace(fault(), file="sum.cpp", old="add(a)", new="add(b)", switch=True)
+    with pytest.raises(FaultError, match="the text before the old text belongs to it"):
+        check_places([part], tmp_path)
 
 
 def test_the_file_must_exist(tmp_path):

@@ -92,12 +92,18 @@ def read_faults(folder: Path = FOLDER) -> list[Fault]:
 
 
 def check_places(faults: Sequence[Fault], root: Path) -> None:
-    """Raise FaultError unless the old text of every fault occurs once in its source."""
+    """Raise FaultError unless the old text of every fault occurs once in its source.
+
+    The old text of a switch must be an expression: with the name of its namespace or object.
+    """
     for fault in faults:
         path = root / fault.file
         if not path.is_file():
             raise FaultError(f"{fault.name}: there is no file {fault.file}")
-        fault.place(path.read_text(encoding="utf-8"))
+        text = path.read_text(encoding="utf-8")
+        start, _ = fault.place(text)
+        if fault.switch and text[:start].endswith(("::", ".", "->")):
+            raise FaultError(f"{fault.name}: the text before the old text belongs to it")
 
 
 def _faults_of(path: Path) -> Iterator[Fault]:
