@@ -125,7 +125,8 @@ def snow_of_density(base: Mapping[str, Any], density: float, strength: Optional[
     >>> round(new.preconsolidation_pressure / base["preconsolidation_pressure"], 3)  # 2^-2.44
     0.184
     """
-    snow = Snow(density=density)
+    snow = Snow(density=density, youngs_modulus=base["youngs_modulus"])
+    snow.preconsolidation_pressure = base["preconsolidation_pressure"]
     if strength is None:
         return snow
     own = float(base["density"])

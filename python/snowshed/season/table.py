@@ -13,6 +13,7 @@ from snowshed.season.accumulation import WinterDay
 from snowshed.season.cover import natural_cover
 from snowshed.season.panel_contact import below_panel, clearance
 from snowshed.season.settings import SeasonSettings
+from snowshed.season.slabs import cover_below_slides
 from snowshed.season.stack_settling import SettlingStack
 
 if TYPE_CHECKING:
@@ -33,17 +34,19 @@ def season_table(
     Parameters
     ----------
     scene
-        The complete scene, with a panel.
+        The complete scene, with the panel at its height above the ground.
     days
         From `accumulate`.
     settings
-        The settings of settling.
+        The settings of settling and the cover.
     events, outlines
         The tables of the slide-offs, as in events.csv and outline.csv.
     """
     import pandas as pd
 
-    stack = _Stack(scene, settings, events, outlines)
+    below = cover_below_slides(scene, days, settings)
+    lowered = {**scene, "panel": {**scene["panel"], "height": scene["panel"]["height"] - below}}
+    stack = _Stack(lowered, below, settings, events, outlines)
     rows = []
     cover = natural_cover([day.weather for day in days], settings, scene["gravity"])
     for day, earlier, depth in zip(days, [None, *days], cover):
@@ -75,16 +78,20 @@ def _panel_columns(day: WinterDay) -> dict[str, Any]:
 
 
 class _Stack:
-    """The stack after the last event."""
+    """The stack after the last event.
+
+    The scene is that of the slide-offs: its ground is the cover `below` them, m deep.
+    """
 
     def __init__(
         self,
         scene: Mapping[str, Any],
+        below: float,
         settings: SeasonSettings,
         events: pd.DataFrame,
         outlines: pd.DataFrame,
     ) -> None:
-        self.scene = scene
+        self.scene, self.below = scene, below
         self.events = {int(row["event"]): row for row in events.to_dict("records")}
         self.outlines = outlines
         self.settling = SettlingStack(settings.settling_law, scene["gravity"])
@@ -105,9 +112,10 @@ class _Stack:
 
     def columns(self, cover: float) -> dict[str, float]:
         """Return the table's columns on the stack, above a cover of the depth `cover`, m."""
+        higher = cover - self.below
         ratio = self.settling.ratio
-        now = clearance(self.scene, self.outline, self.height, cover)
-        settled = clearance(self.scene, self.outline * [1.0, ratio], ratio * self.height, cover)
+        now = clearance(self.scene, self.outline, self.height, higher)
+        settled = clearance(self.scene, self.outline * [1.0, ratio], ratio * self.height, higher)
         return {
             "stack_height_m": self.height,
             "stack_length_m": self.length,

@@ -195,8 +195,8 @@ def test_the_error_of_the_grid_follows_from_the_scheme(answer, winters):
     ):
         cases = [replace(case, base=base) for case in result.cases]
         warning = answer_text.warnings([replace(result, cases=cases)])[0]
-        assert warning.startswith("the intervals contain an error of the grid: ±")
-        assert f"of the height of shed snow: {text}" in warning
+        assert warning.startswith("the intervals contain the error of the grid, a factor of up to ")
+        assert f"on the height of shed snow: {text}" in warning
 
 
 def test_disabled_relations_are_stated(answer):
@@ -343,7 +343,7 @@ def test_the_answer_states_how_many_winters_count(tmp_path, capsys):
     assert main([*command, *ranges, "--heights", "0.5,2", "-o", str(out)]) == 0
     shown = " ".join(capsys.readouterr().out.split())
     assert "a scenario, not a statistic, because only 1 of 3 winters counts. In it, the" in shown
-    assert "the intervals contain an error of the grid: ±35 % of the height of shed snow" in shown
+    assert "the intervals contain the error of the grid, a factor of up to 1.35 on the" in shown
     assert "left out are the winters" in shown and "2001/02 to 2002/03 (0 %)" in shown
     assert "Where the snow comes from" in shown and "new snow" in shown
     summary = json.loads((out / "clearance.json").read_text())

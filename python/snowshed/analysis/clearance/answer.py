@@ -36,6 +36,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 STUDY = "clearance"
+#: Snow up to this depth counts as none, m.
+FLAT = 0.01
 
 height_key = attrgetter("height")
 
@@ -116,11 +118,15 @@ class ClearanceResult:
             self.ranges.positions([case.values for case in self.cases]),
             self.grid_error.size,
             self.shed_part,
+            MARGIN + FLAT,
         )
 
     @property
     def levels(self) -> list[Level]:
-        """The heights that stay clear in 50, 90 and 98 % of winters; none of a single winter."""
+        """The heights that stay clear in 50, 90 and 98 % of winters.
+
+        The list is empty if fewer than two winters have snow.
+        """
         return self.heights_by_probability.levels
 
     def at(self, probability: float) -> Level:
@@ -129,17 +135,23 @@ class ClearanceResult:
         Raises
         ------
         InputError
-            If the probability is none of these, or only one winter counts.
+            If the probability is none of these, or fewer than two winters have snow.
         """
         levels = {level.probability: level for level in self.levels}
         if not levels:
             raise InputError(
-                "one winter has no probabilities; its height is ClearanceResult.highest"
+                "probabilities need two winters with snow below the panel or more; here: "
+                f"{self.snowy_winters}. ClearanceResult.highest is the height of the worst winter"
             )
         if probability not in levels:
             allowed = ", ".join(f"{value:g}" for value in levels)
             raise InputError(f"probability: {probability:g}; allowed: {allowed}")
         return levels[probability]
+
+    @property
+    def snowy_winters(self) -> int:
+        """Number of winters with snow below the panel."""
+        return self.heights_by_probability.snowy_winters
 
     @property
     def highest(self) -> tuple[float, float, float]:
@@ -148,7 +160,7 @@ class ClearanceResult:
 
     @property
     def shares(self) -> list[CauseShare]:
-        """Causes of the width of the interval for 90 % of winters, the largest first."""
+        """Causes of the width of the interval in the answer's sentence, the largest first."""
         return self.heights_by_probability.shares
 
     @property
@@ -162,11 +174,11 @@ class ClearanceResult:
         Raises
         ------
         InputError
-            If only one winter counts.
+            If fewer than two winters have snow.
         """
         burial = self.heights_by_probability.burial(height)
         if burial is None:
-            raise InputError("one winter has no probability of burial")
+            raise InputError("fewer than two winters have snow: there is no probability of burial")
         return burial[0]
 
     def height_parts(self, index: int) -> HeightParts:
@@ -174,7 +186,7 @@ class ClearanceResult:
         outcome = min(
             self.outcomes[index], key=lambda outcome: abs(outcome.height - self.required[index])
         )
-        cover = min(outcome.cover, self.required[index] - MARGIN)
+        cover = max(min(outcome.cover, self.required[index] - MARGIN), 0.0)
         return HeightParts(cover, float(self.required[index]) - MARGIN - cover, MARGIN)
 
     @property
@@ -188,7 +200,9 @@ class ClearanceResult:
         number = len(self.winters)
         if self.winter_list is None or len(self.winter_list.winters) == number:
             return plural(number, "winter")
-        return self.winter_list.counted_text
+        if len(self.winter_list.counted) == number:
+            return self.winter_list.counted_text
+        return f"{number} of {plural(len(self.winter_list.winters), 'winter')}"
 
     def table(self) -> pd.DataFrame:
         """Return one row per case and simulated height."""
@@ -308,7 +322,7 @@ def required_clearance(
         [sorted(search.outcomes[number], key=height_key) for number in complete],
         ranges,
         len(cases) - len(complete),
-        [winter.name for winter in winters],
+        list(dict.fromkeys(cases[number].winter.name for number in complete)),
         winter_list,
     )
 

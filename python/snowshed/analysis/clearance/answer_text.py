@@ -8,6 +8,7 @@ from snowshed.analysis.clearance.answer import ClearanceResult
 from snowshed.analysis.clearance.panel_design import MARGIN, MIN_CELLS, UNCERTAIN, SnowRanges
 from snowshed.analysis.clearance.seasons import SeasonCase
 from snowshed.analysis.clearance.statistics import (
+    CHANCE,
     FIRST_PROBABILITY,
     GRID,
     STATISTIC_WINTERS,
@@ -32,17 +33,20 @@ def first_level(answer: ClearanceResult) -> Level:
 
 def sentence(answers: Sequence[ClearanceResult]) -> str:
     """Return the answer for all panels in one or two sentences."""
-    winters = len(answers[0].winters)
-    if winters < STATISTIC_WINTERS:
-        worst = "In it" if winters == 1 else "In the worst of them"
+    heights, winters = _heights(answers), answers[0].winters_text
+    fewest = min(answer.snowy_winters for answer in answers)
+    if fewest >= STATISTIC_WINTERS:
         return (
-            f"This is a scenario, not a statistic, because only {answers[0].winters_text} "
-            f"{'counts' if winters == 1 else 'count'}. {worst}, the lower edge had to be at least "
-            f"{_heights(answers)} above the ground to stay clear of shed snow."
+            "To stay clear of shed snow in 9 of 10 winters, the lower edge must be at least "
+            f"{heights}. The answer is from {winters}."
         )
+    snow = "counts" if len(answers[0].winters) == 1 else "count"
+    if fewest < len(answers[0].winters):
+        winters, snow = plural(fewest, "winter"), "has snow" if fewest == 1 else "have snow"
+    worst = "In the worst winter" if len(answers[0].winters) > 1 else "In it"
     return (
-        f"To stay clear of shed snow in 9 of 10 winters, the lower edge must be at least "
-        f"{_heights(answers)} above the ground. The answer is from {answers[0].winters_text}."
+        f"This is a scenario, not a statistic, because only {winters} {snow}. {worst}, the lower "
+        f"edge had to be at least {heights} to stay clear of shed snow."
     )
 
 
@@ -52,18 +56,20 @@ def _heights(answers: Sequence[ClearanceResult]) -> str:
         return _height(answers[0])
     if len(answers) > MAX_LISTED:
         heights = [_numbers(answer)[0] for answer in answers]
-        return f"{min(heights):.1f} to {max(heights):.1f} m, depending on the panel,"
+        return (
+            f"{min(heights):.1f} to {max(heights):.1f} m above the ground, depending on the panel"
+        )
     texts = [f"{_height(answer)} for the panel of {panel_name(answer)}" for answer in answers]
     return ", ".join(texts[:-1]) + f" and {texts[-1]}"
 
 
 def _height(answer: ClearanceResult) -> str:
     height, low, high = _numbers(answer)
-    return f"{height:.1f} m (90 % interval {low:.1f} to {high:.1f} m)"
+    return f"{height:.1f} m above the ground (90 % interval {low:.1f} to {high:.1f} m)"
 
 
 def _numbers(answer: ClearanceResult) -> tuple[float, float, float]:
-    if len(answer.winters) < STATISTIC_WINTERS:
+    if not answer.heights_by_probability.is_statistic:
         return answer.highest
     level = first_level(answer)
     return level.height, level.low, level.high
@@ -78,6 +84,8 @@ def cause_label(cause: str, answer: ClearanceResult) -> str:
     """Return the label of a cause of uncertainty."""
     if cause == WINTERS:
         return f"the record of {plural(len(answer.winters), 'winter')}"
+    if cause == CHANCE:
+        return "chance, by which seasons of one winter differ"
     return "the grid" if cause == GRID else f"the {UNCERTAIN[cause].name}"
 
 
@@ -85,7 +93,7 @@ def interval_reasons(answer: ClearanceResult) -> str:
     """Return why the interval is as wide as it is, and what would narrow it."""
     shares = answer.shares
     if not shares:
-        return "Nothing is uncertain in this answer but its assumptions."
+        return "All parameters are known; only the assumptions are uncertain."
     largest = [share for share in shares if share.part >= 0.05] or shares[:1]
     texts = [f"{cause_label(s.cause, answer)} ({100 * s.part:.0f} %)" for s in largest]
     listed = ", ".join(texts[:-1]) + f" and {texts[-1]}" if len(texts) > 1 else texts[0]
@@ -104,7 +112,9 @@ def _narrowing(answer: ClearanceResult) -> str:
     sentences = [
         f"Measuring the {UNCERTAIN[share.cause].name} would narrow it to {_span(share)}."
         for share in measurable[:1]
-    ] or ["No measurement of the panel or the snow would narrow it by a tenth."]
+    ]
+    if not sentences and answer.heights_by_probability.separable:
+        sentences = ["No measurement of the panel or the snow would narrow it by a tenth."]
     others = {share.cause: share for share in helpful}
     if WINTERS in others:
         sentences.append(f"Many more winters would narrow it to {_span(others[WINTERS])}.")
@@ -122,6 +132,13 @@ def warnings(answers: Sequence[ClearanceResult]) -> list[str]:
     notes = [*_excluded_winters(answers[0]), _grid_error(answers[0])]
     for answer in answers:
         name = panel_name(answer)
+        reached = sum(outcomes[-1].contact is not None for outcomes in answer.outcomes)
+        if reached:
+            notes.append(
+                f"{name}: {plural(reached, 'season')} {'reaches' if reached == 1 else 'reach'} the "
+                f"highest candidate, {answer.heights[-1]:g} m, so the heights are estimates; "
+                "give higher --heights"
+            )
         for level in answer.levels:
             percentage = f"{100 * level.probability:g} %"
             if level.height > answer.heights[-1]:
@@ -159,7 +176,7 @@ def _excluded_winters(answer: ClearanceResult) -> list[str]:
 
 
 def _grid_error(answer: ClearanceResult) -> str:
-    return f"the intervals contain an error of the grid: {answer.grid_error.text}"
+    return f"the intervals contain the error of the grid, {answer.grid_error.text}"
 
 
 def assumptions(answer: ClearanceResult) -> list[str]:

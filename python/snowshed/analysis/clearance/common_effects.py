@@ -16,7 +16,7 @@ import numpy as np
 from snowshed.base.arrays import Floats
 
 #: Fewest seasons beyond the number of fitted values for which effects are fitted.
-MIN_FREE = 3
+MIN_FREE = 8
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class CommonEffects:
         """
         if not self.names:
             return {}
-        slopes = random.multivariate_normal(self.slopes, self.covariance, count)
+        slopes = random.multivariate_normal(self.slopes, self.covariance, count, method="eigh")
         positions = random.random(slopes.shape) - 0.5
         return dict(zip(self.names, (slopes * positions).T))
 
@@ -73,7 +73,7 @@ def common_effects(
     required, winters : (n,)
         Required height of each season, m, and the number of its winter.
     positions : of (n,)
-        Position of each property in its range, from -0.5 to 0.5; constant if it is known.
+        Position of each uncertain property in its range, from -0.5 to 0.5.
 
     Returns
     -------
@@ -82,8 +82,8 @@ def common_effects(
 
     Examples
     --------
-    >>> winters = np.repeat(np.arange(4.0), 3)
-    >>> adhesion = np.linspace(-0.5, 0.5, 12)[[0, 5, 9, 1, 4, 11, 2, 7, 8, 3, 6, 10]]
+    >>> winters = np.repeat(np.arange(6.0), 3)
+    >>> adhesion = np.linspace(-0.5, 0.5, 18)[7 * np.arange(18) % 18]
     >>> effects = common_effects((1 + winters) * np.exp(0.2 * adhesion), winters,
     ...                          {"adhesion": adhesion})
     >>> effects.slopes.round(3)
@@ -91,7 +91,7 @@ def common_effects(
     """
     from scipy.optimize import least_squares
 
-    uncertain = [name for name, values in positions.items() if np.ptp(values) > 0.0]
+    uncertain = list(positions)
     names, numbers = np.unique(winters, return_inverse=True)
     free = len(required) - len(names) - len(uncertain)
     if not uncertain:

@@ -10,6 +10,7 @@ shape has a normal prior, wide enough for the shapes of yearly maxima of snow.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Union
 
 import numpy as np
 
@@ -21,8 +22,8 @@ SHAPE_MEAN, SHAPE_DEVIATION = 0.05, 0.25
 #: Shapes of the grid on which the posterior is evaluated.
 SHAPES = np.linspace(-0.5, 0.6, 12)
 POINTS = 40  # of the grid for the location, and for the scale
-#: Smallest scale, m: heights are not known to a millimetre.
-MIN_SCALE = 1e-3
+#: Smallest scale of the grid, relative to the centre: seasons of one winter differ by more.
+MIN_SCALE = 0.03
 
 
 @dataclass(frozen=True)
@@ -64,7 +65,7 @@ class ExtremeValues:
         # Half the mean difference of two winters (the second L-moment) is 0.69 scales (Gumbel).
         weights = 2.0 * np.arange(winters) - winters + 1.0
         moment = float(ordered @ weights) / (winters * (winters - 1))
-        unit = max(moment / np.log(2.0), MIN_SCALE)
+        unit = max(moment / np.log(2.0), MIN_SCALE * abs(centre), 1e-6)
         width = 1.0 / np.sqrt(winters)
         # The grid has the median less the centre, in scales, and the logarithm of the scale.
         medians = np.linspace(-8.0 * width, 8.0 * width, POINTS)
@@ -81,7 +82,7 @@ class ExtremeValues:
         shape = SHAPES[xi]
         return cls(median - scale * standard_quantile(0.5, shape), scale, shape)
 
-    def quantile(self, probability: float) -> Floats:
+    def quantile(self, probability: Union[float, Floats]) -> Floats:
         """Return the value that a winter stays below with a probability, of each distribution."""
         return self.location + self.scale * standard_quantile(probability, self.shape)
 
@@ -104,7 +105,7 @@ class ExtremeValues:
         return np.asarray(-np.expm1(-rate))
 
 
-def standard_quantile(probability: float, shape: Floats) -> Floats:
+def standard_quantile(probability: Union[float, Floats], shape: Floats) -> Floats:
     """Return quantiles of extreme value distributions with location 0 and scale 1.
 
     Examples

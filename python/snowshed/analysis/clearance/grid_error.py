@@ -35,7 +35,7 @@ class GridError:
     @property
     def text(self) -> str:
         """The error with its source, as a clause."""
-        return f"±{100 * self.size:.0f} % of the height of shed snow: {self.source}"
+        return f"a factor of up to {1.0 + self.size:.2f} on the height of shed snow: {self.source}"
 
 
 def recorded_grid_error(scene: Mapping[str, Any]) -> GridError:

@@ -10,6 +10,7 @@ from typing import Any, Optional
 import numpy as np
 
 from snowshed._core import InputError
+from snowshed.analysis.clearance.common_effects import MIN_FREE
 from snowshed.base.arrays import Floats
 from snowshed.scene.components import Ground, Panel, Slab
 from snowshed.scene.scene import ResolvedScene, Scene
@@ -17,6 +18,7 @@ from snowshed.season.settings import SeasonSettings
 
 MIN_CELL, MAX_CELL = 0.04, 0.1  # m
 CELLS = 60  # cells along the slope
+USUAL_DRAWS = 3
 #: Fewest cells across a slab; thinner releases slide with those that follow.
 MIN_CELLS = 2.0
 #: Distance that an edge keeps from the highest snow, m. It does not depend on the grid.
@@ -27,7 +29,7 @@ Span = tuple[float, float]
 
 @dataclass(frozen=True)
 class UncertainParameter:
-    """A property of the snow that varies from winter to winter, or is not known.
+    """A property of the snow that is not known, but the same in every winter.
 
     Attributes
     ----------
@@ -128,7 +130,8 @@ class SnowRanges:
         ``strength`` (a factor), ``melt_factor`` (mm of water per day and degree above 0 degrees C)
         and ``catch`` (a share); the same value twice if it is known.
     draws
-        Number of simulations of each winter, each with other values.
+        Number of simulations of each winter, each with other values. [default: 3, and more if
+        there are fewer than seven winters]
     seed
         Random seed of the values.
 
@@ -140,11 +143,11 @@ class SnowRanges:
     """
 
     spans: Mapping[str, Span] = field(default_factory=default_ranges)
-    draws: int = 3
+    draws: Optional[int] = None
     seed: int = 1
 
     def __post_init__(self) -> None:
-        if not 1 <= self.draws <= 1000:
+        if self.draws is not None and not 1 <= self.draws <= 1000:
             raise InputError(f"draws: {self.draws}; allowed: 1 to 1000")
         for name, (low, high) in self.spans.items():
             if name not in UNCERTAIN:
@@ -156,13 +159,25 @@ class SnowRanges:
                     f"first, from {least:g} to {most:g}"
                 )
 
+    def draws_of(self, winters: int) -> int:
+        """Return the number of simulations of each winter.
+
+        Examples
+        --------
+        >>> SnowRanges().draws_of(10), SnowRanges().draws_of(1), SnowRanges(draws=2).draws_of(1)
+        (3, 14, 2)
+        """
+        uncertain = sum(low < high for low, high in self.spans.values())
+        needed = 1 + math.ceil((uncertain + MIN_FREE) / winters)
+        return self.draws or max(USUAL_DRAWS, needed if uncertain else 1)
+
     def draw(self, winters: int) -> list[dict[str, float]]:
         """Return the values for all draws of each winter, winter after winter.
 
         They are a Latin hypercube over all runs (McKay et al. 1979), so that few runs cover the
         ranges evenly.
         """
-        count = winters * self.draws
+        count = winters * self.draws_of(winters)
         random = np.random.default_rng(self.seed)
         values: list[dict[str, float]] = [{} for _ in range(count)]
         for name, (low, high) in sorted(self.spans.items()):
@@ -177,6 +192,8 @@ class SnowRanges:
     def positions(self, values: Sequence[Mapping[str, float]]) -> dict[str, Floats]:
         """Return the position of drawn values in their ranges, from -0.5 to 0.5, by name.
 
+        Known values are left out.
+
         Examples
         --------
         >>> SnowRanges({"strength": (0.5, 2.0)}).positions([{"strength": 1.0}])
@@ -186,8 +203,8 @@ class SnowRanges:
         for name, (low, high) in self.spans.items():
             drawn = np.array([value[name] for value in values])
             if not low < high:
-                positions[name] = np.zeros(len(drawn))
-            elif UNCERTAIN[name].is_factor:
+                continue
+            if UNCERTAIN[name].is_factor:
                 positions[name] = np.log(drawn / low) / np.log(high / low) - 0.5
             else:
                 positions[name] = (drawn - low) / (high - low) - 0.5

@@ -51,14 +51,14 @@ def write_report(
     table = pd.concat([answer.table() for answer in answers], ignore_index=True)
     write_csv(table, folder / "clearance.csv", float_format="%.6g")
     data = summary(answers, ranges, notes)
-    write_text(folder / "clearance.json", json.dumps(data, indent=2) + "\n")
+    write_text(folder / "clearance.json", json.dumps(data, indent=2, allow_nan=False) + "\n")
     page = template("snowshed.plot", "clearance.html.j2").render(
         title="How high must the lower edge be?",
         sentence=answer_text.sentence(answers),
         warnings=answer_text.warnings(answers),
         panels=[_panel(answer, folder) for answer in answers],
         designs=_design_grid(answers) if len(answers) > 1 else None,
-        chart=_chart(answers) if len(answers) > 1 and answers[0].levels else None,
+        chart=_chart(answers) if len(answers) > 1 and all(a.levels for a in answers) else None,
         winter_table=_winter_table(answers[0]),
         notes=notes,
         ranges=HtmlTable(
@@ -81,12 +81,13 @@ def summary(
         "coverage": None if record is None else record.coverage,
         "winters_of_the_file": [] if record is None else record.data(),
         "ranges": {name: list(span) for name, span in ranges.spans.items()},
-        "draws": ranges.draws,
+        "draws": ranges.draws_of(len(answers[0].winters)),
         "panels": [
             {
                 **vars(answer.design),
                 "dx": answer.cases[0].dx,
                 "winters": list(answer.winters),
+                "confidence": answer.heights_by_probability.confidence,
                 "levels": [vars(level) for level in answer.levels],
                 "worst_winter": dict(zip(("height", "low", "high"), answer.highest)),
                 "heights": _burials(answer),

@@ -122,9 +122,8 @@ class SeasonCase:
         import pandas as pd
 
         outlines = pd.DataFrame({"event": [], "x": [], "z": []})
-        table = season_table(
-            self.panel_scene(height).data, self.days, self.settings, events, outlines
-        )
+        scene = self.panel_scene(height).data
+        table = season_table(scene, self.days, self.settings, events, outlines)
         contact = first_contact(table, MARGIN)
         distance = table["crest_clearance_m"] + table["stack_height_m"] - table["settled_height_m"]
         margin = float(distance.min()) - MARGIN

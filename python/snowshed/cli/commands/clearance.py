@@ -55,7 +55,11 @@ SHORT_NAMES = {"sliding": "sliding_friction", "melt": "melt_factor"}
     help="Range of an uncertain parameter: friction, adhesion, sliding, strength, melt, catch. "
     "Repeatable; NAME=VALUE sets a known value.",
 )
-@click.option("--draws", type=int, default=3, show_default=True, help="Seasons for each winter.")
+@click.option(
+    "--draws",
+    type=int,
+    help="Seasons for each winter.  [default: 3, and more if there are fewer than seven winters]",
+)
 @click.option("--seed", type=int, default=1, show_default=True, help="Random seed.")
 @click.option(
     "--ground-tilt",
@@ -66,7 +70,7 @@ SHORT_NAMES = {"sliding": "sliding_friction", "melt": "melt_factor"}
 )
 @click.option(
     "--dx",
-    type=click.FloatRange(0.005, 0.5),
+    type=click.FloatRange(0.005, 0.2),
     help="Size of the grid cells [m]. Releases thinner than two cells slide with those that "
     "follow.  [default: 1/60 of the shortest slope length, 0.04 to 0.1]",
 )
@@ -75,7 +79,7 @@ SHORT_NAMES = {"sliding": "sliding_friction", "melt": "melt_factor"}
     type=click.Choice(SCHEMES),
     default=SCHEMES[0],
     show_default=True,
-    help="Numerical scheme. The error of the grid in the interval follows from it.",
+    help="Numerical scheme. The interval contains its recorded error of the grid, whatever --dx.",
 )
 @weather_options
 @jobs_option("Processes")
@@ -95,7 +99,7 @@ def clearance(
     tilt: str,
     heights: str,
     spans: tuple[str, ...],
-    draws: int,
+    draws: Optional[int],
     seed: int,
     ground_tilt: float,
     dx: Optional[float],
