@@ -54,9 +54,9 @@ void add_files(const ShapeSpec& shape, std::vector<std::string>& files) {
 
 /// Returns a positive number of a snow, or what it is unless given; wrong values are refused later.
 double given_or(const nlohmann::json& snow, const char* key, double usual) {
-  const auto found = snow.find(key);
-  if (found == snow.end() || !found->is_number()) return usual;
-  const double value = found->get<double>();
+  const auto entry = snow.find(key);
+  if (entry == snow.end() || !entry->is_number()) return usual;
+  const double value = entry->get<double>();
   return value > 0 ? value : usual;
 }
 

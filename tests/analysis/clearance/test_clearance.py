@@ -245,6 +245,14 @@ def test_the_advice_names_the_parameter_without_its_unit(answer, monkeypatch):
     assert rows == [("adhesion of snow to the panel, Pa", "0", "150")]
 
 
+def test_the_sentence_rounds_the_height_up(answer, monkeypatch):
+    result, _ = answer
+    monkeypatch.setattr(type(result), "highest", (2.04, 1.66, 2.71))
+    assert "at least 2.1 m above the ground (90 % interval 1.7 to 2.8 m)" in answer_text.sentence(
+        [result]
+    )
+
+
 def test_no_measurement_is_advised_that_hardly_narrows_the_interval(answer, monkeypatch):
     result, _ = answer
     low, high = result.highest[1:]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from snowshed.analysis.clearance.answer import ClearanceResult
@@ -57,7 +58,8 @@ def _heights(answers: Sequence[ClearanceResult]) -> str:
     if len(answers) > MAX_LISTED:
         heights = [_numbers(answer)[0] for answer in answers]
         return (
-            f"{min(heights):.1f} to {max(heights):.1f} m above the ground, depending on the panel"
+            f"{_up(min(heights)):.1f} to {_up(max(heights)):.1f} m above the ground, depending on "
+            "the panel"
         )
     texts = [f"{_height(answer)} for the panel of {panel_name(answer)}" for answer in answers]
     return ", ".join(texts[:-1]) + f" and {texts[-1]}"
@@ -65,7 +67,12 @@ def _heights(answers: Sequence[ClearanceResult]) -> str:
 
 def _height(answer: ClearanceResult) -> str:
     height, low, high = _numbers(answer)
-    return f"{height:.1f} m above the ground (90 % interval {low:.1f} to {high:.1f} m)"
+    return f"{_up(height):.1f} m above the ground (90 % interval {low:.1f} to {_up(high):.1f} m)"
+
+
+def _up(height: float) -> float:
+    """Return a height, m, rounded up to 10 cm, because a lower edge would not be clear."""
+    return math.ceil(10.0 * height - 1e-9) / 10.0
 
 
 def _numbers(answer: ClearanceResult) -> tuple[float, float, float]:
