@@ -1,6 +1,11 @@
 from .answer import ClearanceResult as ClearanceResult
+from .answer import HeightParts as HeightParts
 from .answer import required_clearance as required_clearance
+from .grid_error import GridError as GridError
 from .panel_design import PanelDesign as PanelDesign
 from .panel_design import SnowRanges as SnowRanges
+from .statistics import CauseShare as CauseShare
+from .statistics import Level as Level
+from .statistics import RequiredHeights as RequiredHeights
 from .winters import Winter as Winter
 from .winters import split_winters as split_winters
