@@ -253,6 +253,28 @@ def test_the_sentence_rounds_the_height_up(answer, monkeypatch):
     )
 
 
+def test_warnings_that_concern_all_panels_are_given_once(answer):
+    result, _ = answer
+    alone = answer_text.warnings([result])
+    both = answer_text.warnings([result, replace(result, design=PanelDesign(0.8, 50.0))])
+    extrapolated = "98 % is extrapolated: a return period of 50 years from 3 winters"
+    assert f"0.6 m at 60°: {extrapolated}" in alone and extrapolated in both
+    assert len(both) == len(alone)
+
+
+def test_many_panels_are_not_listed_in_the_sentence(answer):
+    result, _ = answer
+    panels = [replace(result, design=PanelDesign(length, 50.0)) for length in (0.6, 0.7, 0.8)]
+    assert "m above the ground, depending on the panel" in answer_text.sentence(panels)
+    assert "for the panel of 0.6 m at 50° and " in answer_text.sentence(panels[:2])
+
+
+def test_the_typical_winter_is_not_the_worst(answer):
+    result, _ = answer
+    cases = result.cases
+    assert cases[result.typical_case_index].winter != cases[result.worst_case_index].winter
+
+
 def test_no_measurement_is_advised_that_hardly_narrows_the_interval(answer, monkeypatch):
     result, _ = answer
     low, high = result.highest[1:]

@@ -191,8 +191,11 @@ class ClearanceResult:
 
     @property
     def typical_case_index(self) -> int:
-        """Index of the case whose required height is nearest to the median."""
-        return int(np.argmin(np.abs(self.required - np.median(self.required))))
+        """Index of the case nearest to the median, in another winter than the worst case."""
+        worst = self.cases[self.worst_case_index].winter.name
+        distances = np.abs(self.required - np.median(self.required))
+        in_worst = np.array([case.winter.name == worst for case in self.cases])
+        return int(np.argmin(np.where(in_worst, np.inf, distances)))
 
     @property
     def winters_text(self) -> str:

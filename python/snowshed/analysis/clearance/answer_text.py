@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from snowshed.analysis.clearance.answer import ClearanceResult
 from snowshed.analysis.clearance.panel_design import MARGIN, MIN_CELLS, UNCERTAIN, SnowRanges
@@ -22,7 +22,7 @@ from snowshed.season.settings import SeasonSettings
 from snowshed.season.weather.season_record import whole_percent
 
 #: Most panels that the first sentence lists.
-MAX_LISTED = 4
+MAX_LISTED = 2
 #: A cause is worth removing if the interval becomes narrower by this share.
 WORTHWHILE = 0.1
 
@@ -135,39 +135,48 @@ def _span(share: CauseShare) -> str:
 
 
 def warnings(answers: Sequence[ClearanceResult]) -> list[str]:
-    """Return warnings that the answer is extrapolated or incomplete."""
-    notes = [*_excluded_winters(answers[0]), _grid_error(answers[0])]
+    """Return warnings that the answer is extrapolated or incomplete, each once."""
+    panels: dict[str, list[str]] = {}
     for answer in answers:
-        name = panel_name(answer)
-        reached = sum(outcomes[-1].contact is not None for outcomes in answer.outcomes)
-        if reached:
-            notes.append(
-                f"{name}: {plural(reached, 'season')} {'reaches' if reached == 1 else 'reach'} the "
-                f"highest candidate, {answer.heights[-1]:g} m, so the heights are estimates; "
-                "give higher --heights"
+        for note in _warnings_of(answer):
+            panels.setdefault(note, []).append(panel_name(answer))
+    return [
+        *_excluded_winters(answers[0]),
+        _grid_error(answers[0]),
+        *(
+            note if len(names) == len(answers) > 1 else f"{', '.join(names)}: {note}"
+            for note, names in panels.items()
+        ),
+    ]
+
+
+def _warnings_of(answer: ClearanceResult) -> Iterator[str]:
+    highest = f"{answer.heights[-1]:g} m"
+    reached = sum(outcomes[-1].contact is not None for outcomes in answer.outcomes)
+    if reached:
+        yield (
+            f"{plural(reached, 'season')} {'reaches' if reached == 1 else 'reach'} the highest "
+            f"candidate, {highest}, so the heights are estimates; give higher --heights"
+        )
+    for level in answer.levels:
+        percentage = f"{100 * level.probability:g} %"
+        if level.height > answer.heights[-1]:
+            yield (
+                f"{level.height:.1f} m for {percentage} lies above all candidate heights (up to "
+                f"{highest}); give higher --heights"
             )
-        for level in answer.levels:
-            percentage = f"{100 * level.probability:g} %"
-            if level.height > answer.heights[-1]:
-                notes.append(
-                    f"{name}: {level.height:.1f} m for {percentage} lies above all candidate "
-                    f"heights (up to {answer.heights[-1]:g} m); give higher --heights"
-                )
-            if level.extrapolated:
-                notes.append(
-                    f"{name}: {percentage} is extrapolated: a return period of "
-                    f"{level.return_period:.0f} years from {plural(len(answer.winters), 'winter')}"
-                )
-        if not answer.heights_by_probability.separable:
-            notes.append(
-                f"{name}: there are too few seasons to separate the snow parameters from the "
-                "weather, so they count as changing from winter to winter; give more --draws"
+        if level.extrapolated:
+            yield (
+                f"{percentage} is extrapolated: a return period of {level.return_period:.0f} years "
+                f"from {plural(len(answer.winters), 'winter')}"
             )
-        if answer.failed:
-            notes.append(
-                f"{name}: {answer.failed} seasons could not be simulated, and are left out"
-            )
-    return notes
+    if not answer.heights_by_probability.separable:
+        yield (
+            "there are too few seasons to separate the snow parameters from the weather, so they "
+            "count as changing from winter to winter; give more --draws"
+        )
+    if answer.failed:
+        yield f"{answer.failed} seasons could not be simulated, and are left out"
 
 
 def _excluded_winters(answer: ClearanceResult) -> list[str]:
