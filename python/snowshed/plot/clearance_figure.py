@@ -66,7 +66,7 @@ def burial_figure(
 
 
 def parts_figure(bars: Mapping[str, Mapping[str, float]]) -> Figure:
-    """Draw what makes up the height that a season needs.
+    """Draw the parts of the height that a season needs.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def parts_figure(bars: Mapping[str, Mapping[str, float]]) -> Figure:
         axes.set_xlim(0.0, 1.15 * start.max())
         axes.grid(False)
         axes.set_xlabel("height above the ground, m")
-        axes.set_title("What makes the required height")
+        axes.set_title("Parts of the required height")
         figure.legend(loc="outside lower left", ncols=len(PARTS))
         return figure
 
@@ -152,5 +152,5 @@ def causes_figure(shares: Mapping[str, float]) -> Figure:
         axes.set_xlim(0.0, 1.15 * max(parts))
         axes.grid(False)
         axes.spines["left"].set_color(FAINT)
-        axes.set_title("What makes the interval wide, %")
+        axes.set_title("Causes of the interval's width, %")
         return figure

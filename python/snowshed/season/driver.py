@@ -227,7 +227,7 @@ def _result(plan: SeasonPlan, settings: SeasonSettings, folder: SeasonFolder) ->
             *plan.record.notes,
             *plan.winters.shortfalls,
             *assumptions(table, days, settings),
-            *fall_notes(plan.panel.data, days, settings),
+            *fall_notes(plan.panel.data, table, days, settings),
             *notes(dx, days, settings, events, first_staying_event),
         ],
     )

@@ -84,7 +84,10 @@ def _melt_assumptions(settings: SeasonSettings) -> Iterator[str]:
 
 
 def fall_notes(
-    scene: Mapping[str, Any], days: Sequence[WinterDay], settings: SeasonSettings
+    scene: Mapping[str, Any],
+    table: pd.DataFrame,
+    days: Sequence[WinterDay],
+    settings: SeasonSettings,
 ) -> Iterator[str]:
     """Yield a note on the height from which the snow falls.
 
@@ -92,10 +95,12 @@ def fall_notes(
     ----------
     scene
         The complete scene of the panel.
+    table
+        As in season.csv.
     days, settings
         Days and settings of the season.
     """
-    cover = cover_below_slides(scene, days, settings)
+    cover = cover_below_slides(scene, days, table["cover_m"])
     if cover:
         yield (
             f"the snow falls on the natural cover: in the simulation and its film the panel stands "

@@ -7,7 +7,7 @@ natural cover, so the panel stands lower above the ground of this scene.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Optional
 
 from snowshed._core import InputError
@@ -53,7 +53,8 @@ def season_scene(
     natural: dict[str, Any] = scene["snow"]
     slab = scene.pop("slab", None) or {}
     settings = settings or SeasonSettings()
-    cover = cover_below_slides(base.data, days, settings)
+    depths = natural_cover([day.weather for day in days], settings, scene["gravity"])
+    cover = cover_below_slides(base.data, days, depths)
     if cover:
         scene["panel"]["height"] -= cover
         subject = scene.get("title") or "Slide-offs of a season"
@@ -77,7 +78,7 @@ def season_scene(
 
 
 def cover_below_slides(
-    scene: Mapping[str, Any], days: Sequence[WinterDay], settings: SeasonSettings
+    scene: Mapping[str, Any], days: Sequence[WinterDay], cover: Iterable[float]
 ) -> float:
     """Return the mean depth of the natural cover on which the slide-offs fall, m.
 
@@ -86,8 +87,10 @@ def cover_below_slides(
     scene
         The complete scene, with a panel. If it has obstacles, the depth is 0, because they stand on
         the ground, too.
-    days, settings
-        Days and settings of the season.
+    days
+        The days of the season.
+    cover
+        Depth of the natural cover on each of them, m.
 
     Returns
     -------
@@ -96,7 +99,6 @@ def cover_below_slides(
     """
     if scene.get("obstacles"):
         return 0.0
-    cover = natural_cover([day.weather for day in days], settings, scene["gravity"])
     depths = [depth for day, depth in zip(days, cover) if day.event is not None]
     mean = sum(depths) / len(depths) if depths else 0.0
     return min(mean, float(scene["panel"]["height"]))

@@ -44,11 +44,11 @@ def season_table(
     """
     import pandas as pd
 
-    below = cover_below_slides(scene, days, settings)
+    cover = natural_cover([day.weather for day in days], settings, scene["gravity"])
+    below = cover_below_slides(scene, days, cover)
     lowered = {**scene, "panel": {**scene["panel"], "height": scene["panel"]["height"] - below}}
     stack = _Stack(lowered, below, settings, events, outlines)
     rows = []
-    cover = natural_cover([day.weather for day in days], settings, scene["gravity"])
     for day, earlier, depth in zip(days, [None, *days], cover):
         if earlier is not None:
             elapsed = day.weather.date - earlier.weather.date

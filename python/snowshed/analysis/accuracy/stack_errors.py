@@ -186,7 +186,7 @@ def recorded_bias(dimension: int, events: int, mechanisms: Optional[Mechanisms] 
     """
     mechanisms = mechanisms or Mechanisms()
     stacks = _nearest_stacks(dimension, events, mechanisms)
-    resolved = resolved_biases(dimension, events, mechanisms)
+    resolved = _resolved(stacks)
     if not resolved:
         return _no_runs_text(mechanisms)
     low, high = 100 * min(resolved.values()), 100 * max(resolved.values())
@@ -210,7 +210,10 @@ def resolved_biases(
     >>> sorted(resolved_biases(2, 5))
     [2.0, 4.0]
     """
-    stacks = _nearest_stacks(dimension, events, mechanisms or Mechanisms())
+    return _resolved(_nearest_stacks(dimension, events, mechanisms or Mechanisms()))
+
+
+def _resolved(stacks: Iterable[RecordedStack]) -> dict[float, float]:
     biases = {
         PRESET_THICKNESS / float(stack.settings[ORDER_IN]): stack.biases[0] for stack in stacks
     }

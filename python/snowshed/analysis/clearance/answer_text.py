@@ -233,7 +233,7 @@ def _ground(season: SeasonSettings) -> str:
 
 
 def _thaw(season: SeasonSettings) -> list[str]:
-    melt = "Snow on panel and ground melts in air warmer than 0 °C, but not in sunshine."
+    melt = "Snow on panel and ground melts in air warmer than 0 °C. Sunshine is left out."
     wet = f"In air warmer than 0 °C, snow does not adhere to the panel ({season.thaw})."
     return [*([melt] if season.melt_factor else []), *([wet] if season.thaw else [])]
 

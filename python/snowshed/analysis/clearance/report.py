@@ -150,7 +150,9 @@ def _parts_picture(answer: ClearanceResult, name: str) -> Picture:
         for label, index in cases.items()
     }
     caption = "Simulated seasons, without the error of the grid."
-    return Picture.drawn(parts_figure(bars), f"parts-{name}", "What makes the height", caption)
+    return Picture.drawn(
+        parts_figure(bars), f"parts-{name}", "Parts of the required height", caption
+    )
 
 
 def _burial_picture(answer: ClearanceResult, name: str) -> Picture:

@@ -22,6 +22,7 @@ from snowshed.cli.options.number_texts import named_span, numbers
 from snowshed.cli.options.weather import weather_options
 from snowshed.cli.output.terminal import plain_table, say, wide_console
 from snowshed.cli.output.winters_table import print_quality
+from snowshed.scene.schema import scene_parameters
 
 if TYPE_CHECKING:
     from snowshed.analysis.clearance.answer import ClearanceResult
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from snowshed.analysis.clearance.winters import Winter
     from snowshed.season.weather.season_record import SeasonRecord
 
-SCHEMES = ("thesis", "objective")
+SCHEME = next(item for item in scene_parameters() if item.path == "numerics.scheme")
 EXAMPLE = "example"  # this word instead of a file: synthetic winters
 #: Names of `--range` that are shorter than those in Python.
 SHORT_NAMES = {"sliding": "sliding_friction", "melt": "melt_factor"}
@@ -76,8 +77,8 @@ SHORT_NAMES = {"sliding": "sliding_friction", "melt": "melt_factor"}
 )
 @click.option(
     "--scheme",
-    type=click.Choice(SCHEMES),
-    default=SCHEMES[0],
+    type=click.Choice(SCHEME.choices or ()),
+    default=SCHEME.default,
     show_default=True,
     help="Numerical scheme. The interval contains its recorded error of the grid, whatever --dx.",
 )
@@ -148,7 +149,7 @@ def clearance(
         "scene": {
             "ground.tilt": ground_tilt,
             "numerics.dx": size,
-            "numerics.scheme": scheme,
+            SCHEME.path: scheme,
         },
     }
     if dry_run or not quiet:
