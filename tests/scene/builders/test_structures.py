@@ -5,8 +5,17 @@ import math
 import numpy as np
 import pytest
 
-from snowshed import InputError, _core
-from snowshed.scene import gable_roof, mesh_structure, panel_rows, panel_table, shed_roof, tracker
+from snowshed import InputError, _core, read_events, run_events
+from snowshed.base.notes import record_notes
+from snowshed.scene import (
+    gable_roof,
+    mesh_structure,
+    panel_rows,
+    panel_table,
+    shed_roof,
+    tracker,
+)
+from snowshed.scene.builders.guards import carried_length
 
 PANEL = {"height": 0.6, "length": 1.0, "tilt": 40.0, "snow": 0.1, "dx": 0.05}
 ROOF = {"eaves": 2.0, "length": 2.0, "tilt": 30.0, "snow": 0.2, "dx": 0.05}
@@ -60,6 +69,44 @@ def test_a_table_has_gaps_and_stands_on_its_posts():
     post = point_on_table(0.8 * 2.1)[0]
     assert distance(simulation, (post, 0.3))[0] < 0
     assert simulation.masses().sum() == pytest.approx(2.1 * 0.1 * 210.0, rel=1e-6)
+
+
+def test_a_guard_holds_what_the_hand_calculation_says(tmp_path):
+    """Below the carried length the guard keeps all snow above it; far beyond it, less than half."""
+    snow = shed_roof(**ROOF).resolve().data["snow"]
+    carried = carried_length(snow, 0.3, 30.0, 0.3, guard_height=0.3)
+    assert carried == pytest.approx(3.69, abs=0.01)
+    kept = {}
+    for share in (0.75, 1.75):
+        length = share * carried
+        roof = shed_roof(
+            eaves=2.5,
+            length=length + 0.4,
+            tilt=30.0,
+            snow=0.3,
+            guards=[0.3],
+            guard_height=0.3,
+            dx=0.05,
+        ).update({"events.max_time": 5.0})
+        run_events(roof, tmp_path / f"{share}", pictures=False)
+        events = read_events(tmp_path / f"{share}")
+        above = 0.3 * length * snow["density"]
+        kept[share] = (events["on_panel_kg"] + events["on_structures_kg"]).iloc[0] / above
+    assert kept[0.75] > 0.98
+    assert kept[1.75] < 0.5
+
+
+def test_overloaded_guards_are_named():
+    with record_notes() as notes:
+        shed_roof(
+            eaves=2.5, length=6.0, tilt=30.0, snow=0.3, guards=[0.3], guard_height=0.3, dx=0.05
+        )
+    assert ["5.6 m of slope lie above one guard" in note for note in notes] == [True]
+    with record_notes() as notes:
+        shed_roof(
+            eaves=2.5, length=6.0, tilt=30.0, snow=0.3, guards=[0.3, 3.1], guard_height=0.3, dx=0.05
+        )
+    assert notes == []
 
 
 def test_snow_guards_displace_only_their_volume_of_snow():

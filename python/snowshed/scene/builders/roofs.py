@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.scene.builders.guards import note_overloaded_guards
 from snowshed.scene.builders.panels import separate_part, single_panel, snow_layer
 from snowshed.scene.builders.slope import (
     BOARD_CELLS,
@@ -77,6 +78,7 @@ def shed_roof(
     scene.append("obstacles", _house([slope], upper, length, overhang, dx))
     rails = _rails(slope, guards, length, (guard_height, guard_thickness), dx)
     _add_rails(scene, "guard", rails)
+    _check_guards(scene, guards, length, guard_height, guard_thickness)
     if rails:  # the scene's own slab would lie in them
         scene.slab = None
         scene.append("bodies", snow_layer(slope, 0.0, length, snow, rails))
@@ -131,6 +133,7 @@ def gable_roof(
     rails, far_rails = (_rails(side, guards, length, size, dx) for side in (slope, far))
     _add_rails(scene, "guard", rails)
     _add_rails(scene, "far-guard", far_rails)
+    _check_guards(scene, guards, length, guard_height, guard_thickness)
     if rails:  # the scene's own slab would lie in them
         scene.slab = None
         scene.append("bodies", snow_layer(slope, 0.0, length, snow, rails))
@@ -203,6 +206,16 @@ def _rails(
                 f"(0 <= value <= {length - thickness:g} m)"
             )
     return [slope.layer(start, start + thickness, -dx, height) for start in guards]
+
+
+def _check_guards(
+    scene: Scene, guards: Sequence[float], length: float, height: float, thickness: float
+) -> None:
+    """Note that snow flows over the guard with the longest slope above it, if it does."""
+    if guards:
+        starts = sorted(guards)
+        above = [end - start - thickness for start, end in zip(starts, [*starts[1:], length])]
+        note_overloaded_guards(scene, max(above), height)
 
 
 def _add_rails(scene: Scene, name: str, rails: Sequence[Shape]) -> None:
