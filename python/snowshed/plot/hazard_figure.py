@@ -75,7 +75,7 @@ def probability_figure(
                 *coordinates(ground), probability, levels=levels, colors=[INK],
                 linewidths=1.0, zorder=4,
             )  # fmt: skip
-            axes.clabel(lines, fmt=lambda level: f"{100 * level:.0f} %", fontsize=7)
+            axes.clabel(lines, fmt=lambda level: f"{100 * level:.0f} %", fontsize=9)
         draw_outlines(axes, outlines)
         figure.colorbar(drawn, ax=axes, label="probability", shrink=0.9, pad=0.01)
         axes.set(xlabel="east, m", ylabel="north, m")

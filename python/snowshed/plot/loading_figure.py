@@ -133,7 +133,7 @@ def _draw_beginning(axes: Axes, stage: LoadingCurve, kind: str, phases: Phases) 
         axes.axvspan(0.0, unit[1] * limit, color=PHASES[0], lw=0, zorder=0)
         axes.text(
             0.5 * unit[1] * limit, 0.02, "elastic", ha="center", va="bottom", color=INK,
-            fontsize=8.5, transform=axes.get_xaxis_transform(),
+            fontsize=9, transform=axes.get_xaxis_transform(),
             bbox={"facecolor": PHASES[0], "edgecolor": "none", "pad": 1.5},
         )  # fmt: skip
     axes.set(xlabel=f"strain of the first stage{unit[0]}", ylabel="stress, kPa")
@@ -201,6 +201,6 @@ def _shade(axes: Axes, phases: Phases, end: float, *, named: bool) -> None:
         if named and high - low > 0.15 * end:
             axes.text(
                 50.0 * (low + high), 0.02, name, ha="center", va="bottom", color=INK,
-                fontsize=8.5, transform=axes.get_xaxis_transform(),
+                fontsize=9, transform=axes.get_xaxis_transform(),
                 bbox={"facecolor": colour, "edgecolor": "none", "pad": 1.5},
             )  # fmt: skip

@@ -51,7 +51,7 @@ def season_figure(
     outlines: pd.DataFrame,
     scene: Mapping[str, Any],
     *,
-    panel: Sequence[Sequence[float]],
+    panels: Sequence[Sequence[Sequence[float]]],
     contact: Optional[_Contact],
     title: str,
     snow: str = "",
@@ -66,8 +66,8 @@ def season_figure(
         The profiles of the stack, as in outline.csv; without rows if nothing slid.
     scene
         The complete scene of the slide-offs.
-    panel
-        The panel's upper and lower edge, (x, z) in m.
+    panels
+        The upper and the lower edge of each row, (x, z) in m.
     contact
         The first contact of the snow with the panel, if any.
     title
@@ -80,8 +80,8 @@ def season_figure(
     moments = [datetime.fromisoformat(date) for date in table["date"]]
     dates: Floats = date2num(moments)  # type: ignore[no-untyped-call]
     _draw_panel_snow(load, dates, table)
-    _draw_stack(stack, dates, table, float(panel[1][1]), contact)
-    _draw_outlines(side, outlines, table, panel)
+    _draw_stack(stack, dates, table, float(panels[0][1][1]), contact)
+    _draw_outlines(side, outlines, table, panels)
     for axes in (load, stack):
         locator: Any = AutoDateLocator()  # type: ignore[no-untyped-call]
         formatter: Any = ConciseDateFormatter(locator, show_offset=False)  # type: ignore[no-untyped-call]
@@ -149,7 +149,7 @@ def _draw_stack(
     axes.step(dates, top, color=STACK, label="highest snow", **steps)
     axes.step(dates, below, color=BODY, label="snow below the edge", **steps)
     if (table["settled_height_m"] < table["stack_height_m"]).any():
-        name = "highest snow, settled (estimate)"
+        name = "settled and melted (estimate)"
         settled = {**steps, "linewidth": 1.3, "linestyle": "--"}
         axes.step(dates, settled_top, color=INK, label=name, **settled)
     if contact is not None:
@@ -176,11 +176,15 @@ def _mark_contact(axes: Axes, date: float, edge: float, contact: _Contact) -> No
 
 
 def _draw_outlines(
-    axes: Axes, outlines: pd.DataFrame, table: pd.DataFrame, panel: Sequence[Sequence[float]]
+    axes: Axes,
+    outlines: pd.DataFrame,
+    table: pd.DataFrame,
+    panels: Sequence[Sequence[Sequence[float]]],
 ) -> None:
-    """Draw the stack's profile on the snow cover of its day, event by event, below the panel."""
+    """Draw the stack's profile on the snow cover of its day, event by event, below the panels."""
     covers = table.dropna(subset=["event"]).groupby("event")["cover_m"].first()
-    axes.plot(*zip(*panel), color=INK, linewidth=3.5, solid_capstyle="round")
+    for panel in panels:
+        axes.plot(*zip(*panel), color=INK, linewidth=3.5, solid_capstyle="round")
     axes.axhline(0.0, color=FAINT, linewidth=1.2)
     events = sorted(set(outlines["event"]))
     shades = colormaps["viridis"](np.linspace(FIRST_SHADE, LAST_SHADE, max(len(events), 1)))

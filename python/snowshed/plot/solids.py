@@ -15,11 +15,12 @@ import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.arrays import Floats, Integers
 from snowshed.io.raster.raster import Raster
-from snowshed.plot.surface_nets import surface_of
+from snowshed.plot.surface_nets import section_of, surface_of
 from snowshed.scene.resolved import ResolvedScene
 
 ROUND_SIDES = 24  # number of sides of round shapes
 SAMPLES = 48  # samples along the longest side of a solid
+FLAT_SAMPLES = 400  # the same in 2D
 TERRAIN_NODES = 220  # along a side, at most
 MAX_TRIANGLES = 200_000  # of a mesh; larger meshes are sampled
 
@@ -215,6 +216,9 @@ def _parts(
     elif kind == "union":
         for part in shape["shapes"]:
             yield from _parts(part, scene, base_dir, near)
+    elif kind == "transform":
+        for part in _parts(shape["shapes"][0], scene, base_dir, near):
+            yield _transformed(part, shape, scene["dimension"])
     elif kind == "mesh" and (surface := _mesh(shape, base_dir)) is not None:
         yield surface
     else:
@@ -240,8 +244,8 @@ def _sampled_surface(
 ) -> Solid:
     """Return the surface of any shape where the snow may come, from samples of its distance."""
     single = _core.Simulation(_scene_of_shape(shape, scene).core, str(base_dir))
-    spacing = float(near.size.max()) / SAMPLES
     flat = scene["dimension"] == 2
+    spacing = float(near.size.max()) / (FLAT_SAMPLES if flat else SAMPLES)
     axes = [
         np.zeros(1)
         if flat and axis == 1
@@ -250,12 +254,25 @@ def _sampled_surface(
     ]
     points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
     distance = single.obstacle_distance(points.reshape(-1, 3)).reshape(points.shape[:3])
-    if flat:  # a slice, closed in front and behind
-        distance = np.concatenate([distance, distance], axis=1)
-    distance = np.pad(distance, 1, constant_values=spacing)
-    corners, triangles = surface_of(distance)
-    corners = near.low + (corners - 1.0) * spacing
+    if flat:
+        corners, triangles = section_of(distance[:, 0, :])
+        corners = near.low + np.insert(corners, 1, 0.0, axis=1) * spacing
+    else:
+        corners, triangles = surface_of(np.pad(distance, 1, constant_values=spacing))
+        corners = near.low + (corners - 1.0) * spacing
     return Solid(shape["type"], "solid", corners, triangles)
+
+
+def _transformed(part: Solid, shape: Mapping[str, Any], dimension: int) -> Solid:
+    """Return a part turned about an axis through the origin, then moved."""
+    axis = np.asarray(shape.get("axis") if dimension == 3 else (0.0, 1.0, 0.0), dtype=float)
+    axis = axis / np.linalg.norm(axis)
+    angle = np.radians(float(shape.get("angle") or 0.0))
+    x = part.corners
+    along = (x @ axis)[:, None] * axis
+    turned = along + np.cos(angle) * (x - along) + np.sin(angle) * np.cross(axis, x)
+    moved = turned + _in_space(shape.get("translate") or [0.0] * dimension)
+    return replace(part, corners=moved)
 
 
 def _scene_of_shape(shape: Mapping[str, Any], scene: Mapping[str, Any]) -> ResolvedScene:

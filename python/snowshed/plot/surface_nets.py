@@ -1,4 +1,4 @@
-"""The surface of a sampled solid as triangles (surface nets)."""
+"""The surface of a sampled solid as triangles (surface nets), and its section in a plane."""
 
 from __future__ import annotations
 
@@ -59,6 +59,65 @@ def surface_of(distance: Floats) -> tuple[Floats, Integers]:
     vertices = np.argwhere(held) + total[held] / count[held][:, None]
     triangles = [_around(inside, number, axis) for axis in range(3)]
     return vertices, np.concatenate(triangles)
+
+
+def section_of(distance: Floats) -> tuple[Floats, Integers]:
+    """Return the section of a solid in a plane, in strips between neighbouring columns of samples.
+
+    Between two columns that are inside over equally many pieces, a piece is a trapezoid. Elsewhere
+    the pieces of a column end half way to the next.
+
+    Parameters
+    ----------
+    distance : (nx, nz)
+        Distances at the samples: negative inside.
+
+    Returns
+    -------
+    corners : (n, 2)
+        Vertices in units of samples, from the first.
+    triangles : (m, 3)
+
+    Examples
+    --------
+    >>> x = np.arange(-6.0, 7.0)
+    >>> corners, triangles = section_of(np.hypot(x[:, None], x) - 4.0)
+    >>> a, b, c = (corners[triangles[:, k]] for k in range(3))
+    >>> area = 0.5 * np.abs(np.cross(np.pad(b - a, (0, 1)), np.pad(c - a, (0, 1)))[:, 2]).sum()
+    >>> bool(abs(area - 16.0 * np.pi) < 3.0)
+    True
+    """
+    columns = [_pieces(column) for column in distance]
+    quads = []
+    for x, (left, right) in enumerate(zip(columns, columns[1:])):
+        if len(left) == len(right):
+            quads += [
+                ((x, a), (x + 1, c), (x + 1, d), (x, b)) for (a, b), (c, d) in zip(left, right)
+            ]
+            continue
+        for start, pieces in ((x, left), (x + 0.5, right)):
+            quads += [
+                ((start, a), (start + 0.5, a), (start + 0.5, b), (start, b)) for a, b in pieces
+            ]
+    corners = np.array(quads, dtype=float).reshape(-1, 2)
+    first = 4 * np.arange(len(quads))[:, None]
+    triangles: Integers = np.concatenate(
+        [first + np.array(half) for half in ([0, 1, 2], [0, 2, 3])]
+    )
+    return corners, triangles
+
+
+def _pieces(column: Floats) -> list[tuple[float, float]]:
+    """Return the pieces of a column that are inside, in units of samples."""
+    inside = np.concatenate([[False], column < 0.0, [False]])
+    ends = []
+    for at in np.flatnonzero(inside[1:] != inside[:-1]).tolist():
+        if at in (0, len(column)):  # the solid reaches beyond the samples
+            ends.append(float(max(at - 1, 0)) if at else 0.0)
+            continue
+        below, above = float(column[at - 1]), float(column[at])
+        ends.append(at - 1 + below / (below - above))
+    return list(zip(ends[::2], ends[1::2]))
 
 
 def _around(inside: np.ndarray, number: Integers, axis: int) -> Integers:

@@ -89,7 +89,7 @@ def draw_terrain(axes: Axes, ground: Raster, part: Extent, *, labels: bool = Tru
         linewidths=np.where(strong, 1.0, 0.5).tolist(), zorder=2,
     )  # fmt: skip
     if labels:
-        axes.clabel(lines, fmt="%.0f", fontsize=7, colors=["#3c4a55"])
+        axes.clabel(lines, fmt="%.0f", fontsize=9, colors=["#3c4a55"])
     axes.set(xlim=part[:2], ylim=part[2:], aspect="equal")
     axes.grid(False)
 

@@ -130,6 +130,12 @@ def _facts(scene: ResolvedScene, folder: Path) -> list[tuple[str, str]]:
         facts.append(("terrain", Path(data["terrain"]["file"]).name))
     else:
         facts.append(("sample", Path(data["sample"]["file"]).name))
+    frame = scene.core.panel_frame()
+    if frame is not None and frame["board_thickness"] > data["panel"]["thickness"]:
+        thickness = 100.0 * frame["board_thickness"]
+        facts.append(
+            ("panel", f"a board of {thickness:.3g} cm below its face: three cells of the grid")
+        )
     facts.append(("results", str(folder.resolve().name)))
     return facts
 

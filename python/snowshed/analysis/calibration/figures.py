@@ -115,7 +115,7 @@ def _name_sets(axes: Axes, rows: pd.DataFrame, parameters: Sequence[str], best: 
         " · ".join(label(path).value(value) for path, value in zip(parameters, values))
         for values in rows[list(parameters)].to_numpy(float)
     ]
-    axes.set_xticks(range(len(rows)), names, rotation=90, fontsize=7)
+    axes.set_xticks(range(len(rows)), names, rotation=90, fontsize=9)
     for text, is_best in zip(axes.get_xticklabels(), best):
         if is_best:
             text.set(color=BEST, weight="bold")

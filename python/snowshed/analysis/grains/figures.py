@@ -57,7 +57,7 @@ def sensitivity_figure(comparison: pd.DataFrame, title: str = "") -> Figure:
 def _draw(axes: Axes, place: int, row: Any, colour: str) -> None:
     ratio = float(row["ratio"])
     if not np.isfinite(ratio):
-        axes.text(1.0, place, " no stress", va="center", fontsize=7.5, color=FAINT)
+        axes.text(1.0, place, " no stress", va="center", fontsize=9, color=FAINT)
         return
     low, high = float(row["low"]), float(row["high"])
     if np.isfinite(low):

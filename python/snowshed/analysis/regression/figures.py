@@ -166,7 +166,7 @@ def cost_figure(errors: pd.DataFrame, titles: Titles, target: str) -> Figure:
                 textcoords="offset points",
                 va="center",
                 color=colour,
-                fontsize=8.5,
+                fontsize=9,
             )
         axes.set(xlabel="processor time of search and training, s")
         axes.set_ylabel(f"mean absolute error of {_quantity(target)}")

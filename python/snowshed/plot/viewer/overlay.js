@@ -74,10 +74,13 @@ function drawMeasures(view, camera, frame, index) {
     svg.append(svgPart("line", { x1: a.x, y1: a.y, x2: b.x, y2: b.y, class: "halo" }));
     svg.append(svgPart("line", { x1: a.x, y1: a.y, x2: b.x, y2: b.y, "marker-start": "url(#tick)", "marker-end": "url(#tick)" }));
     const upright = Math.abs(b.y - a.y) > Math.abs(b.x - a.x);
-    const place = { x: (a.x + b.x) / 2 + (upright ? 9 : 0), y: (a.y + b.y) / 2 + (upright ? 4 : 19) };
+    const place = { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2 + (upright ? 4 : 19) };
+    const fall = (b.y - a.y) / (b.x - a.x);  // beside a sloping line, the label keeps off it
+    const anchor = upright ? "start" : Math.abs(fall) < 0.1 ? "middle" : fall > 0 ? "end" : "start";
+    place.x += anchor === "middle" ? 0 : anchor === "start" ? 9 : -9;
     while (taken.some((other) => Math.abs(other.y - place.y) < 17 && Math.abs(other.x - place.x) < 150)) place.y += 17;
     taken.push(place);
-    const label = svgPart("text", { ...place, "text-anchor": upright ? "start" : "middle" });
+    const label = svgPart("text", { ...place, "text-anchor": anchor });
     label.textContent = line.label;
     svg.append(label);
   }
