@@ -6,6 +6,14 @@ from snowshed.analysis.photovoltaics import (
     loss_townsend,
     monthly_table,
     pile_angle,
+    plane_irradiance,
 )
 
-__all__ = ["blocked_days", "coverage_nrel", "loss_townsend", "monthly_table", "pile_angle"]
+__all__ = [
+    "blocked_days",
+    "coverage_nrel",
+    "loss_townsend",
+    "monthly_table",
+    "pile_angle",
+    "plane_irradiance",
+]

@@ -86,6 +86,28 @@ def test_wet_snow_does_not_adhere():
     assert not any(day.released for day in dry)
 
 
+def test_sunshine_frees_snow_in_cold_air():
+    """Marion et al. 2013: snow slides if the air is warmer than -I / 80 degrees C."""
+    held = SeasonSettings(adhesion=1e4)
+    row = Weather(2, datetime.datetime(2024, 12, 1), 0.3, 100.0, -5.0)
+    for irradiance, slides in ((None, False), (390.0, False), (410.0, True), (-9.0, False)):
+        day = accumulate([replace(row, irradiance=irradiance)], held, tilt=60.0)[0]
+        assert day.released is slides
+
+
+def test_the_melt_of_a_stack_counts_once_over_its_events():
+    """10 kg/m2 of 200 kg/m3 are 5 cm, also after later events."""
+    stack = SettlingStack(None, 9.81)
+    stack.melt(50.0)  # before there is a stack
+    stack.set_stack(0.5, 200.0)
+    stack.melt(10.0)
+    assert stack.ratio == pytest.approx(0.9)
+    stack.set_stack(0.8, 200.0)
+    assert stack.ratio == pytest.approx(1.0 - 0.05 / 0.8)
+    stack.melt(1000.0)
+    assert stack.ratio == 0.0
+
+
 def test_the_adhesion_of_a_row_holds_in_warm_air_too():
     cold, warm = season(0.2, 0.0)
     warm = replace(warm, temperature=2.0, adhesion=500.0)

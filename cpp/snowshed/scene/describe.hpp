@@ -181,8 +181,8 @@ void describe(V& v, scene::Panel& p) {
   v.number("length", p.length, "m", methods::allowed::size.required(), "Length along the slope");
   v.number("width", p.width, "m", methods::allowed::size.required_in_3d(),
            "Width across the slope; ignored in 2D");
-  v.number("tilt", p.tilt, "degrees", methods::non_negative.below(90.0),
-           "Tilt from the horizontal");
+  v.number("tilt", p.tilt, "degrees", methods::non_negative.up_to(90.0),
+           "Tilt from the horizontal; 90: a fence");
   v.number("thickness", p.thickness, "m", methods::allowed::size_or_zero,
            "Thickness, below the sliding face");
   v.choice("condition", p.condition, condition_doc);

@@ -137,6 +137,59 @@ def coverage_nrel(
     return covered
 
 
+def plane_irradiance(
+    global_horizontal: pd.Series,
+    latitude: float,
+    longitude: float,
+    *,
+    surface_tilt: float,
+    surface_azimuth: float,
+) -> pd.Series:
+    """Return the irradiance of a panel's plane, for the column ``irradiance_w_m2`` of a season.
+
+    The direct part of the radiation follows from Erbs et al. 1982, the sky is isotropic, and the
+    ground reflects like snow (all by pvlib). Hours without radiation or sun have 0.
+
+    Parameters
+    ----------
+    global_horizontal
+        Global radiation on the level, W/m2, with an index of times with a time zone.
+    latitude, longitude
+        Degrees, positive to the north and to the east.
+    surface_tilt, surface_azimuth
+        Tilt of the panel from the horizontal, and the direction that it faces (180: south),
+        degrees.
+
+    Raises
+    ------
+    InputError
+        If the times have no time zone, or pvlib is not installed.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> noon = pd.DatetimeIndex(["2024-12-21T11:30"], tz="UTC")
+    >>> level = pd.Series([300.0], noon)
+    >>> steep = plane_irradiance(level, 46.8, 9.8, surface_tilt=60.0, surface_azimuth=180.0)
+    >>> steep.iloc[0] > 1.5 * level.iloc[0]  # the sun of December is low
+    True
+    """
+    solar = require("pvlib.solarposition", "pv", "the irradiance of a plane")
+    sky = require("pvlib.irradiance", "pv", "the irradiance of a plane")
+    times = global_horizontal.index
+    if getattr(times, "tz", None) is None:
+        raise InputError("global_horizontal: its times have no time zone; use tz_localize")
+    sun = solar.get_solarposition(times, latitude, longitude)
+    zenith = sun["apparent_zenith"]
+    parts = sky.erbs(global_horizontal, zenith, times)
+    plane = sky.get_total_irradiance(
+        surface_tilt, surface_azimuth, zenith, sun["azimuth"],
+        parts["dni"], global_horizontal, parts["dhi"], surface_type="snow",
+    )  # fmt: skip
+    irradiance: pd.Series = plane["poa_global"].fillna(0.0).rename("irradiance_w_m2")
+    return irradiance
+
+
 def blocked_days(season: pd.DataFrame, dx: float) -> pd.Series:
     """Return whether the snow below reaches the lower edge, by day; the index holds the dates.
 

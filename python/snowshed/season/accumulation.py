@@ -58,7 +58,7 @@ def accumulate(
 
     Snow of a depth h on level ground has the thickness h cos(Phi) normal to the panel, because its
     mass per area of the ground is the same. All snow is released at once (`snow_balance`). It melts
-    by degree-days (`SeasonSettings.melt`). Sunshine and wind are left out.
+    by degree-days (`SeasonSettings.melt`). Wind is left out.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def accumulate(
     (10, 85, 84, 1)
     """
     check_one_season(season)
-    slope = math.cos(math.radians(tilt))
+    slope = math.cos(math.radians(tilt)) if tilt < 90.0 else 0.0  # nothing lies on a fence
     snow = SnowColumn(load_factor=gravity * slope)
     days: list[WinterDay] = []
     for row, earlier in zip(season, [None, *season]):
@@ -158,6 +158,7 @@ def _balance(
     row: Weather, settings: SeasonSettings, load: float, tilt: float, gravity: float
 ) -> SnowBalance:
     friction = settings.friction if row.friction is None else row.friction
-    usual = 0.0 if settings.is_wet(row.temperature) else settings.adhesion
+    wet = settings.is_wet(row.temperature, row.irradiance or 0.0)
+    usual = 0.0 if wet else settings.adhesion
     adhesion = usual if row.adhesion is None else row.adhesion
     return snow_balance(load, tilt, friction, adhesion, gravity)

@@ -56,6 +56,8 @@ class SeasonResult:
         Quality of the snow data of each winter of the season.
     notes
         Notes on the limits of the results.
+    panels
+        The upper and the lower edge of each row, (x, z) on levelled ground, m.
     """
 
     table: pd.DataFrame
@@ -67,6 +69,7 @@ class SeasonResult:
     staying_event: Optional[int]
     winters: WinterList
     notes: Sequence[str]
+    panels: Sequence[Sequence[Sequence[float]]]
 
 
 def run_season(
@@ -210,7 +213,7 @@ def _result(plan: SeasonPlan, settings: SeasonSettings, folder: SeasonFolder) ->
     scene, days = plan.scene, plan.days
     events = _table_or_empty(folder.run.events)
     outlines = _table_or_empty(folder.run.outlines)
-    table = season_table(scene, days, settings, events, outlines)
+    table = season_table(plan.panel.data, days, settings, events, outlines)
     simulated = table[pd.notna(table["event"]) & pd.notna(table["stack_height_m"])]
     dx = resolution_of(scene)
     first_staying_event = first_staying(events)
@@ -230,6 +233,9 @@ def _result(plan: SeasonPlan, settings: SeasonSettings, folder: SeasonFolder) ->
             *fall_notes(plan.panel.data, table, days, settings),
             *notes(dx, days, settings, events, first_staying_event),
         ],
+        panels=[
+            [[x + away, z] for x, z in panel_ends(scene)] for away in settings.rows.distances(scene)
+        ],
     )
 
 
@@ -247,7 +253,8 @@ def _write(
     *,
     pictures: bool,
 ) -> None:
-    summary = {name: value for name, value in vars(result).items() if name != "table"}
+    left_out = ("table", "panels")
+    summary = {name: value for name, value in vars(result).items() if name not in left_out}
     summary["contact"] = None if result.contact is None else asdict(result.contact)
     summary["winters"] = result.winters.data()
     text = json.dumps({"settings": asdict(settings), **summary}, indent=2, default=list)
@@ -280,7 +287,7 @@ def season_result_figure(
         result.table,
         outlines,
         scene,
-        panel=panel_ends(scene),
+        panels=result.panels,
         contact=result.contact,
         title=f"{result.releases} releases; {verdict(result)}",
         snow=caption(result.winters),

@@ -57,7 +57,12 @@ def assumptions(
                 f"{last.snow_depth:.2f} m; from then on, the cover settles and melts by the "
                 "temperature, and grows by the snowfalls"
             )
-    yield from _melt_assumptions(settings)
+    yield from _melt_assumptions(days, settings)
+    if settings.rows.count > 1:
+        yield (
+            f"{settings.rows.count} rows of panels, {settings.rows.pitch:g} m apart, catch and "
+            "shed the same snow at the same time; clearances are those of the row with the least"
+        )
     if settings.settling is None:
         yield "no snow settles"
     if settings.strength is None:
@@ -73,14 +78,19 @@ def assumptions(
         )
 
 
-def _melt_assumptions(settings: SeasonSettings) -> Iterator[str]:
+def _melt_assumptions(days: Sequence[WinterDay], settings: SeasonSettings) -> Iterator[str]:
     if settings.melt_factor:
         yield (
-            f"snow on the panel and on the ground melts by {settings.melt_factor:g} mm of water "
-            "per day and degree of the air above 0 °C; the stack does not melt"
+            f"snow on panel and ground and in the stack melts by {settings.melt_factor:g} mm of "
+            "water per day and degree of the air above 0 °C; that of the stack is an estimate"
         )
     if settings.thaw:
-        yield f"snow does not adhere to the panel in air warmer than 0 °C ({settings.thaw})"
+        sun = (
+            ", or colder in sunshine"
+            if any(day.weather.irradiance is not None for day in days)
+            else "; sunshine is left out, because the file has no irradiance"
+        )
+        yield f"snow does not adhere to the panel in air warmer than 0 °C ({settings.thaw}){sun}"
 
 
 def fall_notes(

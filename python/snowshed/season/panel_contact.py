@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Optional
@@ -34,7 +35,11 @@ class Clearance:
 
 
 def clearance(
-    scene: Mapping[str, Any], outline: Floats, height: float, cover: float = 0.0
+    scene: Mapping[str, Any],
+    outline: Floats,
+    height: float,
+    cover: float = 0.0,
+    rows: Sequence[float] = (0.0,),
 ) -> Clearance:
     """Measure the clearance over a stack.
 
@@ -47,7 +52,10 @@ def clearance(
     height
         Height of the stack, m.
     cover
-        Depth of the natural snow cover below the stack, m.
+        Depth of the natural snow cover below the stack, m, vertically.
+    rows
+        Distances of equal panels from the scene's, along the ground, m. The clearance is that of
+        the panel with least snow below it to spare.
 
     Examples
     --------
@@ -59,7 +67,9 @@ def clearance(
     (0.251, 0.13)
     """
     _, (x, z) = panel_ends(scene)
-    return Clearance(max(z - cover - _surface(outline, x), 0.0), z - cover - height)
+    deepest = max(_surface(outline, x + away) for away in rows)
+    above_cover = z - cover * math.cos(math.radians(_tilt(scene)))
+    return Clearance(max(above_cover - deepest, 0.0), above_cover - height)
 
 
 def below_panel(scene: Mapping[str, Any], outline: Floats) -> Floats:

@@ -9,15 +9,17 @@ from typing import Optional, Union
 
 from snowshed._core import InputError
 from snowshed.running.ageing.ageing import Ageing, Interval
+from snowshed.season.rows import SINGLE_ROW, PanelRows
 from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
 from snowshed.snow.relations.relation import choose
 from snowshed.snow.relations.settling import SETTLING_LAWS, SettlingLaw
 from snowshed.snow.relations.strength import TENSILE_STRENGTH
 
 COVERS = ("weather", "none")  # or a depth
-#: Criteria for wet snow. Snow slid off panels in air warmer than 0 degrees C, or colder in sunshine
-#: (Marion et al. 2013, Solar Energy 92, 167-174); without radiation, the first part is left.
+#: Criteria for wet snow. Snow slid off panels in air warmer than -I / `SUNSHINE_PER_DEGREE` degrees
+#: C, where I is the irradiance of the panel, W/m2 (Marion et al. 2013, Solar Energy 97, 112-121).
 THAWS = ("marion-2013",)
+SUNSHINE_PER_DEGREE = 80.0  # W/m2 per degree C
 #: Melt, kg/m2 (mm of water) per day and degree above 0 degrees C, in the middle of the values for
 #: snow in Hock 2003, J. Hydrol. 282, 104-115, which differ by a factor of four.
 DEGREE_DAY_FACTOR = 4.0
@@ -57,11 +59,13 @@ class SeasonSettings:
         Releases are combined into one slide-off until their slab has at least this thickness, m
         normal to the panel; 0: each slides alone.
     melt_factor
-        Melt of the snow on the panel and on the ground, kg/m2 (mm of water) per day and degree of
-        the air above 0 degrees C. The stack does not melt.
+        Melt of the snow on panel and ground and in the stack, kg/m2 (mm of water) per day and
+        degree of the air above 0 degrees C. That of the stack is an estimate in the table.
     thaw
         Name of a criterion in `THAWS` for wet snow, which does not adhere to the panel; None: the
         adhesion does not depend on the weather.
+    rows
+        Rows of panels that stand behind each other; by default there is only the scene's panel.
 
     Raises
     ------
@@ -81,6 +85,7 @@ class SeasonSettings:
     pool_below: float = 0.0
     melt_factor: float = DEGREE_DAY_FACTOR
     thaw: Optional[str] = THAWS[0]
+    rows: PanelRows = SINGLE_ROW
 
     def __post_init__(self) -> None:
         _check("release friction", self.friction, 0.0, 10.0, "")
@@ -118,9 +123,22 @@ class SeasonSettings:
         """
         return self.melt_factor * max(temperature, 0.0) * seconds / DAY
 
-    def is_wet(self, temperature: float) -> bool:
-        """Return whether snow on the panel is wet at a temperature of the air, degrees C."""
-        return self.thaw is not None and temperature > 0.0
+    def is_wet(self, temperature: float, irradiance: float = 0.0) -> bool:
+        """Return whether snow on the panel is wet.
+
+        Parameters
+        ----------
+        temperature
+            Temperature of the air, degrees C.
+        irradiance
+            Irradiance of the panel's plane, W/m2.
+
+        Examples
+        --------
+        >>> SeasonSettings().is_wet(-2.0), SeasonSettings().is_wet(-2.0, irradiance=200.0)
+        (False, True)
+        """
+        return self.thaw is not None and temperature > -max(irradiance, 0.0) / SUNSHINE_PER_DEGREE
 
     @property
     def settling_law(self) -> Optional[SettlingLaw]:

@@ -15,6 +15,7 @@ from snowshed.scene.components import Layer, Slab, Snow
 from snowshed.scene.scene import ResolvedScene, Scene
 from snowshed.season.accumulation import WinterDay
 from snowshed.season.cover import natural_cover
+from snowshed.season.rows import add_rows
 from snowshed.season.settings import SeasonSettings
 from snowshed.snow.relations.stiffness import YOUNGS_MODULUS
 from snowshed.snow.relations.strength import TENSILE_STRENGTH
@@ -37,7 +38,7 @@ def season_scene(
     days
         From `accumulate`; at least one of them has an event.
     settings
-        Settings of the slab's strength and the cover. [default: `SeasonSettings()`]
+        Settings of the slab's strength, the cover and the rows. [default: `SeasonSettings()`]
 
     Raises
     ------
@@ -45,6 +46,7 @@ def season_scene(
         If the scene has snow of its own, or there are too many releases.
     """
     scene: dict[str, Any] = base.copied_data()
+    settings = settings or SeasonSettings()
     released = [day for day in days if day.event is not None]
     if len(released) > MAX_EVENTS:
         raise InputError(f"{len(released)} releases; a scene has at most {MAX_EVENTS} events")
@@ -52,7 +54,6 @@ def season_scene(
         raise InputError("/bodies: a season lays its own snow; remove further bodies")
     natural: dict[str, Any] = scene["snow"]
     slab = scene.pop("slab", None) or {}
-    settings = settings or SeasonSettings()
     depths = natural_cover([day.weather for day in days], settings, scene["gravity"])
     cover = cover_below_slides(base.data, days, depths)
     if cover:
@@ -61,19 +62,19 @@ def season_scene(
         scene["title"] = f"{subject}, on {cover:.2f} m of natural snow"
     scene_of_season = Scene.from_data(scene)
     scene_of_season._base_dir = base.base_dir
+    layers = [
+        Layer(
+            day.slab_load / density,
+            snow_of_density(natural, density, settings.strength),
+            day.event,
+        )
+        for day, density in zip(released, _densities(released))
+    ]
     scene_of_season.slab = Slab(
-        length=slab.get("length"),
-        width=slab.get("width"),
-        layers=[
-            Layer(
-                day.slab_load / density,
-                snow_of_density(natural, density, settings.strength),
-                day.event,
-            )
-            for day, density in zip(released, _densities(released))
-        ],
+        length=slab.get("length"), width=slab.get("width"), layers=[*layers]
     )
     scene_of_season.set("events.count", len(released))
+    add_rows(scene_of_season, settings.rows, layers)
     return scene_of_season.resolve()
 
 

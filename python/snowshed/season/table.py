@@ -51,8 +51,9 @@ def season_table(
     rows = []
     for day, earlier, depth in zip(days, [None, *days], cover):
         if earlier is not None:
-            elapsed = day.weather.date - earlier.weather.date
-            stack.settling.settle(elapsed.total_seconds(), earlier.weather.temperature)
+            elapsed = (day.weather.date - earlier.weather.date).total_seconds()
+            stack.settling.settle(elapsed, earlier.weather.temperature)
+            stack.settling.melt(settings.melt(earlier.weather.temperature, elapsed))
         if day.event is not None:
             stack.set_after_event(day.event)
         rows.append({**_panel_columns(day), **stack.columns(depth)})
@@ -94,6 +95,7 @@ class _Stack:
         self.scene, self.below = scene, below
         self.events = {int(row["event"]): row for row in events.to_dict("records")}
         self.outlines = outlines
+        self.rows = settings.rows.distances(scene)
         self.settling = SettlingStack(settings.settling_law, scene["gravity"])
         self.height, self.length, self.left, self.joined = 0.0, 0.0, 0.0, 0
         self.outline = np.zeros((0, 2))
@@ -114,8 +116,9 @@ class _Stack:
         """Return the table's columns on the stack, above a cover of the depth `cover`, m."""
         higher = cover - self.below
         ratio = self.settling.ratio
-        now = clearance(self.scene, self.outline, self.height, higher)
-        settled = clearance(self.scene, self.outline * [1.0, ratio], ratio * self.height, higher)
+        sunk = self.outline * [1.0, ratio]
+        now = clearance(self.scene, self.outline, self.height, higher, self.rows)
+        settled = clearance(self.scene, sunk, ratio * self.height, higher, self.rows)
         return {
             "stack_height_m": self.height,
             "stack_length_m": self.length,

@@ -4,9 +4,10 @@ import json
 import os
 import signal
 from dataclasses import replace
-from datetime import date
+from datetime import date, datetime, timedelta
 
 import numpy as np
+import pandas as pd
 import pytest
 from helpers.station_files import days, elements, ghcn
 from plot.browser import check_page
@@ -20,13 +21,15 @@ from snowshed.analysis.clearance import (
     split_winters,
 )
 from snowshed.analysis.clearance.answer import STUDY, expected_duration
+from snowshed.analysis.clearance.panel_snow import mean_months
 from snowshed.analysis.clearance.report import write_report
 from snowshed.analysis.clearance.seasons import cases_of
 from snowshed.analysis.clearance.statistics import CauseShare
+from snowshed.analysis.clearance.tables import write_tables
 from snowshed.cli.main import main
 from snowshed.results.folder import read_events
 from snowshed.results.season_folder import SeasonFolder
-from snowshed.season import SeasonSettings, run_season
+from snowshed.season import SeasonSettings, Weather, accumulate, run_season
 from snowshed.season.weather.generator import EXAMPLE_CLIMATE, Climate, MonthClimate
 from snowshed.season.weather.source import SnowSource
 from snowshed.study.errors import StudyInterrupted
@@ -140,6 +143,37 @@ def test_page_and_summary_contain_the_answer(report):
     assert [level["probability"] for level in summary["panels"][0]["levels"]] == [0.5, 0.9, 0.98]
     view = (report / "worst-winter-0.6-60.html").read_text()
     assert 'href="worst-winter-0.6-60.html"' in page and "slide-offs" in view
+
+
+def test_tables_hold_the_heights_the_burials_and_the_snow_on_the_panel(answer, tmp_path):
+    result, _ = answer
+    assert write_tables([result], tmp_path, price=100.0) == ["heights.csv", "clearance.xlsx"]
+    heights = pd.read_csv(tmp_path / "heights.csv")
+    levels = heights[heights["probability"].notna()]
+    assert levels["height_m"].tolist() == pytest.approx(
+        [level.height for level in result.levels], rel=1e-5
+    )
+    assert heights["cost"].tolist() == pytest.approx(100.0 * heights["height_m"], rel=1e-4)
+    sheets = pd.read_excel(tmp_path / "clearance.xlsx", sheet_name=None)
+    assert list(sheets) == ["heights", "burial", "snow on the panel"]
+    assert sheets["burial"]["probability"].iloc[0] == pytest.approx(
+        result.burial_probability(result.heights[0])
+    )
+    lying = [sum(day.load > 0.0 and not day.released for day in case.days) for case in result.cases]
+    covered = sheets["snow on the panel"]["covered_days"].sum()
+    assert covered == pytest.approx(np.mean(lying), abs=0.01)
+
+
+def test_the_blocked_irradiation_is_that_of_covered_hours():
+    """Snow lies on two of three days, until it has melted; the third has half of the sun."""
+    start = datetime(2024, 1, 1)
+    fall = Weather(2, start, 0.1, 100.0, -20.0, irradiance=100.0)
+    clear = replace(fall, date=start + timedelta(days=1), snowfall=0.0, temperature=20.0)
+    settings = SeasonSettings(adhesion=1e4, thaw=None, melt_factor=100.0)
+    later = replace(clear, date=start + timedelta(days=2), irradiance=200.0)
+    months = mean_months([accumulate([fall, clear, later], settings, tilt=30.0)])
+    assert months[1].covered_days == 2.0
+    assert months[1].blocked == pytest.approx(200.0 / 400.0)
 
 
 def test_pages_are_readable_on_telephone_and_screen(report):
@@ -336,10 +370,12 @@ def test_the_same_seed_makes_the_same_winters():
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (["--tilt", "95"], "tilt: 95 degrees; allowed: 5 to 85"),
+        (["--tilt", "95"], "tilt: 95 degrees; allowed: 5 to 90"),
         (["--heights", "3:1:1"], "--heights: '3:1:1' is not a number"),
         (["--range", "friction=lots"], "--range: 'friction=lots' is not of the form NAME=LOW:HIGH"),
-        (["--range", "adhesoin=1:2"], "range of 'adhesoin'; allowed: friction, adhesion"),
+        (["--range", "adhesoin=1:2"], "range of 'adhesoin'; allowed: friction, adhesion, sliding,"),
+        (["--range", "melt=0:5"], "melt: 0 to 5 is not allowed"),
+        (["--rows", "2"], "pitch: missing"),
         (["--draws", "0"], "draws: 0; allowed: 1 to 1000"),
         (["--slope-length", "-4"], "slope length: -4 m"),
     ],

@@ -237,8 +237,9 @@ class ClearanceResult:
 def required_height(outcomes: Sequence[SeasonOutcome]) -> float:
     """Return the lowest height of the lower edge that the snow does not reach, m.
 
-    The height is interpolated between the highest edge that the snow reaches and the next one.
-    Beyond the simulated heights, it follows from the margin at the nearest of them.
+    The height is interpolated between the highest edge that the snow reaches and the next one. It
+    is the middle between them if the snow touches the panel although its crest is lower than the
+    edge. Beyond the simulated heights, it follows from the margin at the nearest of them.
 
     Examples
     --------
@@ -246,6 +247,9 @@ def required_height(outcomes: Sequence[SeasonOutcome]) -> float:
     >>> touched = PanelContact("2024-12-24", 1, "crest")
     >>> required_height([SeasonOutcome(1.0, -0.1, touched), SeasonOutcome(2.0, 0.9, None)])
     1.1
+    >>> lying = PanelContact("2024-12-24", 1, "slab")
+    >>> required_height([SeasonOutcome(1.0, 0.0, lying), SeasonOutcome(2.0, 0.9, None)])
+    1.5
     """
     reached = [outcome for outcome in outcomes if outcome.contact is not None]
     clear = [outcome for outcome in outcomes if outcome.contact is None]
@@ -255,6 +259,8 @@ def required_height(outcomes: Sequence[SeasonOutcome]) -> float:
     if not reached:
         return max(above.height - above.margin, 0.0)
     below = max(reached, key=height_key)
+    if below.margin == 0.0:  # a contact below the crest's height: by how much is not known
+        return 0.5 * (below.height + above.height)
     part = -below.margin / (above.margin - below.margin)
     return below.height + part * (above.height - below.height)
 

@@ -70,6 +70,11 @@ def _height(answer: ClearanceResult) -> str:
     return f"{_up(height):.1f} m above the ground (90 % interval {low:.1f} to {_up(high):.1f} m)"
 
 
+def headline_height(answer: ClearanceResult) -> float:
+    """Return the height of the first sentence, rounded up to 10 cm, m."""
+    return _up(_numbers(answer)[0])
+
+
 def _up(height: float) -> float:
     """Return a height, m, rounded up to 10 cm, because a lower edge would not be clear."""
     return math.ceil(10.0 * height - 1e-9) / 10.0
@@ -85,6 +90,17 @@ def _numbers(answer: ClearanceResult) -> tuple[float, float, float]:
 def panel_name(answer: ClearanceResult) -> str:
     """Return the size and the tilt of a panel, such as "4 m at 60°"."""
     return f"{answer.design.slope_length:g} m at {answer.design.tilt:g}°"
+
+
+def _rows(answer: ClearanceResult) -> str:
+    """Return a sentence on the rows of a plant."""
+    rows = answer.design.rows
+    if rows.count == 1:
+        return "The panel stands alone: no other row sheds snow to it."
+    return (
+        f"{rows.count} rows stand {rows.pitch:g} m apart, and shed their snow at the same time. "
+        "The height is that of the row that needs most."
+    )
 
 
 def cause_label(cause: str, answer: ClearanceResult) -> str:
@@ -200,6 +216,8 @@ def assumptions(answer: ClearanceResult) -> list[str]:
     case = answer.cases[0]
     return [
         "The panel is long across the slope: the simulation is of a strip (2D).",
+        _rows(answer),
+        *_fence(answer),
         f"Grid cells are {100 * case.dx:.3g} cm wide. Releases thinner than {MIN_CELLS:g} cells, "
         f"{1000 * case.settings.pool_below:.0f} mm, slide with those that follow.",
         f"The edge keeps a distance of {100 * MARGIN:.0f} cm from the snow.",
@@ -210,9 +228,8 @@ def assumptions(answer: ClearanceResult) -> list[str]:
         "it.",
         _settling(case.settings),
         _strength(case.settings),
-        *_thaw(case.settings),
-        "Melt of the stack, rain, wind drift and snowfall on the stack (except on the cover) are "
-        "left out.",
+        *_thaw(case),
+        "Rain, wind drift and snowfall on the stack (except on the cover) are left out.",
         "Winters are independent of each other: the climate does not change.",
     ]
 
@@ -232,10 +249,23 @@ def _ground(season: SeasonSettings) -> str:
     return f"natural snow, {season.cover:g} m deep"
 
 
-def _thaw(season: SeasonSettings) -> list[str]:
-    melt = "Snow on panel and ground melts in air warmer than 0 °C. Sunshine is left out."
-    wet = f"In air warmer than 0 °C, snow does not adhere to the panel ({season.thaw})."
-    return [*([melt] if season.melt_factor else []), *([wet] if season.thaw else [])]
+def _fence(answer: ClearanceResult) -> list[str]:
+    if answer.design.tilt < 90.0:
+        return []
+    return [
+        "No snow lies on a vertical panel, so none is shed: the height is that of the natural "
+        "cover and the margin. Rime, packed snow and drifts are left out."
+    ]
+
+
+def _thaw(case: SeasonCase) -> list[str]:
+    season = case.settings
+    melt = "Snow on panel and ground and in the stack melts in air warmer than 0 °C."
+    sunny = any(day.irradiance is not None for day in case.winter.days)
+    sun = ", or colder in sunshine" if sunny else ""
+    wet = f"In air warmer than 0 °C{sun}, snow does not adhere to the panel ({season.thaw})."
+    left_out = [] if sunny else ["Sunshine is left out, because the weather has no irradiance."]
+    return [*([melt] if season.melt_factor else []), *([wet] if season.thaw else []), *left_out]
 
 
 def _settling(season: SeasonSettings) -> str:

@@ -12,6 +12,7 @@ from snowshed.base.json_values import JsonValue
 from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
+from snowshed.season.rows import PanelRows
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.weather.quality import COVERAGE
 from snowshed.season.weather.reading import Season, read_record
@@ -27,6 +28,8 @@ def clearance(
     *,
     slope_length: float,
     tilt: float,
+    rows: int = 1,
+    pitch: float = 0.0,
     heights: Sequence[float] = (1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0),
     ranges: Optional[SnowRanges] = None,
     settings: Optional[SeasonSettings] = None,
@@ -49,7 +52,9 @@ def clearance(
     slope_length
         Length of the panel along the slope, m.
     tilt
-        Tilt of the panel from the horizontal, degrees.
+        Tilt of the panel from the horizontal, degrees; 90: a fence, on which no snow lies.
+    rows, pitch
+        Number of rows of such panels, and the horizontal distance from a row to the next, m.
     heights
         Candidates for the height of the lower edge above the ground, m.
     ranges
@@ -102,7 +107,7 @@ def clearance(
     for note in (*record.notes, *winter_list.notes):
         issue_note(note)
     return required_clearance(
-        PanelDesign(slope_length, tilt),
+        PanelDesign(slope_length, tilt, PanelRows(rows, pitch)),
         counted_winters(winter_list),
         heights,
         folder,

@@ -14,6 +14,7 @@ from snowshed.analysis.clearance.common_effects import MIN_FREE
 from snowshed.base.arrays import Floats
 from snowshed.scene.components import Ground, Panel, Slab
 from snowshed.scene.scene import ResolvedScene, Scene
+from snowshed.season.rows import SINGLE_ROW, PanelRows
 from snowshed.season.settings import SeasonSettings
 
 MIN_CELL, MAX_CELL = 0.04, 0.1  # m
@@ -76,7 +77,7 @@ UNCERTAIN: Mapping[str, UncertainParameter] = {
         is_factor=True,
     ),
     "melt_factor": UncertainParameter(
-        "melt of snow on panel and ground",
+        "melt of snow on panel, ground and stack",
         (0.01, 100.0),
         "mm of water per day and degree above 0 °C",
         default=(2.0, 8.0),
@@ -101,17 +102,20 @@ class PanelDesign:
     slope_length
         Length along the slope, m.
     tilt
-        Tilt from the horizontal, degrees.
+        Tilt from the horizontal, degrees; 90: a fence, on which no snow lies.
+    rows
+        Rows of such panels; by default a single one.
     """
 
     slope_length: float
     tilt: float
+    rows: PanelRows = SINGLE_ROW
 
     def __post_init__(self) -> None:
         if not 0.1 <= self.slope_length <= 50.0:
             raise InputError(f"slope length: {self.slope_length:g} m; allowed: 0.1 to 50 m")
-        if not 5.0 <= self.tilt <= 85.0:
-            raise InputError(f"tilt: {self.tilt:g} degrees; allowed: 5 to 85")
+        if not 5.0 <= self.tilt <= 90.0:
+            raise InputError(f"tilt: {self.tilt:g} degrees; allowed: 5 to 90")
 
     @property
     def default_dx(self) -> float:
@@ -211,11 +215,14 @@ class SnowRanges:
         return positions
 
 
-def season_settings(base: SeasonSettings, values: Mapping[str, float], dx: float) -> SeasonSettings:
+def season_settings(
+    design: PanelDesign, base: SeasonSettings, values: Mapping[str, float], dx: float
+) -> SeasonSettings:
     """Return a season's settings with drawn values; releases thinner than 2 cells are pooled."""
     of_season = ("friction", "adhesion", "catch", "melt_factor")
     drawn: dict[str, Any] = {name: values[name] for name in of_season if name in values}
-    return replace(base, **drawn, pool_below=max(base.pool_below, MIN_CELLS * dx))
+    pooled = max(base.pool_below, MIN_CELLS * dx)
+    return replace(base, **drawn, pool_below=pooled, rows=design.rows)
 
 
 def panel_scene(

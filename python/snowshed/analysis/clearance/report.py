@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import calendar
 import json
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Optional
 
@@ -12,7 +14,9 @@ import numpy as np
 from snowshed.analysis.clearance import answer_text
 from snowshed.analysis.clearance.answer import ClearanceResult
 from snowshed.analysis.clearance.panel_design import SnowRanges
+from snowshed.analysis.clearance.panel_snow import panel_snow
 from snowshed.analysis.clearance.statistics import FIRST_PROBABILITY
+from snowshed.analysis.clearance.tables import panel_columns, write_tables
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
 from snowshed.plot.clearance_figure import (
@@ -24,14 +28,25 @@ from snowshed.plot.clearance_figure import (
 from snowshed.plot.html_page import HtmlTable, Picture, template
 from snowshed.season.weather.quality_table import ALIGN, HEAD, quality_rows, title
 
+#: Titles of the columns that name a panel.
+PANEL_HEADS = {
+    "slope_length_m": "slope length, m",
+    "tilt_deg": "tilt, degrees",
+    "rows": "rows",
+    "pitch_m": "pitch, m",
+}
 #: Heights at which the curve of burials is drawn.
 CURVE_POINTS = 80
 
 
 def write_report(
-    answers: Sequence[ClearanceResult], ranges: SnowRanges, folder: Path, notes: Sequence[str] = ()
+    answers: Sequence[ClearanceResult],
+    ranges: SnowRanges,
+    folder: Path,
+    notes: Sequence[str] = (),
+    price: Optional[float] = None,
 ) -> None:
-    """Write clearance.html, clearance.csv and clearance.json into a folder.
+    """Write clearance.html, its tables (`write_tables`), clearance.csv and clearance.json.
 
     A page for each panel beside them shows the slide-offs of its worst winter in motion.
 
@@ -45,11 +60,14 @@ def write_report(
         The results folder.
     notes
         Notes from reading the weather.
+    price
+        Cost of a metre of height, for the table of panels.
     """
     import pandas as pd
 
     table = pd.concat([answer.table() for answer in answers], ignore_index=True)
     write_csv(table, folder / "clearance.csv", float_format="%.6g")
+    files = write_tables(answers, folder, price)
     data = summary(answers, ranges, notes)
     write_text(folder / "clearance.json", json.dumps(data, indent=2, allow_nan=False) + "\n")
     page = template("snowshed.plot", "clearance.html.j2").render(
@@ -57,9 +75,11 @@ def write_report(
         sentence=answer_text.sentence(answers),
         warnings=answer_text.warnings(answers),
         panels=[_panel(answer, folder) for answer in answers],
-        designs=_design_grid(answers) if len(answers) > 1 else None,
+        designs=_design_grid(answers, price) if len(answers) > 1 or price is not None else None,
         chart=_chart(answers) if len(answers) > 1 and all(a.levels for a in answers) else None,
+        panel_snow=_panel_snow_grid(answers),
         winter_table=_winter_table(answers[0]),
+        files=" and ".join(files),
         notes=notes,
         ranges=HtmlTable(
             ("uncertain parameter", "from", "to"), answer_text.range_rows(ranges), "lrr"
@@ -84,7 +104,7 @@ def summary(
         "draws": ranges.draws_of(len(answers[0].winters)),
         "panels": [
             {
-                **vars(answer.design),
+                **asdict(answer.design),
                 "dx": answer.cases[0].dx,
                 "winters": list(answer.winters),
                 "confidence": answer.heights_by_probability.confidence,
@@ -168,26 +188,37 @@ def _burial_picture(answer: ClearanceResult, name: str) -> Picture:
     )
 
 
-def _design_grid(answers: Sequence[ClearanceResult]) -> HtmlTable:
-    """Return the heights of all panels."""
-    probabilities = [level.probability for level in answers[0].levels]
-    rows = []
+def _design_grid(answers: Sequence[ClearanceResult], price: Optional[float]) -> HtmlTable:
+    """Return the heights of all panels, with their intervals, and their costs."""
+    names, rows = list(panel_columns(answers[0])), []
     for answer in answers:
-        height, low, high = answer.highest
-        rows.append(
-            (
-                f"{answer.design.slope_length:g}",
-                f"{answer.design.tilt:g}",
-                f"{height:.2f} ({low:.2f} to {high:.2f})",
-                *(
-                    f"{level.height:.2f} ({level.low:.2f} to {level.high:.2f})"
-                    for level in answer.levels
-                ),
-            )
-        )
-    clear = [f"clear in {100 * probability:g} %, m" for probability in probabilities]
-    head = ("slope length, m", "tilt, degrees", "the worst winter, m", *clear)
+        heights = [answer.highest, *((at.height, at.low, at.high) for at in answer.levels)]
+        cells = [f"{middle:.2f} ({low:.2f} to {high:.2f})" for middle, low, high in heights]
+        cost = [] if price is None else [f"{price * answer_text.headline_height(answer):,.0f}"]
+        rows.append([*(f"{value:g}" for value in panel_columns(answer).values()), *cells, *cost])
+    clear = [f"clear in {100 * level.probability:g} %, m" for level in answers[0].levels]
+    cost_head = [] if price is None else ["cost at the first sentence's height"]
+    head = (*(PANEL_HEADS[name] for name in names), "the worst winter, m", *clear, *cost_head)
     return HtmlTable(head, rows, "r" * len(head))
+
+
+def _panel_snow_grid(answers: Sequence[ClearanceResult]) -> Optional[HtmlTable]:
+    """Return the days with snow on each panel by month, and the energy that it blocks."""
+    months = [panel_snow(answer.cases) for answer in answers]
+    names = list(dict.fromkeys(month for panel in months for month in panel))
+    if not names:
+        return None
+    head = ("panel", *(calendar.month_abbr[name] for name in names), "all")
+    rows = []
+    for answer, panel in zip(answers, months):
+        days = [panel[name].covered_days if name in panel else 0.0 for name in names]
+        label = f"{answer_text.panel_name(answer)}: covered days"
+        rows.append([label, *(f"{value:.1f}" for value in (*days, sum(days)))])
+        blocked = [panel[name].blocked if name in panel else None for name in names]
+        if any(share is not None for share in blocked):
+            shares = ["" if share is None else f"{100 * share:.0f}" for share in blocked]
+            rows.append(["blocked irradiation, %", *shares, ""])
+    return HtmlTable(head, rows, "l" + "r" * (len(head) - 1))
 
 
 def _level_grid(answer: ClearanceResult) -> HtmlTable:

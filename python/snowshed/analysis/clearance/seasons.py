@@ -6,6 +6,7 @@ them the simulated stack ages as in a season. The natural snow cover is added to
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -41,8 +42,8 @@ class SeasonOutcome:
     height
         Height of the edge above the ground, m.
     margin
-        Distance from the highest snow to the edge, less the distance that it must keep, m; at most
-        0 after a contact.
+        Vertical distance from the highest snow to the edge, less the distance that it must keep, m;
+        at most 0 after a contact.
     contact
         The first contact, if any.
     cover
@@ -88,7 +89,7 @@ class SeasonCase:
     @cached_property
     def settings(self) -> SeasonSettings:
         """The settings of the season."""
-        return season_settings(self.base_settings, self.values, self.dx)
+        return season_settings(self.design, self.base_settings, self.values, self.dx)
 
     @cached_property
     def days(self) -> list[WinterDay]:
@@ -125,7 +126,9 @@ class SeasonCase:
         scene = self.panel_scene(height).data
         table = season_table(scene, self.days, self.settings, events, outlines)
         contact = first_contact(table, MARGIN)
-        distance = table["crest_clearance_m"] + table["stack_height_m"] - table["settled_height_m"]
+        upright = math.cos(math.radians(float((scene.get("ground") or {}).get("tilt") or 0.0)))
+        normal = table["crest_clearance_m"] + table["stack_height_m"] - table["settled_height_m"]
+        distance = normal / upright
         margin = float(distance.min()) - MARGIN
         cover = float(table["cover_m"].iloc[int(distance.argmin())])
         return SeasonOutcome(height, min(margin, 0.0) if contact else margin, contact, cover)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Optional
 
 import click
 
+from snowshed._core import InputError
 from snowshed.base.formatting import about, plural
 from snowshed.cli.exit_codes import Stopped
 from snowshed.cli.options.common import (
@@ -19,6 +20,7 @@ from snowshed.cli.options.common import (
     resume_option,
 )
 from snowshed.cli.options.number_texts import named_span, numbers
+from snowshed.cli.options.rows import rows_options
 from snowshed.cli.options.weather import weather_options
 from snowshed.cli.output.terminal import plain_table, say, wide_console
 from snowshed.cli.output.winters_table import print_quality
@@ -26,7 +28,7 @@ from snowshed.scene.schema import scene_parameters
 
 if TYPE_CHECKING:
     from snowshed.analysis.clearance.answer import ClearanceResult
-    from snowshed.analysis.clearance.panel_design import PanelDesign
+    from snowshed.analysis.clearance.panel_design import PanelDesign, SnowRanges
     from snowshed.analysis.clearance.winters import Winter
     from snowshed.season.weather.season_record import SeasonRecord
 
@@ -82,6 +84,12 @@ SHORT_NAMES = {"sliding": "sliding_friction", "melt": "melt_factor"}
     show_default=True,
     help="Numerical scheme. The interval contains its recorded error of the grid, whatever --dx.",
 )
+@click.option(
+    "--price",
+    type=click.FloatRange(0.0),
+    help="Cost of a metre of height, in any currency, for the costs in the tables.",
+)
+@rows_options
 @weather_options
 @jobs_option("Processes")
 @click.option(
@@ -105,6 +113,9 @@ def clearance(
     ground_tilt: float,
     dx: Optional[float],
     scheme: str,
+    price: Optional[float],
+    rows: int,
+    pitch: float,
     coverage: float,
     snow_from: str,
     temperature: Optional[Path],
@@ -125,13 +136,14 @@ def clearance(
       snowshed clearance winters.csv --slope-length 4 --tilt 60 --heights 1.5:4:0.5 -o answer
     """  # noqa: D301 - click wants the control character
     from snowshed.analysis.clearance.answer import expected_duration
-    from snowshed.analysis.clearance.panel_design import PanelDesign, SnowRanges, default_ranges
+    from snowshed.analysis.clearance.panel_design import PanelDesign
     from snowshed.analysis.clearance.report import write_report
     from snowshed.analysis.clearance.winters import counted_winters
+    from snowshed.season.rows import PanelRows
 
-    ranges = SnowRanges({**default_ranges(), **dict(map(_span, spans))}, draws, seed)
+    ranges = _ranges(spans, draws, seed)
     designs = [
-        PanelDesign(length, angle)
+        PanelDesign(length, angle, PanelRows(rows, pitch))
         for length in _numbers("--slope-length", slope_length)
         for angle in _numbers("--tilt", tilt)
     ]
@@ -163,7 +175,7 @@ def clearance(
         return
     options["winter_list"] = winter_list
     answers = _answers(designs, winters, candidates, folder, options, quiet=quiet)
-    write_report(answers, ranges, folder, notes)
+    write_report(answers, ranges, folder, notes, price)
     if not quiet:
         print_answers(answers, folder)
 
@@ -210,6 +222,20 @@ def _record(weather: tuple[Path, ...], snow_from: str, temperature: Optional[Pat
     )
 
 
+def _ranges(spans: Sequence[str], draws: Optional[int], seed: int) -> SnowRanges:
+    """Return the ranges; errors have the names of the options."""
+    from snowshed.analysis.clearance.panel_design import SnowRanges, default_ranges
+
+    given = dict(map(_span, spans))
+    try:
+        return SnowRanges({**default_ranges(), **given}, draws, seed)
+    except InputError as error:
+        text = str(error)
+        for short, name in SHORT_NAMES.items():
+            text = text.replace(name, short)
+        raise InputError(text) from None
+
+
 def _numbers(option: str, text: str) -> list[float]:
     return numbers(option, text, example="2,3", steps=True)
 
@@ -245,4 +271,4 @@ def print_answers(answers: Sequence[ClearanceResult], folder: Path) -> None:
         print_quality(console, answers[0].winter_list)
     for warning in answer_text.warnings(answers):
         console.print(f"note: {warning}")
-    console.print(f"clearance.html and clearance.csv in {folder}")
+    console.print(f"clearance.html, heights.csv and clearance.csv in {folder}")

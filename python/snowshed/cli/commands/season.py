@@ -19,6 +19,7 @@ from snowshed.cli.options.common import (
     quiet_option,
     resume_flag,
 )
+from snowshed.cli.options.rows import rows_options
 from snowshed.cli.options.scene import (
     in_terms_of_options,
     path_of,
@@ -30,6 +31,7 @@ from snowshed.cli.output.dry_run import print_cost
 from snowshed.cli.output.terminal import plain_table, say, wide_console
 from snowshed.cli.output.winters_table import print_quality
 from snowshed.scene.scene import Scene
+from snowshed.season.rows import PanelRows
 from snowshed.season.settings import SeasonSettings
 
 if TYPE_CHECKING:
@@ -139,8 +141,8 @@ SETTLED_COLUMN = {"settled\nheight, m": ("settled_height_m", "{:.2f}")}
     type=float,
     default=DEFAULTS.melt_factor,
     show_default=True,
-    help="Melt of the snow on the panel and the ground, per day and degree of the air above 0 °C "
-    "[mm of water].",
+    help="Melt of the snow on panel and ground and in the stack, per day and degree of the air "
+    "above 0 °C [mm of water].",
 )
 @click.option(
     "--thaw",
@@ -148,8 +150,9 @@ SETTLED_COLUMN = {"settled\nheight, m": ("settled_height_m", "{:.2f}")}
     default=DEFAULTS.thaw,
     show_default=True,
     help="Criterion for wet snow, which does not adhere to the panel: marion-2013 (air warmer than "
-    "0 °C), or none.",
+    "0 °C, or colder in sunshine), or none.",
 )
+@rows_options
 @weather_options
 @resume_flag("Resume an interrupted season.")
 @dry_run_option("Print the releases, and the cost of the slide-offs, and exit.")
@@ -170,6 +173,8 @@ def season(
     cover: str,
     melt_factor: float,
     thaw: str,
+    rows: int,
+    pitch: float,
     coverage: float,
     snow_from: str,
     temperature: Optional[Path],
@@ -184,9 +189,9 @@ def season(
 
     FILE comes from a weather station (SMET, iCSV, EPW, TMY3, GHCN-daily, ACIS, MeteoSwiss, IMIS),
     or is a table with the columns date, snowfall_m, temperature_c and, if known, density_kg_m3,
-    friction, adhesion_pa and snow_depth_m. Several FILEs of one station are joined: its snow and
-    its temperature, or its years. The options of ``snowshed panel`` describe the panel, the ground
-    and the method; --friction is that of sliding snow.
+    friction, adhesion_pa, snow_depth_m and irradiance_w_m2. Several FILEs of one station are
+    joined: its snow and its temperature, or its years. The options of ``snowshed panel`` describe
+    the panel, the ground and the method; --friction is that of sliding snow.
 
     \b
     Example:
@@ -204,6 +209,7 @@ def season(
         depth_or_word(cover),
         melt_factor=melt_factor,
         thaw=none_or(thaw),
+        rows=PanelRows(rows, pitch),
     )
     scene = _scene(scene_file, preset, snow_preset, options)
     reading = {"coverage": coverage, "snow_from": snow_from, "temperature": temperature}

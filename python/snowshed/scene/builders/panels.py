@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import Optional
+from collections.abc import Mapping, Sequence
+from typing import Any, Optional
 
 from snowshed._core import InputError
 from snowshed.methods.mpm.settings import MpmSettings
@@ -84,9 +84,9 @@ def panel_rows(
 ) -> Scene:
     """Return several panels in a row, all with snow, on level or tilted ground.
 
-    The first is the scene's panel, about which the stack is measured; the others stand down the
-    slide direction. Snow on them counts as part of the stack; therefore read the columns of the
-    largest connected body. Only on the first panel is a new slab laid on top of remaining snow.
+    The first is the scene's panel; the others stand down the slide direction. Snow that stays on
+    any of them does not count as stack. Only on the first panel is a new slab laid on top of
+    remaining snow.
 
     Parameters
     ----------
@@ -111,23 +111,46 @@ def panel_rows(
     check_positive(pitch=pitch, length=length, snow=snow)
     if count < 2:
         raise InputError(f"count: {count} is not allowed; give 2 panels or more")
-    least = length * math.cos(math.radians(tilt))
-    if pitch < least + 2 * dx:
-        raise InputError(
-            f"pitch: {pitch:g} m is not allowed; the panels overlap below {least + 2 * dx:.3g} m"
-        )
     scene = single_panel(
         height=height, length=length, tilt=tilt, snow=snow, width=width, friction=friction,
         ground_tilt=ground_tilt, dx=dx,
     )  # fmt: skip
-    edge = panel_edge(scene.to_data())
-    fall = math.tan(math.radians(ground_tilt))
-    for number in range(1, count):
-        away = number * pitch
-        slope = Slope((edge.x + away, edge.z - away * fall), tilt, width)
-        scene.append("obstacles", _board(f"panel-{number + 1}", slope, 0.0, length, friction, dx))
+    for number, slope in enumerate(further_rows(scene.to_data(), count, pitch), 2):
+        scene.append("obstacles", row_board(number, slope, length, friction, dx))
         scene.append("bodies", snow_layer(slope, 0.0, length, snow))
     return scene
+
+
+def further_rows(scene: Mapping[str, Any], count: int, pitch: float) -> list[Slope]:
+    """Return the faces of all rows but the first, which is the panel of a scene's data.
+
+    Parameters
+    ----------
+    scene
+        Data with the panel, the ground and the cells.
+    count, pitch
+        As for `panel_rows`.
+
+    Raises
+    ------
+    InputError
+        If the panels overlap.
+    """
+    panel, edge = scene["panel"], panel_edge(scene)
+    least = panel["length"] * math.cos(math.radians(panel["tilt"])) + 2 * scene["numerics"]["dx"]
+    if pitch < least:
+        raise InputError(
+            f"pitch: {pitch:g} m is not allowed; the panels overlap below {least:.3g} m"
+        )
+    fall = math.tan(math.radians((scene.get("ground") or {}).get("tilt") or 0.0))
+    width = panel.get("width") if scene["dimension"] == 3 else None
+    away = [number * pitch for number in range(1, count)]
+    return [Slope((edge.x + x, edge.z - x * fall), panel["tilt"], width) for x in away]
+
+
+def row_board(number: int, slope: Slope, length: float, friction: float, dx: float) -> Obstacle:
+    """Return the board of a row, of a number from 2."""
+    return _board(f"panel-{number}", slope, 0.0, length, friction, dx)
 
 
 def panel_table(

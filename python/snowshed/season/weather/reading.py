@@ -55,6 +55,7 @@ COLUMNS: Mapping[str, _Column] = {
     "friction": _Column(0.0, 10.0, ""),
     "adhesion_pa": _Column(0.0, 1e6, "Pa"),
     "snow_depth_m": _Column(0.0, 15.0, "m", hint="; is it in cm, mm or inches?"),
+    "irradiance_w_m2": _Column(-20.0, 2000.0, "W/m2"),  # night offsets of sensors are negative
 }
 ALLOWED = ("date", *COLUMNS)
 #: Other spellings of units.
@@ -73,10 +74,10 @@ def read_season(season: Season) -> list[Weather]:
         A weather file in one of the formats of `snowshed.io.weather.FORMATS`, recognised by its
         content, or a CSV file or a pandas DataFrame with the columns ``date`` (ISO 8601 or
         timestamps, increasing; of a DataFrame also its index), ``snowfall_m``, ``temperature_c``
-        and, if known, ``density_kg_m3``, ``friction``, ``adhesion_pa`` and ``snow_depth_m`` (of the
-        natural snow cover). The names tell the units. If
-        ``attrs["units"]`` of a DataFrame has the unit of a column, it must agree. Rows of `Weather`
-        are returned unchanged. Several weather files of one station are read as one
+        and, if known, ``density_kg_m3``, ``friction``, ``adhesion_pa``, ``snow_depth_m`` (of the
+        natural snow cover) and ``irradiance_w_m2`` (of the panel's plane). The names tell the
+        units. If ``attrs["units"]`` of a DataFrame has the unit of a column, it must agree. Rows of
+        `Weather` are returned unchanged. Several weather files of one station are read as one
         (`snowshed.io.weather.read_stations`).
 
     Raises
@@ -220,6 +221,7 @@ def _weather(row: TableRow) -> Weather:
         number["friction"],
         number["adhesion_pa"],
         number["snow_depth_m"],
+        irradiance=number["irradiance_w_m2"],
     )
 
 

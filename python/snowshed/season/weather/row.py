@@ -32,6 +32,8 @@ class Weather:
         Friction and adhesion (Pa) of the panel on that day. [default: those of the settings]
     snow_depth
         Depth of the natural snow cover, m; None: not measured.
+    irradiance
+        Irradiance of the panel's plane at that time, W/m2; None: not measured.
     source
         Origin of the snowfall.
     reason
@@ -48,3 +50,4 @@ class Weather:
     snow_depth: Optional[float] = None
     source: SnowSource = SnowSource.GIVEN
     reason: str = ""
+    irradiance: Optional[float] = None

@@ -1,0 +1,138 @@
+"""The answer as tables: heights, probabilities of burial, and snow on the panel by month."""
+
+from __future__ import annotations
+
+import calendar
+import importlib.util
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Optional
+
+from snowshed.analysis.clearance.answer import ClearanceResult
+from snowshed.analysis.clearance.panel_snow import panel_snow
+from snowshed.io.atomic import replacing
+from snowshed.io.csv_table import write_csv
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def height_table(answers: Sequence[ClearanceResult], price: Optional[float] = None) -> pd.DataFrame:
+    """Return the height of each panel for each probability, and for the worst winter.
+
+    Parameters
+    ----------
+    answers
+        One answer for each panel.
+    price
+        Cost of a metre of height; None: the table has no costs.
+    """
+    import pandas as pd
+
+    rows = []
+    for answer in answers:
+        height, low, high = answer.highest
+        heights: list[tuple[str, Optional[float], float, float, float]] = [
+            ("the worst winter of the record", None, height, low, high)
+        ]
+        heights += [
+            (
+                f"clear in {100 * level.probability:g} % of winters",
+                level.probability,
+                level.height,
+                level.low,
+                level.high,
+            )
+            for level in answer.levels
+        ]
+        for case, probability, middle, lower, upper in heights:
+            row = {
+                **panel_columns(answer),
+                "case": case,
+                "probability": probability,
+                "height_m": middle,
+                "low_m": lower,
+                "high_m": upper,
+            }
+            if price is not None:
+                row["cost"] = price * middle
+            rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def burial_table(answers: Sequence[ClearanceResult]) -> pd.DataFrame:
+    """Return the probability of burial in a winter at each candidate height, with its interval."""
+    import pandas as pd
+
+    rows = []
+    for answer in answers:
+        for height in answer.heights:
+            burial = answer.heights_by_probability.burial(height)
+            if burial is not None:
+                names = ("probability", "low", "high")
+                rows.append(
+                    {**panel_columns(answer), "height_m": height, **dict(zip(names, burial))}
+                )
+    return pd.DataFrame(rows)
+
+
+def panel_snow_table(answers: Sequence[ClearanceResult]) -> pd.DataFrame:
+    """Return the snow on each panel, month by month of a mean winter."""
+    import pandas as pd
+
+    rows: list[Mapping[str, Any]] = []
+    for answer in answers:
+        for month, snow in panel_snow(answer.cases).items():
+            row = {**panel_columns(answer), "month": calendar.month_abbr[month], "days": snow.days}
+            rows.append({**row, "covered_days": snow.covered_days, "blocked": snow.blocked})
+    table = pd.DataFrame(rows)
+    return table.dropna(axis=1, how="all")  # without irradiance nothing is known of the energy
+
+
+def panel_columns(answer: ClearanceResult) -> dict[str, float]:
+    """Return the columns that name a panel."""
+    design = answer.design
+    columns = {"slope_length_m": design.slope_length, "tilt_deg": design.tilt}
+    if design.rows.count > 1:
+        columns |= {"rows": design.rows.count, "pitch_m": design.rows.pitch}
+    return columns
+
+
+def write_tables(
+    answers: Sequence[ClearanceResult], folder: Path, price: Optional[float] = None
+) -> list[str]:
+    """Write heights.csv, and clearance.xlsx with all tables if its library is installed.
+
+    Returns
+    -------
+    list of str
+        Names of the files.
+    """
+    heights = height_table(answers, price)
+    write_csv(heights, folder / "heights.csv", float_format="%.6g")
+    if importlib.util.find_spec("openpyxl") is None:
+        return ["heights.csv"]
+    sheets = {
+        "heights": heights,
+        "burial": burial_table(answers),
+        "snow on the panel": panel_snow_table(answers),
+    }
+    _write_excel(sheets, folder / "clearance.xlsx")
+    return ["heights.csv", "clearance.xlsx"]
+
+
+def _write_excel(sheets: Mapping[str, pd.DataFrame], file: Path) -> None:
+    import pandas as pd
+
+    with replacing(file) as beside, pd.ExcelWriter(beside, engine="openpyxl") as book:
+        for name, table in sheets.items():
+            table.to_excel(book, sheet_name=name, index=False, freeze_panes=(1, 0))
+            for column in book.sheets[name].columns:
+                longest = max(len(_shown(cell.value)) for cell in column)
+                book.sheets[name].column_dimensions[column[0].column_letter].width = longest + 2
+                for cell in column[1:]:
+                    cell.number_format = "0.00" if isinstance(cell.value, float) else "General"
+
+
+def _shown(value: object) -> str:
+    return f"{value:.2f}" if isinstance(value, float) else str(value)
