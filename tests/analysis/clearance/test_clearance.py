@@ -12,7 +12,7 @@ import pytest
 from helpers.station_files import days, elements, ghcn
 from plot.browser import check_page
 
-from snowshed import InputError
+from snowshed import InputError, Scene
 from snowshed.analysis.clearance import (
     PanelDesign,
     SnowRanges,
@@ -21,6 +21,7 @@ from snowshed.analysis.clearance import (
     split_winters,
 )
 from snowshed.analysis.clearance.answer import STUDY, expected_duration
+from snowshed.analysis.clearance.grid_error import choose_grid, recorded_grid_error
 from snowshed.analysis.clearance.panel_snow import mean_months
 from snowshed.analysis.clearance.report import write_report
 from snowshed.analysis.clearance.seasons import cases_of
@@ -44,6 +45,7 @@ SHORT = Climate(
     }
 )
 DESIGN = PanelDesign(0.6, 60.0)
+DEFAULT_CELL = 4.0 / 60.0  # of a panel of 4 m
 KNOWN = SnowRanges(
     {"friction": (0.4, 0.4), "adhesion": (10.0, 10.0), "sliding_friction": (0.2, 0.2)}, draws=1
 )
@@ -231,6 +233,23 @@ def test_the_error_of_the_grid_follows_from_the_scheme(answer, winters):
         warning = answer_text.warnings([replace(result, cases=cases)])[0]
         assert warning.startswith("the intervals contain the error of the grid, a factor of up to ")
         assert f"on the height of shed snow: {text}" in warning
+
+
+def test_more_cells_in_the_slabs_have_a_smaller_recorded_error():
+    scene = Scene.preset("lab-50").with_({"numerics.scheme": "objective"}).resolve().data
+    errors = [recorded_grid_error(scene, cells).size for cells in (2.0, 4.0, 100.0)]
+    assert errors[0] > errors[1] == errors[2] > 0.0
+
+
+def test_an_accuracy_chooses_scheme_and_cells_of_the_same_slabs(tmp_path, capsys):
+    command = ["clearance", "example", "--slope-length", "4", "--tilt", "60", "--dry-run"]
+    assert main([*command, "--accuracy", "10%", "-o", str(tmp_path / "out")]) == 0
+    choice = choose_grid(0.1)
+    text = capsys.readouterr().out
+    assert f"scheme {choice.scheme} with {choice.cells:g} cells" in text
+    assert f"dx {2.0 * DEFAULT_CELL / choice.cells:.3g} m" in text
+    assert main([*command, "--accuracy", "10%", "--dx", "0.1", "-o", str(tmp_path / "out")]) == 2
+    assert "--accuracy chooses cells and scheme" in capsys.readouterr().err
 
 
 def test_disabled_relations_are_stated(answer):

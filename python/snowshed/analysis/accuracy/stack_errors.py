@@ -213,6 +213,17 @@ def resolved_biases(
     return _resolved(_nearest_stacks(dimension, events, mechanisms or Mechanisms()))
 
 
+def resolved_costs(
+    dimension: int, events: int, mechanisms: Optional[Mechanisms] = None
+) -> dict[float, float]:
+    """Return the run time of recorded stacks, s, by the cells across the slab.
+
+    The parameters are those of `recorded_bias`.
+    """
+    stacks = _nearest_stacks(dimension, events, mechanisms or Mechanisms())
+    return {PRESET_THICKNESS / float(stack.settings[ORDER_IN]): stack.wall_s for stack in stacks}
+
+
 def _resolved(stacks: Iterable[RecordedStack]) -> dict[float, float]:
     biases = {
         PRESET_THICKNESS / float(stack.settings[ORDER_IN]): stack.biases[0] for stack in stacks

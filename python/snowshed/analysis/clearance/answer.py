@@ -106,7 +106,8 @@ class ClearanceResult:
     @cached_property
     def grid_error(self) -> GridError:
         """The error of heights by the grid, from recorded runs."""
-        return recorded_grid_error(self.cases[0].panel_scene(self.heights[0]).data)
+        case = self.cases[0]
+        return recorded_grid_error(case.panel_scene(self.heights[0]).data, case.cells_across)
 
     @cached_property
     def heights_by_probability(self) -> RequiredHeights:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 
 from snowshed.analysis.clearance.answer import ClearanceResult
-from snowshed.analysis.clearance.panel_design import MARGIN, MIN_CELLS, UNCERTAIN, SnowRanges
+from snowshed.analysis.clearance.panel_design import MARGIN, UNCERTAIN, SnowRanges
 from snowshed.analysis.clearance.seasons import SeasonCase
 from snowshed.analysis.clearance.statistics import (
     CHANCE,
@@ -218,8 +218,9 @@ def assumptions(answer: ClearanceResult) -> list[str]:
         "The panel is long across the slope: the simulation is of a strip (2D).",
         _rows(answer),
         *_fence(answer),
-        f"Grid cells are {100 * case.dx:.3g} cm wide. Releases thinner than {MIN_CELLS:g} cells, "
-        f"{1000 * case.settings.pool_below:.0f} mm, slide with those that follow.",
+        f"Grid cells are {100 * case.dx:.3g} cm wide. Releases thinner than "
+        f"{case.cells_across:.3g} cells, {1000 * case.settings.pool_below:.0f} mm, slide with "
+        "those that follow.",
         f"The edge keeps a distance of {100 * MARGIN:.0f} cm from the snow.",
         "The snow parameters are unknown, but the same in every winter. Only the weather and "
         "chance change from winter to winter.",
@@ -227,6 +228,8 @@ def assumptions(answer: ClearanceResult) -> list[str]:
         f"The ground {_slope(case)}. The stack lies on {_ground(case.settings)}, and nobody clears "
         "it.",
         _settling(case.settings),
+        "Snow that has broken is looser than its slab, by a tenth or more, because its pieces do "
+        "not become round or grind each other.",
         _strength(case.settings),
         *_thaw(case),
         "Rain, wind drift and snowfall on the stack (except on the cover) are left out.",

@@ -9,8 +9,15 @@ from typing import Any
 from snowshed.analysis.accuracy.mechanisms import Mechanisms
 from snowshed.analysis.accuracy.recorded import load_recorded
 from snowshed.analysis.accuracy.recorded_stacks import recorded_stacks
-from snowshed.analysis.accuracy.stack_errors import recorded_bias, resolved_biases
+from snowshed.analysis.accuracy.stack_errors import (
+    recorded_bias,
+    resolved_biases,
+    resolved_costs,
+)
 
+#: Fewest cells across a slab.
+MIN_CELLS = 2.0
+ROUNDING = 1e-6
 #: Number of slide-offs in a typical winter, for which recorded runs give the error.
 TYPICAL_SLIDE_OFFS = 5
 
@@ -38,16 +45,61 @@ class GridError:
         return f"a factor of up to {1.0 + self.size:.2f} on the height of shed snow: {self.source}"
 
 
-def recorded_grid_error(scene: Mapping[str, Any]) -> GridError:
+@dataclass(frozen=True)
+class GridChoice:
+    """A scheme, and cells across the thinnest slab, with their recorded error.
+
+    Attributes
+    ----------
+    scheme, cells
+        The scheme, and the number of cells.
+    error
+        Relative error of the height in recorded runs, without its sign.
+    """
+
+    scheme: str
+    cells: float
+    error: float
+
+
+def choose_grid(accuracy: float) -> GridChoice:
+    """Return the quickest recorded grid whose height was as accurate as wanted.
+
+    If none was, the most accurate is returned.
+
+    Parameters
+    ----------
+    accuracy
+        Largest relative error of the height, such as 0.2.
+
+    Examples
+    --------
+    >>> choose_grid(0.2).scheme, choose_grid(0.4).scheme
+    ('objective', 'thesis')
+    """
+    candidates = []
+    for scheme in _recorded_schemes():
+        costs = resolved_costs(2, TYPICAL_SLIDE_OFFS, Mechanisms(scheme))
+        for cells, bias in resolved_biases(2, TYPICAL_SLIDE_OFFS, Mechanisms(scheme)).items():
+            candidates.append((costs[cells], GridChoice(scheme, cells, abs(bias))))
+    accurate = [pair for pair in candidates if pair[1].error <= accuracy]
+    if accurate:
+        return min(accurate, key=lambda pair: pair[0])[1]
+    return min((choice for _, choice in candidates), key=lambda choice: choice.error)
+
+
+def recorded_grid_error(scene: Mapping[str, Any], cells: float = MIN_CELLS) -> GridError:
     """Return the largest recorded error of the height with a scene's scheme.
 
-    Grids with fewer than two cells in the slab are left out. If nothing was recorded for the
-    mechanisms of the scene, the error is the largest of all schemes.
+    Grids with fewer cells in the slab are left out, except the finest. If nothing was recorded for
+    the mechanisms of the scene, the error is the largest of all schemes.
 
     Parameters
     ----------
     scene
         The complete scene.
+    cells
+        Number of cells across the thinnest slab.
 
     Examples
     --------
@@ -57,16 +109,20 @@ def recorded_grid_error(scene: Mapping[str, Any]) -> GridError:
     True
     """
     mechanisms = Mechanisms.of_scene(scene) or Mechanisms()
-    known = _largest(mechanisms)
+    known = _largest(mechanisms, cells)
     source = recorded_bias(2, TYPICAL_SLIDE_OFFS, mechanisms)
     if known > 0.0:
         return GridError(known, source)
-    stacks = recorded_stacks(load_recorded())
-    schemes = {Mechanisms.of_settings(stack.settings).scheme for stack in stacks}
-    largest = max(_largest(Mechanisms(scheme)) for scheme in schemes)
+    largest = max(_largest(Mechanisms(scheme), cells) for scheme in _recorded_schemes())
     return GridError(largest, f"{source}, so it is the largest error of all schemes")
 
 
-def _largest(mechanisms: Mechanisms) -> float:
-    biases = resolved_biases(2, TYPICAL_SLIDE_OFFS, mechanisms).values()
-    return max((abs(bias) for bias in biases), default=0.0)
+def _recorded_schemes() -> list[str]:
+    stacks = recorded_stacks(load_recorded())
+    return sorted({Mechanisms.of_settings(stack.settings).scheme for stack in stacks})
+
+
+def _largest(mechanisms: Mechanisms, cells: float) -> float:
+    biases = resolved_biases(2, TYPICAL_SLIDE_OFFS, mechanisms)
+    fine = [abs(bias) for across, bias in biases.items() if across > cells - ROUNDING]
+    return max(fine or [abs(biases[across]) for across in sorted(biases)[-1:]], default=0.0)

@@ -11,6 +11,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.clearance.common_effects import MIN_FREE
+from snowshed.analysis.clearance.grid_error import MIN_CELLS
 from snowshed.base.arrays import Floats
 from snowshed.scene.components import Ground, Panel, Slab
 from snowshed.scene.scene import ResolvedScene, Scene
@@ -20,8 +21,6 @@ from snowshed.season.settings import SeasonSettings
 MIN_CELL, MAX_CELL = 0.04, 0.1  # m
 CELLS = 60  # cells along the slope
 USUAL_DRAWS = 3
-#: Fewest cells across a slab; thinner releases slide with those that follow.
-MIN_CELLS = 2.0
 #: Distance that an edge keeps from the highest snow, m. It does not depend on the grid.
 MARGIN = 0.1
 

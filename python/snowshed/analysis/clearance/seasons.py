@@ -86,6 +86,11 @@ class SeasonCase:
         """Size of the grid cells, m."""
         return float(self.base.get("numerics.dx", self.design.default_dx))
 
+    @property
+    def cells_across(self) -> float:
+        """Number of cells across the thinnest slab."""
+        return self.settings.pool_below / self.dx
+
     @cached_property
     def settings(self) -> SeasonSettings:
         """The settings of the season."""

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any, Optional
 import click
 
 from snowshed._core import InputError
-from snowshed.base.formatting import about, plural
+from snowshed.base.formatting import about, percent, plural
 from snowshed.cli.exit_codes import Stopped
+from snowshed.cli.options.accuracy import parse_fraction
 from snowshed.cli.options.common import (
     PATH,
     ResultsFolder,
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from snowshed.analysis.clearance.answer import ClearanceResult
     from snowshed.analysis.clearance.panel_design import PanelDesign, SnowRanges
     from snowshed.analysis.clearance.winters import Winter
+    from snowshed.season.settings import SeasonSettings
     from snowshed.season.weather.season_record import SeasonRecord
 
 SCHEME = next(item for item in scene_parameters() if item.path == "numerics.scheme")
@@ -80,9 +82,15 @@ SHORT_NAMES = {"sliding": "sliding_friction", "melt": "melt_factor"}
 @click.option(
     "--scheme",
     type=click.Choice(SCHEME.choices or ()),
-    default=SCHEME.default,
-    show_default=True,
-    help="Numerical scheme. The interval contains its recorded error of the grid, whatever --dx.",
+    help="Numerical scheme. The interval contains its recorded error of the grid.  "
+    f"[default: {SCHEME.default}]",
+)
+@click.option(
+    "--accuracy",
+    type=parse_fraction,
+    metavar="PERCENT",
+    help="Choose scheme and cells by the allowed error of the grid, such as 20%, from recorded "
+    "runs; in place of --dx and --scheme.",
 )
 @click.option(
     "--price",
@@ -112,7 +120,8 @@ def clearance(
     seed: int,
     ground_tilt: float,
     dx: Optional[float],
-    scheme: str,
+    scheme: Optional[str],
+    accuracy: Optional[float],
     price: Optional[float],
     rows: int,
     pitch: float,
@@ -154,15 +163,12 @@ def clearance(
     for note in () if quiet else notes:
         say(f"note: {note}")
     winters = counted_winters(winter_list)
-    size = dx or min(design.default_dx for design in designs)  # the same for all panels
+    grid, settings = _grid(designs, dx, scheme, accuracy, quiet=quiet)
     options: dict[str, Any] = {
         "ranges": ranges,
         "jobs": jobs,
-        "scene": {
-            "ground.tilt": ground_tilt,
-            "numerics.dx": size,
-            SCHEME.path: scheme,
-        },
+        "settings": settings,
+        "scene": {"ground.tilt": ground_tilt, **grid},
     }
     if dry_run or not quiet:
         costs = [expected_duration(design, winters, candidates, **options) for design in designs]
@@ -178,6 +184,36 @@ def clearance(
     write_report(answers, ranges, folder, notes, price)
     if not quiet:
         print_answers(answers, folder)
+
+
+def _grid(
+    designs: Sequence[PanelDesign],
+    dx: Optional[float],
+    scheme: Optional[str],
+    accuracy: Optional[float],
+    *,
+    quiet: bool,
+) -> tuple[dict[str, Any], SeasonSettings]:
+    """Return cells and scheme, the same for all panels, and the settings that pool releases."""
+    from snowshed.analysis.clearance.grid_error import MIN_CELLS, choose_grid
+    from snowshed.season.settings import SeasonSettings
+
+    usual = min(design.default_dx for design in designs)
+    if accuracy is None:
+        return {"numerics.dx": dx or usual, SCHEME.path: scheme or SCHEME.default}, SeasonSettings()
+    if dx is not None or scheme is not None:
+        raise InputError("--accuracy chooses cells and scheme; give it, or --dx and --scheme")
+    choice = choose_grid(accuracy)
+    size = MIN_CELLS * usual / choice.cells  # the same slabs, in more cells
+    if not quiet:
+        best = "" if choice.error <= accuracy else "no recorded run was that accurate; the best is "
+        say(
+            f"--accuracy {percent(accuracy)}: {best}scheme {choice.scheme} with {choice.cells:g} "
+            f"cells in the thinnest slab, dx {size:.3g} m. Its heights were off by "
+            f"{percent(choice.error, 2)}"
+        )
+    grid = {"numerics.dx": size, SCHEME.path: choice.scheme}
+    return grid, SeasonSettings(pool_below=MIN_CELLS * usual)
 
 
 def _answers(
