@@ -29,6 +29,7 @@ MODULE_BY_PACKAGE = {
     "pandas": "pandas",
     "pillow": "PIL",
     "pvlib": "pvlib",
+    "openpyxl": "openpyxl",
     "pyarrow": "pyarrow",
     "pyogrio": "pyogrio",
     "rasterio": "rasterio",

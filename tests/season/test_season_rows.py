@@ -29,14 +29,14 @@ def test_every_row_sheds_its_snow(tmp_path):
     """Two rows far apart: twice the mass, and the same height as of a single row."""
     single = run_season(SNOWFALL, panel_scene(), tmp_path / "single")
     rows = run_season(SNOWFALL, panel_scene(), tmp_path / "rows", settings=SeasonSettings(rows=TWO))
-    one, two = (
+    first, second = (
         np.genfromtxt(tmp_path / name / "run" / "events.csv", delimiter=",", names=True)
         for name in ("single", "rows")
     )
     laid = [events["mass_kg"] + events["on_panel_kg"] + events["on_structures_kg"]
-            for events in (one, two)]  # fmt: skip
+            for events in (first, second)]  # fmt: skip
     assert laid[1] == pytest.approx(2.0 * laid[0], rel=0.01)
-    assert two["mass_kg"] == pytest.approx(2.0 * one["mass_kg"], rel=0.05)
+    assert second["mass_kg"] == pytest.approx(2.0 * first["mass_kg"], rel=0.05)
     height = [result.table["stack_height_m"].iloc[0] for result in (single, rows)]
     assert height[1] == pytest.approx(height[0], rel=0.25)
     assert any("2 rows of panels" in note for note in rows.notes)

@@ -171,7 +171,7 @@ def plane_irradiance(
     >>> noon = pd.DatetimeIndex(["2024-12-21T11:30"], tz="UTC")
     >>> level = pd.Series([300.0], noon)
     >>> steep = plane_irradiance(level, 46.8, 9.8, surface_tilt=60.0, surface_azimuth=180.0)
-    >>> steep.iloc[0] > 1.5 * level.iloc[0]  # the sun of December is low
+    >>> bool(steep.iloc[0] > 1.5 * level.iloc[0])  # the sun of December is low
     True
     """
     solar = require("pvlib.solarposition", "pv", "the irradiance of a plane")

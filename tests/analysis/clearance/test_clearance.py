@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 from dataclasses import replace
 from datetime import date, datetime, timedelta
@@ -10,7 +11,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from helpers.station_files import days, elements, ghcn
-from plot.browser import check_page
+from plot.browser import check_page, open_page
 
 from snowshed import InputError, Scene
 from snowshed.analysis.clearance import (
@@ -25,7 +26,7 @@ from snowshed.analysis.clearance.grid_error import choose_grid, recorded_grid_er
 from snowshed.analysis.clearance.panel_snow import mean_months
 from snowshed.analysis.clearance.report import write_report
 from snowshed.analysis.clearance.seasons import cases_of
-from snowshed.analysis.clearance.statistics import CauseShare
+from snowshed.analysis.clearance.statistics import CauseShare, RequiredHeights
 from snowshed.analysis.clearance.tables import write_tables
 from snowshed.cli.main import main
 from snowshed.results.folder import read_events
@@ -181,6 +182,23 @@ def test_the_blocked_irradiation_is_that_of_covered_hours():
 def test_pages_are_readable_on_telephone_and_screen(report):
     check_page(report / "clearance.html")
     check_page(report / "worst-winter-0.6-60.html")
+
+
+def test_the_report_prints_on_four_pages(report):
+    margin = dict.fromkeys(("top", "bottom", "left", "right"), "15mm")
+    with open_page(report / "clearance.html") as (page, _):
+        printed = page.pdf(format="A4", margin=margin)
+    assert 1 <= len(re.findall(rb"/Type /Page\b", printed)) <= 4
+
+
+def test_a_climate_that_changes_is_told(answer, monkeypatch):
+    result, _ = answer
+    heights = result.heights_by_probability
+    monkeypatch.setattr(RequiredHeights, "per_winter", np.linspace(2.0, 1.0, 12))
+    assert heights.per_winter[0] == 2.0
+    assert any(
+        "the heights fall by 0.91 m in ten winters" in w for w in answer_text.warnings([result])
+    )
 
 
 def test_the_expected_duration_counts_the_seasons(winters):

@@ -1,11 +1,13 @@
 """Times: offsets from universal time, summer time, and typical and actual years."""
 
-from datetime import datetime, timedelta, timezone
+from datetime import date, datetime, timedelta, timezone
 
 import pytest
 from synthetic_weather import epw, hourly, imis, meteoswiss, smet, tmy3
 
 from snowshed import InputError
+from snowshed.io.weather.observation import time_of
+from snowshed.io.weather.swiss import FORMATS as SWISS_TIMES
 
 
 def local(begin, count, step=0.5):
@@ -78,6 +80,17 @@ def with_repeated_hour(form):
         return smet("TA HS", []) + "".join(rows)
     rows = (f"XYZ;{time:%d.%m.%Y %H:%M};-5;0.1\n" for time in times)
     return meteoswiss("tre200h0;rre150h0", []) + "".join(rows)
+
+
+def test_every_day_of_eight_digits_is_its_own_day():
+    """1 November 1953 is no minute of 1 January (as 1953-1-1 0:1 would be)."""
+    first = date(2023, 1, 1)
+    for number in range(365):
+        day = first + timedelta(number)
+        moment = datetime(day.year, day.month, day.day)
+        assert time_of(f"{day:%Y%m%d}", "here", *SWISS_TIMES) == moment
+        later = moment.replace(hour=23, minute=50)
+        assert time_of(f"{later:%Y%m%d%H%M}", "here", *SWISS_TIMES) == later
 
 
 @pytest.mark.parametrize("form", ["IMIS", "SMET", "MeteoSwiss"])

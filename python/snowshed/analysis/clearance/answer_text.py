@@ -17,6 +17,7 @@ from snowshed.analysis.clearance.statistics import (
     CauseShare,
     Level,
 )
+from snowshed.analysis.clearance.trend import trend_of
 from snowshed.base.formatting import plural
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.weather.season_record import whole_percent
@@ -186,6 +187,14 @@ def _warnings_of(answer: ClearanceResult) -> Iterator[str]:
                 f"{percentage} is extrapolated: a return period of {level.return_period:.0f} years "
                 f"from {plural(len(answer.winters), 'winter')}"
             )
+    trend = trend_of(answer.heights_by_probability.per_winter)
+    if trend is not None:
+        yield (
+            f"the heights {'rise' if trend.per_decade > 0.0 else 'fall'} by "
+            f"{abs(trend.per_decade):.2f} m in ten winters (Mann-Kendall test, "
+            f"p = {trend.chance:.2g}): the climate changes, but the answer counts all winters "
+            "alike"
+        )
     if not answer.heights_by_probability.separable:
         yield (
             "there are too few seasons to separate the snow parameters from the weather, so they "

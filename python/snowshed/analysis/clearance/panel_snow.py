@@ -64,13 +64,13 @@ def mean_months(seasons: Sequence[Sequence[WinterDay]]) -> dict[int, PanelSnow]:
     for season in seasons:
         for day, length in _lengths(season):
             month = day.weather.date.month
-            lies = day.load > 0.0 and not day.released
+            is_covered = day.load > 0.0 and not day.released
             days[month] += length / len(seasons)
-            covered[month] += lies * length / len(seasons)
+            covered[month] += is_covered * length / len(seasons)
             measured = measured and day.weather.irradiance is not None
             sun = max(day.weather.irradiance or 0.0, 0.0) * length
             energy[month][0] += sun
-            energy[month][1] += lies * sun
+            energy[month][1] += is_covered * sun
     return {
         month: PanelSnow(
             round(days[month], 6),
