@@ -172,6 +172,7 @@ def _mark_contact(axes: Axes, date: float, edge: float, contact: _Contact) -> No
         va="top",
         color=BODY,
         fontsize=9,
+        bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.5},
     )
 
 

@@ -11,6 +11,8 @@ HEAD = ("winter", "snow observed", "new snow, m", "source", "filled", "not known
 ALIGN = "lrrlrrl"
 MAX_ROWS = 24  # on a console
 
+LIST = "list of snowfalls"
+
 
 def title(winters: WinterList) -> str:
     """Return the title of the table."""
@@ -52,10 +54,9 @@ def caption(winters: WinterList) -> str:
         return f"Snow of {len(winters.winters)} winters; well observed in {len(winters.counted)}"
     winter = winters.winters[0]
     filled = f"; filled: {_filled_text(winter)}" if winter.sources[SnowSource.FILLED] else ""
-    return (
-        f"Snow of {winter.name}: observed on {_observed_text(winter)}, source: {winter.source_text}"
-        f"{filled}"
-    )
+    observed = _observed_text(winter)
+    days = observed if observed == LIST else f"observed on {observed}"
+    return f"Snow of {winter.name}: {days}, source: {winter.source_text}{filled}"
 
 
 def _row(winter: WinterQuality) -> tuple[str, ...]:
@@ -73,7 +74,7 @@ def _row(winter: WinterQuality) -> tuple[str, ...]:
 
 def _observed_text(winter: WinterQuality) -> str:
     if winter.listed and winter.rows:
-        return "list of snowfalls"
+        return LIST
     if not winter.rows:
         return "no rows"
     return f"{winter.observed} of {plural(winter.season, 'day')} ({whole_percent(winter.share)})"
