@@ -5,14 +5,16 @@ import math
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 from scipy.integrate import solve_ivp
 
-from snowshed import InputError
+from snowshed import InputError, Scene
 from snowshed.season import SeasonSettings, Weather, accumulate, snow_balance
 from snowshed.season.accumulation import pauses
 from snowshed.season.settling_column import SnowColumn
 from snowshed.season.stack_settling import SettlingStack
+from snowshed.season.table import season_table
 from snowshed.snow import SETTLING_LAWS
 
 DAY = 86400.0
@@ -106,6 +108,25 @@ def test_the_melt_of_a_stack_counts_once_over_its_events():
     assert stack.ratio == pytest.approx(1.0 - 0.05 / 0.8)
     stack.melt(1000.0)
     assert stack.ratio == 0.0
+
+
+@pytest.mark.parametrize(("cover", "melts"), [("weather", False), ("none", True), (0.3, True)])
+def test_the_melt_of_the_cover_does_not_count_twice(cover, melts):
+    """As long as there is a natural cover, its melt lowers the stack that lies on it."""
+    rows = [
+        Weather(2 + n, datetime.datetime(2024, 3, 1 + n), 0.0, None, 5.0, snow_depth=0.5)
+        for n in range(3)
+    ]
+    rows[0] = replace(rows[0], snowfall=0.3, density=100.0, adhesion=0.0)
+    settings = SeasonSettings(cover=cover, settling=None, friction=0.5)
+    days = accumulate(rows, settings, tilt=60.0)
+    names = ("event", "height_m", "length_m", "density_kg_m3", "on_panel_kg", "joined")
+    events = pd.DataFrame([(1, 0.4, 1.0, 200.0, 0.0, 0)], columns=names)
+    outlines = pd.DataFrame({"event": [1, 1], "x": [0.6, 1.0], "z": [0.4, 0.0]})
+    scene = Scene.preset("lab-50").resolve().data
+    table = season_table(scene, days, settings, events, outlines)
+    assert table["event"].tolist()[0] == 1
+    assert bool(table["settled_height_m"].iloc[-1] < 0.4) is melts
 
 
 def test_the_adhesion_of_a_row_holds_in_warm_air_too():

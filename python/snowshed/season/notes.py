@@ -82,7 +82,7 @@ def _melt_assumptions(days: Sequence[WinterDay], settings: SeasonSettings) -> It
     if settings.melt_factor:
         yield (
             f"snow on panel and ground and in the stack melts by {settings.melt_factor:g} mm of "
-            "water per day and degree of the air above 0 °C; that of the stack is an estimate"
+            "water per day and degree of the air above 0 °C; the stack melts after the cover"
         )
     if settings.thaw:
         sun = (

@@ -60,7 +60,8 @@ class SeasonSettings:
         normal to the panel; 0: each slides alone.
     melt_factor
         Melt of the snow on panel and ground and in the stack, kg/m2 (mm of water) per day and
-        degree of the air above 0 degrees C. That of the stack is an estimate in the table.
+        degree of the air above 0 degrees C. The stack melts in the table only, and not as long as
+        there is a natural cover whose melt lowers it already.
     thaw
         Name of a criterion in `THAWS` for wet snow, which does not adhere to the panel; None: the
         adhesion does not depend on the weather.

@@ -2,9 +2,12 @@
 
 The simulated stack settles just before the next event (`snowshed.running.ageing`), and does not
 melt. The snow below its crest is treated as a column with the mean density of the stack, which
-settles under its own weight and has lost all melt since the first event from its top. The ratio of
+settles under its own weight and has lost its melt since the first event from its top. The ratio of
 its thickness to the simulated height lowers the whole profile. The estimate is used in the table
 only.
+
+The depth of the natural cover is added to the stack's height, because snow falls on both alike. Its
+melt then counts for both, too: the stack melts only while the ground beside it is bare.
 """
 
 from __future__ import annotations

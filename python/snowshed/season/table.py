@@ -49,11 +49,12 @@ def season_table(
     lowered = {**scene, "panel": {**scene["panel"], "height": scene["panel"]["height"] - below}}
     stack = _Stack(lowered, below, settings, events, outlines)
     rows = []
-    for day, earlier, depth in zip(days, [None, *days], cover):
+    for day, earlier, depth, depth_before in zip(days, [None, *days], cover, [0.0, *cover]):
         if earlier is not None:
             elapsed = (day.weather.date - earlier.weather.date).total_seconds()
             stack.settling.settle(elapsed, earlier.weather.temperature)
-            stack.settling.melt(settings.melt(earlier.weather.temperature, elapsed))
+            if settings.cover != "weather" or depth_before == 0.0:
+                stack.settling.melt(settings.melt(earlier.weather.temperature, elapsed))
         if day.event is not None:
             stack.set_after_event(day.event)
         rows.append({**_panel_columns(day), **stack.columns(depth)})
