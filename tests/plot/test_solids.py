@@ -32,6 +32,23 @@ def test_a_house_has_straight_walls_and_guards():
     assert area(named["guard-1"]) == pytest.approx(2 * 0.1 * 0.2)  # front and back
 
 
+def test_a_moved_sampled_shape_is_drawn_where_snow_meets_it():
+    """The shape lies far from the snow before it is moved beside the panel."""
+    hollow = Shape.difference(
+        Shape.box([10.0, 0.5], [0.4, 1.0]), Shape.box([10.0, 0.5], [0.2, 0.2])
+    )
+    wall = Shape.transform(hollow, angle=90.0, translate=[1.5, 10.5])
+    scene = Scene(
+        dimension=2, ground=Ground(), slab=Slab(thickness=0.1), panel=Panel(height=1.0, length=1.0),
+        obstacles=[Obstacle(name="wall", shape=wall, condition="separate")],
+    ).resolve()  # fmt: skip
+    solids, _ = scene_solids(scene, AROUND, None)
+    corners = next(solid.corners for solid in solids if solid.name == "wall")
+    simulation = _core.Simulation(scene.core, scene.base_dir)
+    assert len(corners) > 50
+    assert np.abs(simulation.obstacle_distance(corners)).max() < 0.03
+
+
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_a_turned_and_moved_box_is_drawn_where_the_core_has_it(dimension):
     size, shift = ([1.0, 0.2], [2.0, 1.0]) if dimension == 2 else ([1.0, 0.4, 0.2], [2.0, 0.0, 1.0])

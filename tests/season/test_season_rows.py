@@ -6,10 +6,16 @@ import numpy as np
 import pytest
 
 from snowshed import InputError, Scene
-from snowshed.analysis.clearance import PanelDesign, SnowRanges, required_clearance, split_winters
+from snowshed.analysis.clearance import (
+    PanelDesign,
+    SnowRanges,
+    answer_text,
+    required_clearance,
+    split_winters,
+)
 from snowshed.scene.panel_edge import panel_edge
 from snowshed.season import SeasonSettings, accumulate, run_season
-from snowshed.season.panel_contact import clearance
+from snowshed.season.panel_contact import below_panel, clearance, panel_ends
 from snowshed.season.rows import PanelRows
 from snowshed.season.slabs import season_scene
 from snowshed.season.weather.generator import EXAMPLE_CLIMATE
@@ -84,6 +90,49 @@ def test_overlapping_rows_are_refused(tmp_path):
     assert not (tmp_path / "rows").exists()
 
 
+def test_overlapping_rows_are_refused_without_a_slide_off_too(tmp_path):
+    settings = SeasonSettings(rows=PanelRows(3, 0.01))
+    with pytest.raises(InputError, match="the panels overlap below"):
+        run_season(SNOWFALL, panel_scene(**{"panel.tilt": 90.0}), tmp_path, settings=settings)
+
+
+def deep_rows(height):
+    """Four deep snowfalls on two low rows: snow stays on the lower one."""
+    falls = [
+        Weather(2 + n, datetime(2024, 12, 1 + n), 0.3, 100.0, -5.0, adhesion=0.0) for n in range(4)
+    ]
+    return falls, panel_scene(**{"panel.height": height, "panel.length": 0.8, "slab.length": 0.8})
+
+
+def test_snow_that_stays_on_a_lower_row_is_a_burial(tmp_path):
+    falls, scene = deep_rows(0.1)
+    settings = SeasonSettings(rows=PanelRows(2, 1.0), cover="none")
+    with pytest.raises(InputError, match="snow stays on a lower row, because the stack"):
+        run_season(falls, scene, tmp_path, settings=settings, pictures=False)
+
+
+def test_snow_over_the_face_of_any_row_is_not_below_it():
+    data = panel_scene().resolve().data
+    (upper_x, upper_z), (x, z) = panel_ends(data)
+    middle = [0.5 * (upper_x + x), 0.5 * (upper_z + z) + 0.05]
+    outline = np.array([[2.0, 0.1], middle, [middle[0] + 3.0, middle[1]]])
+    assert len(below_panel(data, outline)) == 2
+    assert below_panel(data, outline, TWO.distances(data)).tolist() == [[2.0, 0.1]]
+
+
+def test_a_season_without_slide_offs_does_not_mix_with_those_of_another(tmp_path):
+    run_season(SNOWFALL, panel_scene(), tmp_path, pictures=False)
+    with pytest.raises(InputError, match="it holds slide-offs, but in this season nothing slides"):
+        run_season(SNOWFALL, panel_scene(**{"panel.tilt": 20.0}), tmp_path, resume=True)
+
+
+def test_the_notes_of_a_fence_say_that_no_snow_lies_on_it(tmp_path):
+    fence = panel_scene(**{"panel.tilt": 90.0, "panel.height": 1.0})
+    notes = run_season(SNOWFALL, fence, tmp_path, pictures=False).notes
+    assert any("no snow lies on the panel, because it is vertical" in note for note in notes)
+    assert not any("friction and adhesion held it" in note for note in notes)
+
+
 def test_no_snow_lies_on_a_fence():
     day = accumulate(SNOWFALL, SeasonSettings(), 90.0)[0]
     assert (day.load, day.released) == (0.0, False)
@@ -97,3 +146,5 @@ def test_a_fence_needs_the_height_of_the_natural_cover(tmp_path):
     parts = [answer.height_parts(index) for index in range(5)]
     assert all(part.pile == pytest.approx(0.0, abs=1e-6) for part in parts)
     assert all(part.cover > 0.2 for part in parts)
+    texts = [*answer_text.warnings([answer]), *answer_text.assumptions(answer)]
+    assert not any("grid" in text.lower() or "draws" in text for text in texts)

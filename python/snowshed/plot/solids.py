@@ -217,8 +217,12 @@ def _parts(
         for part in shape["shapes"]:
             yield from _parts(part, scene, base_dir, near)
     elif kind == "transform":
-        for part in _parts(shape["shapes"][0], scene, base_dir, near):
-            yield _transformed(part, shape, scene["dimension"])
+        turn, shift = _turn(shape, scene["dimension"])
+        around = _corners(near) - shift
+        own = around @ turn  # the inverse of a rotation is its transpose
+        region = Box(own.min(axis=0), own.max(axis=0))
+        for part in _parts(shape["shapes"][0], scene, base_dir, region):
+            yield replace(part, corners=part.corners @ turn.T + shift)
     elif kind == "mesh" and (surface := _mesh(shape, base_dir)) is not None:
         yield surface
     else:
@@ -263,16 +267,20 @@ def _sampled_surface(
     return Solid(shape["type"], "solid", corners, triangles)
 
 
-def _transformed(part: Solid, shape: Mapping[str, Any], dimension: int) -> Solid:
-    """Return a part turned about an axis through the origin, then moved."""
+def _turn(shape: Mapping[str, Any], dimension: int) -> tuple[Floats, Floats]:
+    """Return the rotation (3, 3) and the shift (3,) of a transform."""
     axis = np.asarray(shape.get("axis") if dimension == 3 else (0.0, 1.0, 0.0), dtype=float)
-    axis = axis / np.linalg.norm(axis)
     angle = np.radians(float(shape.get("angle") or 0.0))
-    x = part.corners
-    along = (x @ axis)[:, None] * axis
-    turned = along + np.cos(angle) * (x - along) + np.sin(angle) * np.cross(axis, x)
-    moved = turned + _in_space(shape.get("translate") or [0.0] * dimension)
-    return replace(part, corners=moved)
+    along = axis / np.linalg.norm(axis)
+    across = np.cross(np.eye(3), along)  # its product with x is along x x (Rodrigues)
+    turn = np.eye(3) + np.sin(angle) * across + (1.0 - np.cos(angle)) * across @ across
+    return turn, _in_space(shape.get("translate") or [0.0] * dimension)
+
+
+def _corners(box: Box) -> Floats:
+    signs = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
+    corners: Floats = box.low + signs * box.size
+    return corners
 
 
 def _scene_of_shape(shape: Mapping[str, Any], scene: Mapping[str, Any]) -> ResolvedScene:

@@ -88,7 +88,7 @@ def section_of(distance: Floats) -> tuple[Floats, Integers]:
     True
     """
     columns = [_pieces(column) for column in distance]
-    quads = []
+    quads: list[tuple[tuple[float, float], ...]] = []
     for x, (left, right) in enumerate(zip(columns, columns[1:])):
         if len(left) == len(right):
             quads += [

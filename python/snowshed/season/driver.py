@@ -20,6 +20,7 @@ from snowshed.scene.scene import ResolvedScene, SceneLike, resolve_scene
 from snowshed.season.accumulation import WinterDay, accumulate, stack_ageing
 from snowshed.season.notes import assumptions, fall_notes, first_staying, notes
 from snowshed.season.panel_contact import PanelContact, first_contact, first_reached, panel_ends
+from snowshed.season.rows import check_rows, lying_snow_named
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.slabs import season_scene
 from snowshed.season.table import season_table
@@ -140,13 +141,19 @@ def run_season(
     if not resume:
         check_empty(files.folder)
     if plan.slides is not None:
-        run_events(
-            plan.slides,
-            files.run.folder,
-            resume=resume and files.run.scene.is_file(),
-            ageing=stack_ageing(plan.days, settings),
-            progress=progress,
-            pictures=pictures,
+        with lying_snow_named(settings.rows):
+            run_events(
+                plan.slides,
+                files.run.folder,
+                resume=resume and files.run.scene.is_file(),
+                ageing=stack_ageing(plan.days, settings),
+                progress=progress,
+                pictures=pictures,
+            )
+    elif files.run.scene.is_file():
+        raise InputError(
+            f"{files.folder}: it holds slide-offs, but in this season nothing slides; give another "
+            "folder"
         )
     files.folder.mkdir(parents=True, exist_ok=True)
     result = _result(plan, settings, files)
@@ -202,6 +209,7 @@ def plan_season(
     data = panel.data
     if "panel" not in data:
         raise InputError("/panel: missing; a season needs a panel for the snow to gather on")
+    check_rows(settings.rows, data)
     days = accumulate(record.rows, settings, data["panel"]["tilt"], data["gravity"])
     slides = season_scene(panel, days, settings) if any(day.event for day in days) else None
     return SeasonPlan(record, winters, days, panel, slides)

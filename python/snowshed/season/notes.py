@@ -9,6 +9,7 @@ from snowshed.season.accumulation import WinterDay
 from snowshed.season.cover import end_of_readings
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.slabs import cover_below_slides
+from snowshed.season.weather.row import Weather
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -58,10 +59,11 @@ def assumptions(
                 "temperature, and grows by the snowfalls"
             )
     yield from _melt_assumptions(days, settings)
-    if settings.rows.count > 1:
+    if settings.rows.count > 1 and any(day.load for day in days):
         yield (
             f"{settings.rows.count} rows of panels, {settings.rows.pitch:g} m apart, catch and "
-            "shed the same snow at the same time; clearances are those of the row with the least"
+            "shed the same snow at the same time; clearances are those of the row with the least, "
+            "and snow that stays on the panel is that of the first row"
         )
     if settings.settling is None:
         yield "no snow settles"
@@ -82,15 +84,30 @@ def _melt_assumptions(days: Sequence[WinterDay], settings: SeasonSettings) -> It
     if settings.melt_factor:
         yield (
             f"snow on panel and ground and in the stack melts by {settings.melt_factor:g} mm of "
-            "water per day and degree of the air above 0 °C; the stack melts after the cover"
+            "water per day and degree of the air above 0 °C; the stack melts "
+            f"{'after the cover' if settings.cover == 'weather' else 'from the first event on'}"
         )
     if settings.thaw:
-        sun = (
-            ", or colder in sunshine"
-            if any(day.weather.irradiance is not None for day in days)
-            else "; sunshine is left out, because the file has no irradiance"
-        )
-        yield f"snow does not adhere to the panel in air warmer than 0 °C ({settings.thaw}){sun}"
+        share = irradiance_share([day.weather for day in days])
+        sun = ", or colder in sunshine" if share else ""
+        yield f"snow does not adhere to the panel in air warmer than 0 °C{sun} ({settings.thaw})"
+        if share < 1.0:
+            yield sunshine_left_out(share)[0].lower() + sunshine_left_out(share)[1:]
+
+
+def irradiance_share(rows: Sequence[Weather]) -> float:
+    """Return the share of rows with an irradiance."""
+    return sum(row.irradiance is not None for row in rows) / len(rows)
+
+
+def sunshine_left_out(share: float) -> str:
+    """Return which sunshine is left out if a share of the rows, below 1, has an irradiance."""
+    if share == 0.0:
+        return "Sunshine is left out, because the weather has no irradiance"
+    return (
+        f"{100.0 * (1.0 - share):.2g} % of the rows of the weather have no irradiance, and count "
+        "as dark"
+    )
 
 
 def fall_notes(
@@ -161,8 +178,10 @@ def _slab_notes(dx: float, days: Sequence[WinterDay], settings: SeasonSettings) 
                 f"the thinnest slab is {1000 * thinnest:.1f} mm thick, less than two cells of "
                 f"{1000 * dx:g} mm: its stack is coarse"
             )
-    else:
+    elif any(day.load for day in days):
         yield "no snow slid: friction and adhesion held it"
+    elif any(day.weather.snowfall for day in days):
+        yield "no snow lies on the panel, because it is vertical or catches none"
 
 
 def _ageing_notes(settings: SeasonSettings) -> Iterator[str]:

@@ -72,8 +72,12 @@ def clearance(
     return Clearance(max(above_cover - deepest, 0.0), above_cover - height)
 
 
-def below_panel(scene: Mapping[str, Any], outline: Floats) -> Floats:
-    """Return the points of an outline (k, 2) that do not lie over the panel's face.
+def below_panel(
+    scene: Mapping[str, Any], outline: Floats, rows: Sequence[float] = (0.0,)
+) -> Floats:
+    """Return the points of an outline (k, 2) that do not lie over the face of a panel.
+
+    `rows` are the distances of equal panels, as for `clearance`.
 
     Snow that rests against the panel's lower end may reach up the face. Such snow counts neither as
     snow on the panel nor as part of the stack below the edge.
@@ -81,8 +85,11 @@ def below_panel(scene: Mapping[str, Any], outline: Floats) -> Floats:
     if len(outline) == 0:
         return outline
     (upper_x, upper_z), (x, z) = panel_ends(scene)
-    face = np.interp(outline[:, 0], [upper_x, x], [upper_z, z])
-    over = (outline[:, 0] < x) & (outline[:, 1] > face)
+    over = np.zeros(len(outline), dtype=bool)
+    for away in rows:
+        along = outline[:, 0] - away
+        above = outline[:, 1] > np.interp(along, [upper_x, x], [upper_z, z])
+        over |= above & (along < x) & ((along > upper_x) | (away == rows[0]))
     below: Floats = outline[~over]
     return below
 

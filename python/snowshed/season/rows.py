@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -53,6 +55,28 @@ class PanelRows:
 
 
 SINGLE_ROW = PanelRows()
+
+
+def check_rows(rows: PanelRows, scene: Mapping[str, Any]) -> None:
+    """Raise InputError if the rows of a scene's panel overlap, whether or not snow slides."""
+    if rows.count > 1:
+        further_rows(scene, rows.count, rows.pitch)
+
+
+@contextmanager
+def lying_snow_named(rows: PanelRows) -> Iterator[None]:
+    """Say what it means if the core cannot lay snow on a row, because snow stayed on it."""
+    try:
+        yield
+    except InputError as error:
+        event = re.search(r"in event (\d+), .* within snow that is already there", str(error))
+        if rows.count == 1 or event is None:
+            raise
+        raise InputError(
+            f"rows: before slide-off {event[1]}, snow stays on a lower row, because the stack "
+            "reaches it; that row is buried, and no further snow can be laid on it. Give a greater "
+            "height"
+        ) from None
 
 
 def add_rows(scene: Scene, rows: PanelRows, layers: Sequence[Layer]) -> None:

@@ -108,7 +108,7 @@ class _Stack:
         self.left = float(row["on_panel_kg"])
         self.joined = int(row.get("joined") or 0)
         self.outline = self.outlines.loc[self.outlines["event"] == event, ["x", "z"]].to_numpy()
-        below = below_panel(self.scene, self.outline)
+        below = below_panel(self.scene, self.outline, self.rows)
         if 0 < len(below) < len(self.outline):
             self.height = min(self.height, float(below[:, 1].max()))
         self.settling.set_stack(self.height, float(row["density_kg_m3"]))

@@ -21,17 +21,19 @@ from snowshed.analysis.clearance import (
     required_clearance,
     split_winters,
 )
-from snowshed.analysis.clearance.answer import STUDY, expected_duration
+from snowshed.analysis.clearance.answer import STUDY, expected_duration, required_height
 from snowshed.analysis.clearance.grid_error import choose_grid, recorded_grid_error
 from snowshed.analysis.clearance.panel_snow import mean_months
 from snowshed.analysis.clearance.report import write_report
-from snowshed.analysis.clearance.seasons import cases_of
-from snowshed.analysis.clearance.statistics import CauseShare, RequiredHeights
+from snowshed.analysis.clearance.seasons import SeasonOutcome, cases_of
+from snowshed.analysis.clearance.statistics import CauseShare
 from snowshed.analysis.clearance.tables import write_tables
+from snowshed.analysis.clearance.trend import Trend, trend_of
 from snowshed.cli.main import main
 from snowshed.results.folder import read_events
 from snowshed.results.season_folder import SeasonFolder
 from snowshed.season import SeasonSettings, Weather, accumulate, run_season
+from snowshed.season.rows import PanelRows
 from snowshed.season.weather.generator import EXAMPLE_CLIMATE, Climate, MonthClimate
 from snowshed.season.weather.source import SnowSource
 from snowshed.study.errors import StudyInterrupted
@@ -156,7 +158,8 @@ def test_tables_hold_the_heights_the_burials_and_the_snow_on_the_panel(answer, t
     assert levels["height_m"].tolist() == pytest.approx(
         [level.height for level in result.levels], rel=1e-5
     )
-    assert heights["cost"].tolist() == pytest.approx(100.0 * heights["height_m"], rel=1e-4)
+    rounded = np.ceil(10.0 * heights["height_m"] - 1e-9) / 10.0
+    assert heights["cost"].tolist() == pytest.approx((100.0 * rounded).tolist())
     sheets = pd.read_excel(tmp_path / "clearance.xlsx", sheet_name=None)
     assert list(sheets) == ["heights", "burial", "snow on the panel"]
     assert sheets["burial"]["probability"].iloc[0] == pytest.approx(
@@ -193,12 +196,26 @@ def test_the_report_prints_on_four_pages(report):
 
 def test_a_climate_that_changes_is_told(answer, monkeypatch):
     result, _ = answer
-    heights = result.heights_by_probability
-    monkeypatch.setattr(RequiredHeights, "per_winter", np.linspace(2.0, 1.0, 12))
-    assert heights.per_winter[0] == 2.0
+    monkeypatch.setattr(answer_text, "trend_of", lambda *_: Trend(-0.91, 0.01))
     assert any(
-        "the heights fall by 0.91 m in ten winters" in w for w in answer_text.warnings([result])
+        "the heights fall by 0.91 m in ten years" in w for w in answer_text.warnings([result])
     )
+
+
+def test_a_trend_counts_years_and_not_winters():
+    """0.3 m in ten years, with a gap of fifteen years in the record."""
+    years = [*range(1990, 1998), *range(2013, 2021)]
+    trend = trend_of(np.array([1.0 + 0.03 * (year - 1990) for year in years]), years)
+    assert trend is not None
+    assert trend.per_decade == pytest.approx(0.3)
+
+
+def test_a_season_of_rows_that_cannot_go_on_counts_as_a_burial(winters, tmp_path):
+    design = PanelDesign(0.6, 60.0, PanelRows(2, 0.6))
+    case = cases_of(design, winters, KNOWN.draw(3), SeasonSettings(), {})[0]
+    outcome = case.outcome_of_lying_snow(0.4)
+    assert outcome.contact is not None
+    assert required_height([outcome, SeasonOutcome(0.8, 0.2, None)]) == pytest.approx(0.6)
 
 
 def test_the_expected_duration_counts_the_seasons(winters):

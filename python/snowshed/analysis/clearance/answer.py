@@ -26,6 +26,7 @@ from snowshed.base.formatting import plural
 from snowshed.base.json_values import JsonValue
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
+from snowshed.season.rows import check_rows
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.weather.season_record import WinterList
 from snowshed.study.session import compute_runs
@@ -102,6 +103,11 @@ class ClearanceResult:
         parts = [self.height_parts(int(index)) for index in highest]
         heights = sum(self.required[highest])
         return sum(part.pile for part in parts) / heights if heights > 0.0 else 1.0
+
+    @property
+    def is_simulated(self) -> bool:
+        """Whether any snow slides, so that there are simulations."""
+        return any(case.has_releases for case in self.cases)
 
     @cached_property
     def grid_error(self) -> GridError:
@@ -317,6 +323,7 @@ def required_clearance(
     ranges = ranges or SnowRanges()
     values = ranges.draw(len(winters))
     cases = cases_of(design, winters, values, settings or SeasonSettings(), scene or {})
+    check_rows(design.rows, cases[0].panel_scene(candidates[0]).data)
     search = _Search(cases, candidates)
     while search.undecided():
         runs = search.runs()
@@ -396,11 +403,13 @@ class _Search:
         for number, index in self.undecided():
             run = self._runs.get((number, index))
             rows = nothing if run is None else events.get(run.hash, nothing)
-            if (rows["ended"] == "failed").any() or (run is not None and rows.empty):
+            failed = (rows["ended"] == "failed").any() or (run is not None and rows.empty)
+            if failed and self.cases[number].design.rows.count == 1:
                 self._low[number] = self._high[number]  # left out
                 self.outcomes[number] = []
                 continue
-            outcome = self.cases[number].outcome(self.heights[index], rows)
+            case, height = self.cases[number], self.heights[index]
+            outcome = case.outcome_of_lying_snow(height) if failed else case.outcome(height, rows)
             self.outcomes[number].append(outcome)
             if outcome.contact is None:
                 self._high[number] = index

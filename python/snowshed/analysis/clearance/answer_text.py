@@ -19,6 +19,7 @@ from snowshed.analysis.clearance.statistics import (
 )
 from snowshed.analysis.clearance.trend import trend_of
 from snowshed.base.formatting import plural
+from snowshed.season.notes import irradiance_share, sunshine_left_out
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.weather.season_record import whole_percent
 
@@ -59,8 +60,8 @@ def _heights(answers: Sequence[ClearanceResult]) -> str:
     if len(answers) > MAX_LISTED:
         heights = [_numbers(answer)[0] for answer in answers]
         return (
-            f"{_up(min(heights)):.1f} to {_up(max(heights)):.1f} m above the ground, depending on "
-            "the panel"
+            f"{rounded_up(min(heights)):.1f} to {rounded_up(max(heights)):.1f} m above the ground, "
+            "depending on the panel"
         )
     texts = [f"{_height(answer)} for the panel of {panel_name(answer)}" for answer in answers]
     return ", ".join(texts[:-1]) + f" and {texts[-1]}"
@@ -68,15 +69,16 @@ def _heights(answers: Sequence[ClearanceResult]) -> str:
 
 def _height(answer: ClearanceResult) -> str:
     height, low, high = _numbers(answer)
-    return f"{_up(height):.1f} m above the ground (90 % interval {low:.1f} to {_up(high):.1f} m)"
+    interval = f"90 % interval {low:.1f} to {rounded_up(high):.1f} m"
+    return f"{rounded_up(height):.1f} m above the ground ({interval})"
 
 
 def headline_height(answer: ClearanceResult) -> float:
     """Return the height of the first sentence, rounded up to 10 cm, m."""
-    return _up(_numbers(answer)[0])
+    return rounded_up(_numbers(answer)[0])
 
 
-def _up(height: float) -> float:
+def rounded_up(height: float) -> float:
     """Return a height, m, rounded up to 10 cm, because a lower edge would not be clear."""
     return math.ceil(10.0 * height - 1e-9) / 10.0
 
@@ -148,7 +150,7 @@ def _narrowing(answer: ClearanceResult) -> str:
 
 
 def _span(share: CauseShare) -> str:
-    return f"{share.low:.1f} to {share.high:.1f} m"
+    return f"{share.low:.1f} to {rounded_up(share.high):.1f} m"
 
 
 def warnings(answers: Sequence[ClearanceResult]) -> list[str]:
@@ -159,7 +161,7 @@ def warnings(answers: Sequence[ClearanceResult]) -> list[str]:
             panels.setdefault(note, []).append(panel_name(answer))
     return [
         *_excluded_winters(answers[0]),
-        _grid_error(answers[0]),
+        *([_grid_error(answers[0])] if answers[0].is_simulated else []),
         *(
             note if len(names) == len(answers) > 1 else f"{', '.join(names)}: {note}"
             for note, names in panels.items()
@@ -187,15 +189,16 @@ def _warnings_of(answer: ClearanceResult) -> Iterator[str]:
                 f"{percentage} is extrapolated: a return period of {level.return_period:.0f} years "
                 f"from {plural(len(answer.winters), 'winter')}"
             )
-    trend = trend_of(answer.heights_by_probability.per_winter)
+    years = sorted({int(case.winter.name[:4]) for case in answer.cases})
+    trend = trend_of(answer.heights_by_probability.per_winter, years)
     if trend is not None:
         yield (
             f"the heights {'rise' if trend.per_decade > 0.0 else 'fall'} by "
-            f"{abs(trend.per_decade):.2f} m in ten winters (Mann-Kendall test, "
+            f"{abs(trend.per_decade):.2f} m in ten years (Mann-Kendall test, "
             f"p = {trend.chance:.2g}): the climate changes, but the answer counts all winters "
             "alike"
         )
-    if not answer.heights_by_probability.separable:
+    if not answer.heights_by_probability.separable and answer.is_simulated:
         yield (
             "there are too few seasons to separate the snow parameters from the weather, so they "
             "count as changing from winter to winter; give more --draws"
@@ -227,9 +230,7 @@ def assumptions(answer: ClearanceResult) -> list[str]:
         "The panel is long across the slope: the simulation is of a strip (2D).",
         _rows(answer),
         *_fence(answer),
-        f"Grid cells are {100 * case.dx:.3g} cm wide. Releases thinner than "
-        f"{case.cells_across:.3g} cells, {1000 * case.settings.pool_below:.0f} mm, slide with "
-        "those that follow.",
+        *([_cells(case)] if answer.is_simulated else []),
         f"The edge keeps a distance of {100 * MARGIN:.0f} cm from the snow.",
         "The snow parameters are unknown, but the same in every winter. Only the weather and "
         "chance change from winter to winter.",
@@ -240,10 +241,18 @@ def assumptions(answer: ClearanceResult) -> list[str]:
         "Snow that has broken is looser than its slab, by a tenth or more, because its pieces do "
         "not become round or grind each other.",
         _strength(case.settings),
-        *_thaw(case),
+        *_thaw(answer),
         "Rain, wind drift and snowfall on the stack (except on the cover) are left out.",
         "Winters are independent of each other: the climate does not change.",
     ]
+
+
+def _cells(case: SeasonCase) -> str:
+    return (
+        f"Grid cells are {100 * case.dx:.3g} cm wide. Releases thinner than "
+        f"{case.cells_across:.3g} cells, {1000 * case.settings.pool_below:.0f} mm, slide with "
+        "those that follow."
+    )
 
 
 def _slope(case: SeasonCase) -> str:
@@ -270,13 +279,13 @@ def _fence(answer: ClearanceResult) -> list[str]:
     ]
 
 
-def _thaw(case: SeasonCase) -> list[str]:
-    season = case.settings
+def _thaw(answer: ClearanceResult) -> list[str]:
+    season = answer.cases[0].settings
     melt = "Snow on panel and ground and in the stack melts in air warmer than 0 °C."
-    sunny = any(day.irradiance is not None for day in case.winter.days)
-    sun = ", or colder in sunshine" if sunny else ""
+    share = irradiance_share([day for case in answer.cases for day in case.winter.days])
+    sun = ", or colder in sunshine" if share else ""
     wet = f"In air warmer than 0 °C{sun}, snow does not adhere to the panel ({season.thaw})."
-    left_out = [] if sunny else ["Sunshine is left out, because the weather has no irradiance."]
+    left_out = [] if share == 1.0 else [f"{sunshine_left_out(share)}."]
     return [*([melt] if season.melt_factor else []), *([wet] if season.thaw else []), *left_out]
 
 

@@ -15,6 +15,8 @@ from snowshed.analysis.clearance.seasons import SeasonCase
 from snowshed.season.accumulation import WinterDay
 
 DAY = 86400.0  # s
+#: Share of a month that must have an irradiance.
+MEASURED = 0.9
 
 
 @dataclass(frozen=True)
@@ -26,7 +28,8 @@ class PanelSnow:
     days, covered_days
         Number of days of the record in the month, and of those with snow on the panel.
     blocked
-        Share of the irradiation that falls on the covered panel, 0 to 1; None without irradiance.
+        Share of the irradiation that falls on the covered panel, 0 to 1; None if less than nine
+        tenths of the month have an irradiance.
     """
 
     days: float
@@ -58,16 +61,16 @@ def mean_months(seasons: Sequence[Sequence[WinterDay]]) -> dict[int, PanelSnow]:
     {1: PanelSnow(days=3.0, covered_days=3.0, blocked=None)}
     """
     days: dict[int, float] = defaultdict(float)
+    sunny: dict[int, float] = defaultdict(float)  # days with an irradiance
     covered: dict[int, float] = defaultdict(float)
     energy: dict[int, list[float]] = defaultdict(lambda: [0.0, 0.0])
-    measured = True
     for season in seasons:
         for day, length in _lengths(season):
             month = day.weather.date.month
             is_covered = day.load > 0.0 and not day.released
             days[month] += length / len(seasons)
             covered[month] += is_covered * length / len(seasons)
-            measured = measured and day.weather.irradiance is not None
+            sunny[month] += (day.weather.irradiance is not None) * length / len(seasons)
             sun = max(day.weather.irradiance or 0.0, 0.0) * length
             energy[month][0] += sun
             energy[month][1] += is_covered * sun
@@ -75,7 +78,9 @@ def mean_months(seasons: Sequence[Sequence[WinterDay]]) -> dict[int, PanelSnow]:
         month: PanelSnow(
             round(days[month], 6),
             round(covered[month], 6),
-            energy[month][1] / energy[month][0] if measured and energy[month][0] else None,
+            energy[month][1] / energy[month][0]
+            if energy[month][0] and sunny[month] > MEASURED * days[month]
+            else None,
         )
         for month in days
         if covered[month] > 0.0

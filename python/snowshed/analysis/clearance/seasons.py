@@ -138,6 +138,15 @@ class SeasonCase:
         cover = float(table["cover_m"].iloc[int(distance.argmin())])
         return SeasonOutcome(height, min(margin, 0.0) if contact else margin, contact, cover)
 
+    def outcome_of_lying_snow(self, height: float) -> SeasonOutcome:
+        """Return the outcome if snow stays on a lower row, because the stack reaches it.
+
+        Such a season ends, because no further snow can be laid there. By how much the height is too
+        small is not known.
+        """
+        last = self.days[-1].weather.date.date().isoformat()
+        return SeasonOutcome(height, 0.0, PanelContact(last, None, "slab"))
+
 
 def cases_of(
     design: PanelDesign,

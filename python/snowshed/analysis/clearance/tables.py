@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed.analysis.clearance.answer import ClearanceResult
+from snowshed.analysis.clearance.answer_text import rounded_up
 from snowshed.analysis.clearance.panel_snow import panel_snow
 from snowshed.io.atomic import replacing
 from snowshed.io.csv_table import write_csv
@@ -25,7 +26,7 @@ def height_table(answers: Sequence[ClearanceResult], price: Optional[float] = No
     answers
         One answer for each panel.
     price
-        Cost of a metre of height; None: the table has no costs.
+        Cost of a metre of height, rounded up to 10 cm; None: the table has no costs.
     """
     import pandas as pd
 
@@ -55,7 +56,7 @@ def height_table(answers: Sequence[ClearanceResult], price: Optional[float] = No
                 "high_m": upper,
             }
             if price is not None:
-                row["cost"] = price * middle
+                row["cost"] = price * rounded_up(middle)
             rows.append(row)
     return pd.DataFrame(rows)
 

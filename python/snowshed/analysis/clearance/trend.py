@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Optional
 
@@ -22,7 +23,7 @@ class Trend:
     Attributes
     ----------
     per_decade
-        Change in ten winters, m.
+        Change in ten years, m.
     chance
         Probability that winters without a trend show one as clear.
     """
@@ -31,8 +32,8 @@ class Trend:
     chance: float
 
 
-def trend_of(heights: Floats) -> Optional[Trend]:
-    """Return the trend of heights, one of each winter in order, if there is one.
+def trend_of(heights: Floats, years: Sequence[int]) -> Optional[Trend]:
+    """Return the trend of heights over years, if there is one.
 
     The test is that of Mann and Kendall, the slope that of Theil and Sen.
 
@@ -40,6 +41,8 @@ def trend_of(heights: Floats) -> Optional[Trend]:
     ----------
     heights : (n,)
         Height that each winter needs, m.
+    years
+        The year in which each winter begins.
 
     Returns
     -------
@@ -48,15 +51,14 @@ def trend_of(heights: Floats) -> Optional[Trend]:
 
     Examples
     --------
-    >>> trend = trend_of(np.array([2.0, 2.1, 1.9, 1.8, 1.85, 1.7, 1.6, 1.75, 1.5, 1.4, 1.45]))
-    >>> round(trend.per_decade, 1)
+    >>> falling = np.array([2.0, 2.1, 1.9, 1.8, 1.85, 1.7, 1.6, 1.75, 1.5, 1.4, 1.45])
+    >>> round(trend_of(falling, range(1990, 2001)).per_decade, 1)
     -0.7
-    >>> trend_of(np.array([2.0, 1.5] * 6)) is None
+    >>> trend_of(np.array([2.0, 1.5] * 6), range(12)) is None
     True
     """
     if len(heights) < MIN_WINTERS or np.ptp(heights) == 0.0:
         return None
-    winters = np.arange(len(heights))
-    chance = float(kendalltau(winters, heights).pvalue)
-    slope = float(theilslopes(heights, winters).slope)
+    chance = float(kendalltau(years, heights).pvalue)
+    slope = float(theilslopes(heights, years).slope)
     return Trend(10.0 * slope, chance) if chance < SIGNIFICANCE and slope else None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
@@ -170,6 +171,8 @@ def clearance(
         "settings": settings,
         "scene": {"ground.tilt": ground_tilt, **grid},
     }
+    if price is not None and not math.isfinite(price):
+        raise InputError(f"--price: {price:g} is not allowed; give a cost of 0 or more")
     if dry_run or not quiet:
         costs = [expected_duration(design, winters, candidates, **options) for design in designs]
         seconds, seasons = (sum(values) for values in zip(*costs))

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.base.notes import issue_note
 from snowshed.scene.builders.guards import note_overloaded_guards
 from snowshed.scene.builders.panels import separate_part, single_panel, snow_layer
 from snowshed.scene.builders.slope import (
@@ -208,12 +209,21 @@ def _rails(
     return [slope.layer(start, start + thickness, -dx, height) for start in guards]
 
 
+#: Length below the lowest guard from which on a note says that its snow is not held, m.
+UNHELD = 1.0
+
+
 def _check_guards(
     scene: Scene, guards: Sequence[float], length: float, height: float, thickness: float
 ) -> None:
     """Note that snow flows over the guard with the longest slope above it, if it does."""
     if guards:
         starts = sorted(guards)
+        for lower, upper in zip(starts, starts[1:]):
+            if upper < lower + thickness:
+                raise InputError(f"guards: those at {lower:g} and {upper:g} m overlap")
+        if starts[0] > UNHELD:
+            issue_note(f"no guard holds the snow on the lowest {starts[0]:.1f} m of the roof")
         above = [end - start - thickness for start, end in zip(starts, [*starts[1:], length])]
         note_overloaded_guards(scene, max(above), height)
 
