@@ -13,6 +13,7 @@ from snowshed.analysis.clearance import (
     required_clearance,
     split_winters,
 )
+from snowshed.analysis.clearance.winters import Winter
 from snowshed.scene.panel_edge import panel_edge
 from snowshed.season import SeasonSettings, accumulate, run_season
 from snowshed.season.panel_contact import below_panel, clearance, panel_ends
@@ -109,6 +110,28 @@ def test_snow_that_stays_on_a_lower_row_is_a_burial(tmp_path):
     settings = SeasonSettings(rows=PanelRows(2, 1.0), cover="none")
     with pytest.raises(InputError, match="snow stays on a lower row, because the stack"):
         run_season(falls, scene, tmp_path, settings=settings, pictures=False)
+
+
+def test_a_winter_that_buries_a_lower_row_counts(tmp_path):
+    """The season at the low edge cannot go on, so the height lies above it."""
+    falls, _ = deep_rows(0.1)
+    known = SnowRanges({"friction": (0.5, 0.5), "adhesion": (0.0, 0.0)}, draws=1)
+    answer = required_clearance(
+        PanelDesign(0.8, 50.0, PanelRows(2, 1.0)), [Winter("2024/25", falls)], [0.1, 3.0],
+        tmp_path, ranges=known, settings=SeasonSettings(cover="none"),
+    )  # fmt: skip
+    assert answer.failed == 0
+    assert answer.outcomes[0][0].height == 0.1
+    assert answer.outcomes[0][0].contact is not None
+    assert 0.1 < answer.required[0] < 3.0
+
+
+def test_the_cover_on_a_slope_is_measured_vertically():
+    data = panel_scene(**{"ground.tilt": 45.0, "panel.tilt": 60.0}).resolve().data
+    bare = clearance(data, np.zeros((0, 2)), 0.0).below
+    assert bare - clearance(data, np.zeros((0, 2)), 0.0, cover=0.1).below == pytest.approx(
+        0.05 * 2**0.5
+    )
 
 
 def test_snow_over_the_face_of_any_row_is_not_below_it():
