@@ -201,6 +201,14 @@ def test_a_fault_without_a_switch_replaces_those_it_overlaps():
     assert with_faults("x = a + b;\ny = b;\n", switched, separate).endswith("(a + b));\ny = 0;\n")
 
 
+def test_a_comparison_that_goes_on_after_its_switch_is_refused():
+    """`(a >= b) - c` is no comparison of a with b - c."""
+    cut = fault(old="time >= limit", new="time >= 2 * limit", switch=True)
+    with pytest.raises(FaultError, match="a comparison whose right side goes on"):
+        with_faults("if (time >= limit - rounding) stop();", [(1, cut)])
+    with_faults("if (time >= limit) stop();", [(1, cut)])
+
+
 def test_switches_that_overlap_are_refused():
     overlapping = [(1, in_cpp()), (2, in_cpp(name="b", old="b;\ny", new="y"))]
     with pytest.raises(FaultError, match="faults overlap"):
@@ -291,7 +299,7 @@ def test_a_page_without_marks_is_refused():
 
 AREAS = {
     *("material", "transfer", "contact", "time step", "sleep", "seeding", "events"),
-    *("measures", "post-processing", "scheme", "clearance"),
+    *("measures", "post-processing", "scheme", "clearance", "plants"),
 }
 
 

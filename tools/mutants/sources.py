@@ -6,6 +6,7 @@ The files of the project itself are never written; they stay unchanged even if a
 from __future__ import annotations
 
 import filecmp
+import re
 import shutil
 import subprocess
 from collections.abc import Iterator, Sequence
@@ -24,6 +25,10 @@ inline int snowshed_fault_from_environment() {
 }
 inline const int snowshed_fault = snowshed_fault_from_environment();
 """
+
+
+#: Within the brackets of a switch, a comparison must have the whole of its right side.
+COMPARISON, ARITHMETIC = re.compile(r"[<>]|[=!]="), ("+", "-", "*", "/", "%")
 
 
 def with_faults(
@@ -50,6 +55,10 @@ def with_faults(
     taken = fixed.place(text) if fixed else (0, 0)
     for number, fault in switched:
         start, end = fault.place(text)
+        if COMPARISON.search(fault.old) and text[end:].lstrip()[:1] in ARITHMETIC:
+            raise FaultError(
+                f"{fault.name}: its old text is a comparison whose right side goes on after it"
+            )
         if end <= taken[0] or start >= taken[1]:
             spans.setdefault((start, end), []).append((number, fault))
     edits = [(start, end, _switch(group)) for (start, end), group in spans.items()]
