@@ -182,7 +182,7 @@ void describe(V& v, scene::Panel& p) {
   v.number("width", p.width, "m", methods::allowed::size.required_in_3d(),
            "Width across the slope; ignored in 2D");
   v.number("tilt", p.tilt, "degrees", methods::non_negative.up_to(90.0),
-           "Tilt from the horizontal; 90: a fence");
+           "Tilt from the horizontal");
   v.number("thickness", p.thickness, "m", methods::allowed::size_or_zero,
            "Thickness, below the sliding face");
   v.choice("condition", p.condition, condition_doc);

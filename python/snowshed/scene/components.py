@@ -121,7 +121,7 @@ class Panel(Record):
     width : float
         Width across the slope; ignored in 2D (required in 3D) [m]. 0 <= value <= 1e+06.
     tilt : float
-        Tilt from the horizontal [degrees]. 0 <= value < 90; default 40; also surface_tilt.
+        Tilt from the horizontal [degrees]. 0 <= value <= 90; default 40; also surface_tilt.
     thickness : float
         Thickness, below the sliding face [m]. 0 <= value <= 1e+06; default 0.
     condition : {"sticky", "slip", "separate"}
