@@ -170,7 +170,7 @@ def test_schema(capsys):
         (["--density", "-1"], "--density (/snow/density): -1"),
         (["--density", "nan"], "--density (/snow/density): nan"),
         (["--poissons-ratio", "0.5"], "--poissons-ratio (/snow/poissons_ratio): 0.5"),
-        (["--tilt", "90"], "--tilt (/panel/tilt): 90"),
+        (["--tilt", "91"], "--tilt (/panel/tilt): 91"),
         (["--dim", "4"], "--dim (/dimension): 4"),
         (["--height", "tall"], "'--height': 'tall'"),
         (["--between", "melt"], "'--between': 'melt' is not one of 'carry', 'reseed'"),

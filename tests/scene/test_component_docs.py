@@ -50,7 +50,7 @@ def test_fields_are_updated_and_other_code_stays():
     new = with_described_fields(SOURCE, {"Panel": (panel, NODES[panel])})
     assert "removed" not in new
     assert "    tilt: Optional[float] = default(40.0)\n" in new
-    assert "        Tilt from the horizontal [degrees]. 0 <= value < 90; default 40" in new
+    assert "        Tilt from the horizontal [degrees]. 0 <= value <= 90; default 40" in new
     assert "    By hand.\n" in new
     assert new.endswith(SOURCE[SOURCE.index("    lower_edge_height") :])
     assert with_described_fields(new, {"Panel": (panel, NODES[panel])}) == new
