@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Optional
 
+from snowshed.base.formatting import percent
 from snowshed.season.accumulation import WinterDay
 from snowshed.season.cover import end_of_readings
 from snowshed.season.settings import SeasonSettings
@@ -104,10 +105,7 @@ def sunshine_left_out(share: float) -> str:
     """Return which sunshine is left out if a share of the rows, below 1, has an irradiance."""
     if share == 0.0:
         return "Sunshine is left out, because the weather has no irradiance"
-    return (
-        f"{100.0 * (1.0 - share):.2g} % of the rows of the weather have no irradiance, and count "
-        "as dark"
-    )
+    return f"{percent(1.0 - share, 2)} of the weather's rows have no irradiance, and count as dark"
 
 
 def fall_notes(

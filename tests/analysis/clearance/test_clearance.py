@@ -2,18 +2,16 @@
 
 import json
 import os
-import re
 import signal
 from dataclasses import replace
-from datetime import date, datetime, timedelta
+from datetime import date
 
 import numpy as np
-import pandas as pd
 import pytest
 from helpers.station_files import days, elements, ghcn
-from plot.browser import check_page, open_page
+from plot.browser import check_page
 
-from snowshed import InputError, Scene
+from snowshed import InputError
 from snowshed.analysis.clearance import (
     PanelDesign,
     SnowRanges,
@@ -21,19 +19,15 @@ from snowshed.analysis.clearance import (
     required_clearance,
     split_winters,
 )
-from snowshed.analysis.clearance.answer import STUDY, expected_duration, required_height
-from snowshed.analysis.clearance.grid_error import choose_grid, recorded_grid_error
-from snowshed.analysis.clearance.panel_snow import mean_months
+from snowshed.analysis.clearance.answer import STUDY, expected_duration
 from snowshed.analysis.clearance.report import write_report
-from snowshed.analysis.clearance.seasons import SeasonOutcome, cases_of
+from snowshed.analysis.clearance.seasons import cases_of
 from snowshed.analysis.clearance.statistics import CauseShare
-from snowshed.analysis.clearance.tables import write_tables
-from snowshed.analysis.clearance.trend import Trend, trend_of
+from snowshed.analysis.clearance.trend import Trend
 from snowshed.cli.main import main
 from snowshed.results.folder import read_events
 from snowshed.results.season_folder import SeasonFolder
-from snowshed.season import SeasonSettings, Weather, accumulate, run_season
-from snowshed.season.rows import PanelRows
+from snowshed.season import SeasonSettings, run_season
 from snowshed.season.weather.generator import EXAMPLE_CLIMATE, Climate, MonthClimate
 from snowshed.season.weather.source import SnowSource
 from snowshed.study.errors import StudyInterrupted
@@ -48,7 +42,6 @@ SHORT = Climate(
     }
 )
 DESIGN = PanelDesign(0.6, 60.0)
-DEFAULT_CELL = 4.0 / 60.0  # of a panel of 4 m
 KNOWN = SnowRanges(
     {"friction": (0.4, 0.4), "adhesion": (10.0, 10.0), "sliding_friction": (0.2, 0.2)}, draws=1
 )
@@ -150,48 +143,9 @@ def test_page_and_summary_contain_the_answer(report):
     assert 'href="worst-winter-0.6-60.html"' in page and "slide-offs" in view
 
 
-def test_tables_hold_the_heights_the_burials_and_the_snow_on_the_panel(answer, tmp_path):
-    result, _ = answer
-    assert write_tables([result], tmp_path, price=100.0) == ["heights.csv", "clearance.xlsx"]
-    heights = pd.read_csv(tmp_path / "heights.csv")
-    levels = heights[heights["probability"].notna()]
-    assert levels["height_m"].tolist() == pytest.approx(
-        [level.height for level in result.levels], rel=1e-5
-    )
-    rounded = np.ceil(10.0 * heights["height_m"] - 1e-9) / 10.0
-    assert heights["cost"].tolist() == pytest.approx((100.0 * rounded).tolist())
-    sheets = pd.read_excel(tmp_path / "clearance.xlsx", sheet_name=None)
-    assert list(sheets) == ["heights", "burial", "snow on the panel"]
-    assert sheets["burial"]["probability"].iloc[0] == pytest.approx(
-        result.burial_probability(result.heights[0])
-    )
-    lying = [sum(day.load > 0.0 and not day.released for day in case.days) for case in result.cases]
-    covered = sheets["snow on the panel"]["covered_days"].sum()
-    assert covered == pytest.approx(np.mean(lying), abs=0.01)
-
-
-def test_the_blocked_irradiation_is_that_of_covered_hours():
-    """Snow lies on two of three days, until it has melted; the third has half of the sun."""
-    start = datetime(2024, 1, 1)
-    fall = Weather(2, start, 0.1, 100.0, -20.0, irradiance=100.0)
-    clear = replace(fall, date=start + timedelta(days=1), snowfall=0.0, temperature=20.0)
-    settings = SeasonSettings(adhesion=1e4, thaw=None, melt_factor=100.0)
-    later = replace(clear, date=start + timedelta(days=2), irradiance=200.0)
-    months = mean_months([accumulate([fall, clear, later], settings, tilt=30.0)])
-    assert months[1].covered_days == 2.0
-    assert months[1].blocked == pytest.approx(200.0 / 400.0)
-
-
 def test_pages_are_readable_on_telephone_and_screen(report):
     check_page(report / "clearance.html")
     check_page(report / "worst-winter-0.6-60.html")
-
-
-def test_the_report_prints_on_four_pages(report):
-    margin = dict.fromkeys(("top", "bottom", "left", "right"), "15mm")
-    with open_page(report / "clearance.html") as (page, _):
-        printed = page.pdf(format="A4", margin=margin)
-    assert 1 <= len(re.findall(rb"/Type /Page\b", printed)) <= 4
 
 
 def test_a_climate_that_changes_is_told(answer, monkeypatch):
@@ -200,22 +154,6 @@ def test_a_climate_that_changes_is_told(answer, monkeypatch):
     assert any(
         "the heights fall by 0.91 m in ten years" in w for w in answer_text.warnings([result])
     )
-
-
-def test_a_trend_counts_years_and_not_winters():
-    """0.3 m in ten years, with a gap of fifteen years in the record."""
-    years = [*range(1990, 1998), *range(2013, 2021)]
-    trend = trend_of(np.array([1.0 + 0.03 * (year - 1990) for year in years]), years)
-    assert trend is not None
-    assert trend.per_decade == pytest.approx(0.3)
-
-
-def test_a_season_of_rows_that_cannot_go_on_counts_as_a_burial(winters, tmp_path):
-    design = PanelDesign(0.6, 60.0, PanelRows(2, 0.6))
-    case = cases_of(design, winters, KNOWN.draw(3), SeasonSettings(), {})[0]
-    outcome = case.outcome_of_lying_snow(0.4)
-    assert outcome.contact is not None
-    assert required_height([outcome, SeasonOutcome(0.8, 0.2, None)]) == pytest.approx(0.6)
 
 
 def test_the_expected_duration_counts_the_seasons(winters):
@@ -268,23 +206,6 @@ def test_the_error_of_the_grid_follows_from_the_scheme(answer, winters):
         warning = answer_text.warnings([replace(result, cases=cases)])[0]
         assert warning.startswith("the intervals contain the error of the grid, a factor of up to ")
         assert f"on the height of shed snow: {text}" in warning
-
-
-def test_more_cells_in_the_slabs_have_a_smaller_recorded_error():
-    scene = Scene.preset("lab-50").with_({"numerics.scheme": "objective"}).resolve().data
-    errors = [recorded_grid_error(scene, cells).size for cells in (2.0, 4.0, 100.0)]
-    assert errors[0] > errors[1] == errors[2] > 0.0
-
-
-def test_an_accuracy_chooses_scheme_and_cells_of_the_same_slabs(tmp_path, capsys):
-    command = ["clearance", "example", "--slope-length", "4", "--tilt", "60", "--dry-run"]
-    assert main([*command, "--accuracy", "10%", "-o", str(tmp_path / "out")]) == 0
-    choice = choose_grid(0.1)
-    text = capsys.readouterr().out
-    assert f"scheme {choice.scheme} with {choice.cells:g} cells" in text
-    assert f"dx {2.0 * DEFAULT_CELL / choice.cells:.3g} m" in text
-    assert main([*command, "--accuracy", "10%", "--dx", "0.1", "-o", str(tmp_path / "out")]) == 2
-    assert "--accuracy chooses cells and scheme" in capsys.readouterr().err
 
 
 def test_disabled_relations_are_stated(answer):

@@ -4,18 +4,25 @@ from __future__ import annotations
 
 import calendar
 import importlib.util
+import io
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
+from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 from snowshed.analysis.clearance.answer import ClearanceResult
 from snowshed.analysis.clearance.answer_text import rounded_up
 from snowshed.analysis.clearance.panel_snow import panel_snow
+from snowshed.base.extras import require
 from snowshed.io.atomic import replacing
 from snowshed.io.csv_table import write_csv
 
 if TYPE_CHECKING:
     import pandas as pd
+
+#: Moments of writing in the properties of a workbook.
+DATES = re.compile(rb"(?<=>)[0-9]{4}-[0-9]{2}-[0-9]{2}T[0-9:.]+Z(?=</dcterms:)")
 
 
 def height_table(answers: Sequence[ClearanceResult], price: Optional[float] = None) -> pd.DataFrame:
@@ -123,9 +130,12 @@ def write_tables(
 
 
 def _write_excel(sheets: Mapping[str, pd.DataFrame], file: Path) -> None:
+    """Write tables as sheets; the same tables give the same bytes."""
     import pandas as pd
 
-    with replacing(file) as beside, pd.ExcelWriter(beside, engine="openpyxl") as book:
+    require("openpyxl", "excel", "a table for Excel")
+    written = io.BytesIO()
+    with pd.ExcelWriter(written, engine="openpyxl") as book:
         for name, table in sheets.items():
             table.to_excel(book, sheet_name=name, index=False, freeze_panes=(1, 0))
             for column in book.sheets[name].columns:
@@ -133,6 +143,10 @@ def _write_excel(sheets: Mapping[str, pd.DataFrame], file: Path) -> None:
                 book.sheets[name].column_dimensions[column[0].column_letter].width = longest + 2
                 for cell in column[1:]:
                     cell.number_format = "0.00" if isinstance(cell.value, float) else "General"
+    with replacing(file) as beside, ZipFile(written) as dated, ZipFile(beside, "w") as undated:
+        for part in dated.namelist():
+            content = DATES.sub(b"2000-01-01T00:00:00Z", dated.read(part))
+            undated.writestr(ZipInfo(part), content, ZIP_DEFLATED)
 
 
 def _shown(value: object) -> str:
