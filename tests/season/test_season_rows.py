@@ -124,6 +124,7 @@ def test_a_winter_that_buries_a_lower_row_counts(tmp_path):
     assert answer.outcomes[0][0].height == 0.1
     assert answer.outcomes[0][0].contact is not None
     assert 0.1 < answer.required[0] < 3.0
+    assert any("snow stays on a lower row" in text for text in answer_text.warnings([answer]))
 
 
 def test_the_cover_on_a_slope_is_measured_vertically():

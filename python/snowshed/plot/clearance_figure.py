@@ -103,6 +103,8 @@ def design_figure(
 ) -> Figure:
     """Draw the required height against slope length, a line for each tilt.
 
+    If all panels have one slope length, their heights are drawn against the tilt.
+
     Parameters
     ----------
     designs
@@ -113,19 +115,18 @@ def design_figure(
     with rc_context(STYLE):
         figure = blank_figure(6.4, 3.6)
         axes = figure.subplots()
-        for colour, tilt in zip(COLOURS * 9, sorted({design[1] for design in designs})):
-            own = sorted(design for design in designs if design[1] == tilt)
-            lengths, heights = (
-                [design[0] for design in own],
-                np.array([design[2] for design in own]),
-            )
-            bounds = np.array([design[3] for design in own]).T
-            errors = np.abs(bounds - heights)
+        across, line = (1, 0) if len({design[0] for design in designs}) == 1 else (0, 1)
+        labels = ("slope length {:g} m", "tilt {:g}°")
+        for colour, value in zip(COLOURS * 9, sorted({design[line] for design in designs})):
+            own = sorted(design for design in designs if design[line] == value)
+            heights = np.array([design[2] for design in own])
+            errors = np.abs(np.array([design[3] for design in own]).T - heights)
             axes.errorbar(
-                lengths, heights, errors, fmt="o-", color=colour, capsize=3, label=f"tilt {tilt:g}°"
-            )
+                [design[across] for design in own], heights, errors, fmt="o-", color=colour,
+                capsize=3, label=labels[line].format(value),
+            )  # fmt: skip
         axes.set_ylim(bottom=0.0)
-        axes.set_xlabel("slope length, m")
+        axes.set_xlabel(("slope length, m", "tilt, degrees")[across])
         axes.set_title(f"Height of the lower edge that stays clear in {100 * probability:g} %, m")
         axes.legend()
         return figure

@@ -25,6 +25,7 @@ from snowshed.analysis.clearance.seasons import SeasonOutcome, cases_of
 from snowshed.analysis.clearance.tables import write_tables
 from snowshed.analysis.clearance.trend import trend_of
 from snowshed.cli.main import main
+from snowshed.plot.clearance_figure import design_figure
 from snowshed.season import SeasonSettings, Weather, accumulate
 from snowshed.season.rows import PanelRows
 from snowshed.season.weather.generator import Climate, MonthClimate
@@ -107,6 +108,14 @@ def test_a_season_of_rows_that_cannot_go_on_counts_as_a_burial():
     outcome = case.outcome_of_lying_snow(0.4)
     assert outcome.contact is not None
     assert required_height([outcome, SeasonOutcome(0.8, 0.2, None)]) == pytest.approx(0.6)
+
+
+def test_the_heights_of_one_slope_length_are_drawn_against_the_tilt():
+    designs = [(2.0, 45.0, 1.5, (1.2, 1.9)), (2.0, 90.0, 1.0, (0.9, 1.3))]
+    axes = design_figure(designs, 0.9).axes[0]
+    assert axes.get_xlabel() == "tilt, degrees"
+    lengths = [(length, *design[1:]) for length, design in zip((2.0, 3.0), designs)]
+    assert design_figure(lengths, 0.9).axes[0].get_xlabel() == "slope length, m"
 
 
 def test_more_cells_in_the_slabs_have_a_smaller_recorded_error():

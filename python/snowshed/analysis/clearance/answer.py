@@ -266,7 +266,7 @@ def required_height(outcomes: Sequence[SeasonOutcome]) -> float:
     if not reached:
         return max(above.height - above.margin, 0.0)
     below = max(reached, key=height_key)
-    if below.margin == 0.0:  # a contact below the crest's height: by how much is not known
+    if below.is_censored:
         return 0.5 * (below.height + above.height)
     part = -below.margin / (above.margin - below.margin)
     return below.height + part * (above.height - below.height)

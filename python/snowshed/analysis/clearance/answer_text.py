@@ -203,6 +203,13 @@ def _warnings_of(answer: ClearanceResult) -> Iterator[str]:
             "there are too few seasons to separate the snow parameters from the weather, so they "
             "count as changing from winter to winter; give more --draws"
         )
+    ended = sum(any(outcome.is_censored for outcome in case) for case in answer.outcomes)
+    if ended and answer.design.rows.count > 1:
+        yield (
+            f"in {plural(ended, 'season')} snow stays on a lower row at a candidate height, which "
+            "ends the simulation and counts as a burial; the height lies half way to the next "
+            "candidate, so give more --heights"
+        )
     if answer.failed:
         yield f"{answer.failed} seasons could not be simulated, and are left out"
 

@@ -55,6 +55,11 @@ class SeasonOutcome:
     contact: Optional[PanelContact]
     cover: float = 0.0
 
+    @property
+    def is_censored(self) -> bool:
+        """Whether a contact does not tell by how much the height is too small."""
+        return self.contact is not None and self.margin == 0.0
+
 
 @dataclass(frozen=True)
 class SeasonCase:
