@@ -145,10 +145,11 @@ def plane_irradiance(
     surface_tilt: float,
     surface_azimuth: float,
 ) -> pd.Series:
-    """Return the irradiance of a panel's plane, for the column ``irradiance_w_m2`` of a season.
+    """Return the sunshine on a tilted panel, W/m2, as a season's file gives it.
 
-    The direct part of the radiation follows from Erbs et al. 1982, the sky is isotropic, and the
-    ground reflects like snow (all by pvlib). Hours without radiation or sun have 0.
+    The result is a column ``irradiance_w_m2``. The direct part of the radiation follows from Erbs
+    et al. 1982, the sky is isotropic, and the ground reflects like snow (all by pvlib). Hours
+    without radiation or sun have 0.
 
     Parameters
     ----------

@@ -22,6 +22,8 @@ ROUND_SIDES = 24  # number of sides of round shapes
 SAMPLES = 48  # samples along the longest side of a solid
 FLAT_SAMPLES = 400  # the same in 2D
 TERRAIN_NODES = 220  # along a side, at most
+#: Corners of the unit cube.
+CORNERS = np.array([[i, j, k] for i in (0.0, 1.0) for j in (0.0, 1.0) for k in (0.0, 1.0)])
 MAX_TRIANGLES = 200_000  # of a mesh; larger meshes are sampled
 
 
@@ -37,6 +39,12 @@ class Box:
         """Edge lengths."""
         edges: Floats = self.high - self.low
         return edges
+
+    @property
+    def corners(self) -> Floats:
+        """Its corners (8, 3)."""
+        points: Floats = self.low + CORNERS * self.size
+        return points
 
     def widened(self, margin: float) -> Box:
         """Return the box with a margin on all sides, m."""
@@ -218,7 +226,7 @@ def _parts(
             yield from _parts(part, scene, base_dir, near)
     elif kind == "transform":
         turn, shift = _turn(shape, scene["dimension"])
-        around = _corners(near) - shift
+        around = near.corners - shift
         own = around @ turn  # the inverse of a rotation is its transpose
         region = Box(own.min(axis=0), own.max(axis=0))
         for part in _parts(shape["shapes"][0], scene, base_dir, region):
@@ -277,12 +285,6 @@ def _turn(shape: Mapping[str, Any], dimension: int) -> tuple[Floats, Floats]:
     return turn, _in_space(shape.get("translate") or [0.0] * dimension)
 
 
-def _corners(box: Box) -> Floats:
-    signs = np.array([[i, j, k] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
-    corners: Floats = box.low + signs * box.size
-    return corners
-
-
 def _scene_of_shape(shape: Mapping[str, Any], scene: Mapping[str, Any]) -> ResolvedScene:
     """Return a scene with a single shape and hardly any snow."""
     dimension = scene["dimension"]
@@ -293,10 +295,9 @@ def _scene_of_shape(shape: Mapping[str, Any], scene: Mapping[str, Any]) -> Resol
 
 
 def _box(name: str, kind: str, centre: Floats, edges: Any) -> Solid:
-    signs = np.array([[i, j, k] for i in (-0.5, 0.5) for j in (-0.5, 0.5) for k in (-0.5, 0.5)])
     sides = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
     triangles = np.array([t for a, b, c, d in sides for t in ([a, b, c], [a, c, d])])
-    return Solid(name, kind, centre + signs @ np.asarray(edges), triangles)
+    return Solid(name, kind, centre + (CORNERS - 0.5) @ np.asarray(edges), triangles)
 
 
 def _plate(centre: Floats, normal: Floats, shape: Mapping[str, Any]) -> Solid:

@@ -20,6 +20,7 @@ from snowshed.plot.solids import scene_solids
 from snowshed.results.folder import read_events
 from snowshed.results.reader import Results
 from snowshed.results.season_folder import SeasonFolder
+from snowshed.scene.panel_edge import ground_tilt
 from snowshed.scene.scene import ResolvedScene
 from snowshed.scene.terrain_grid import slide_terrain
 from snowshed.snow.stack.measure import levelled_positions
@@ -154,7 +155,7 @@ def _measures(
     data: Mapping[str, Any], table: pd.DataFrame, folder: Path, front: float
 ) -> list[MeasureLine]:
     """Return height, length and clearance after each event, if they are measured."""
-    tilt = float((data.get("ground") or {}).get("tilt", 0.0))
+    tilt = ground_tilt(data)
     profiles = _profiles(folder)
     lines = []
     for row in table.to_dict("records"):

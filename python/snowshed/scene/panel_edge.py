@@ -33,6 +33,17 @@ class Edge:
         return 2.0 * self.center[0] - self.x, 2.0 * self.center[1] - self.z
 
 
+def ground_tilt(scene: Mapping[str, Any]) -> float:
+    """Return the tilt of the ground in a scene's data, degrees; 0 without a tilted plane.
+
+    Examples
+    --------
+    >>> ground_tilt({"ground": {"tilt": 20}}), ground_tilt({})
+    (20.0, 0.0)
+    """
+    return float((scene.get("ground") or {}).get("tilt") or 0.0)
+
+
 def panel_edge(scene: Mapping[str, Any]) -> Edge:
     """Return the lower edge of the panel in a scene's data; x is 0 at the panel's centre.
 
@@ -45,7 +56,7 @@ def panel_edge(scene: Mapping[str, Any]) -> Edge:
     """
     panel = scene["panel"]
     tilt = math.radians(panel["tilt"])
-    ground = math.radians((scene.get("ground") or {}).get("tilt") or 0.0)
+    ground = math.radians(ground_tilt(scene))
     half = 0.5 * panel["length"]
     x = half * math.cos(tilt)
     z = panel["height"] - x * math.tan(ground)

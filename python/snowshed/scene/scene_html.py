@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from html import escape
 from typing import Any
 
-from snowshed.scene.panel_edge import panel_edge
+from snowshed.scene.panel_edge import ground_tilt, panel_edge
 
 Point = tuple[float, float]
 WIDTH, MAX_HEIGHT = 480, 320  # pixels
@@ -36,7 +36,7 @@ def _drawing(data: Mapping[str, Any]) -> str:
     if not solids:
         return ""
     corners = [point for _, points in solids for point in points]
-    tilt = math.tan(math.radians((data.get("ground") or {}).get("tilt") or 0.0))
+    tilt = math.tan(math.radians(ground_tilt(data)))
     highest = max(z for _, z in corners)
     left, right = _widened((x for x, _ in corners), highest)
     bottom = min(min(z for _, z in corners), -tilt * right) - 0.02 * (right - left)

@@ -93,7 +93,7 @@ def _melt_assumptions(days: Sequence[WinterDay], settings: SeasonSettings) -> It
         sun = ", or colder in sunshine" if share else ""
         yield f"snow does not adhere to the panel in air warmer than 0 °C{sun} ({settings.thaw})"
         if share < 1.0:
-            yield sunshine_left_out(share)[0].lower() + sunshine_left_out(share)[1:]
+            yield sunshine_left_out(share)
 
 
 def irradiance_share(rows: Sequence[Weather]) -> float:
@@ -104,7 +104,7 @@ def irradiance_share(rows: Sequence[Weather]) -> float:
 def sunshine_left_out(share: float) -> str:
     """Return which sunshine is left out if a share of the rows, below 1, has an irradiance."""
     if share == 0.0:
-        return "Sunshine is left out, because the weather has no irradiance"
+        return "sunshine is left out, because the weather has no irradiance"
     return f"{percent(1.0 - share, 2)} of the weather's rows have no irradiance, and count as dark"
 
 

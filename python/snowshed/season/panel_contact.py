@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Optional
 import numpy as np
 
 from snowshed.base.arrays import Floats
-from snowshed.scene.panel_edge import panel_edge
+from snowshed.scene.panel_edge import ground_tilt, panel_edge
 from snowshed.snow.stack.measure import levelled_positions
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ def clearance(
     """
     _, (x, z) = panel_ends(scene)
     deepest = max(_surface(outline, x + away) for away in rows)
-    above_cover = z - cover * math.cos(math.radians(_tilt(scene)))
+    above_cover = z - cover * math.cos(math.radians(ground_tilt(scene)))
     return Clearance(max(above_cover - deepest, 0.0), above_cover - height)
 
 
@@ -98,12 +98,8 @@ def panel_ends(scene: Mapping[str, Any]) -> list[list[float]]:
     """Return the panel's upper and lower edge, [x, z], on levelled ground."""
     edge = panel_edge(scene)
     ends = np.array([[edge.upper[0], 0.0, edge.upper[1]], [edge.x, 0.0, edge.z]])
-    levelled: list[list[float]] = levelled_positions(ends, _tilt(scene))[:, [0, 2]].tolist()
+    levelled: list[list[float]] = levelled_positions(ends, ground_tilt(scene))[:, [0, 2]].tolist()
     return levelled
-
-
-def _tilt(scene: Mapping[str, Any]) -> float:
-    return float((scene.get("ground") or {}).get("tilt") or 0.0)
 
 
 def _surface(outline: Floats, x: float) -> float:

@@ -7,11 +7,12 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Optional
 
 from snowshed._core import InputError
 from snowshed.scene.builders.panels import further_rows, row_board
 from snowshed.scene.components import Body, Layer
+from snowshed.scene.panel_edge import ground_tilt
 from snowshed.scene.scene import Scene
 
 MAX_ROWS = 20
@@ -49,8 +50,7 @@ class PanelRows:
 
     def distances(self, scene: Mapping[str, Any]) -> list[float]:
         """Return the distance of each row from the first, along the ground of a scene, m."""
-        tilt = float((scene.get("ground") or {}).get("tilt") or 0.0)
-        along = self.pitch / math.cos(math.radians(tilt))
+        along = self.pitch / math.cos(math.radians(ground_tilt(scene)))
         return [number * along for number in range(self.count)]
 
 
@@ -63,17 +63,36 @@ def check_rows(rows: PanelRows, scene: Mapping[str, Any]) -> None:
         further_rows(scene, rows.count, rows.pitch)
 
 
+def snow_stays_on_a_row(rows: PanelRows, error: str) -> Optional[int]:
+    """Return the slide-off that the core could not lay on a row, because snow stayed on it.
+
+    Parameters
+    ----------
+    rows
+        The rows of the season.
+    error
+        Text of an error of its run.
+
+    Returns
+    -------
+    int or None
+        None if there is a single row, or the error has another cause.
+    """
+    event = re.search(r"in event (\d+), .* within snow that is already there", error)
+    return int(event[1]) if event and rows.count > 1 else None
+
+
 @contextmanager
 def lying_snow_named(rows: PanelRows) -> Iterator[None]:
     """Say what it means if the core cannot lay snow on a row, because snow stayed on it."""
     try:
         yield
     except InputError as error:
-        event = re.search(r"in event (\d+), .* within snow that is already there", str(error))
-        if rows.count == 1 or event is None:
+        event = snow_stays_on_a_row(rows, str(error))
+        if event is None:
             raise
         raise InputError(
-            f"rows: before slide-off {event[1]}, snow stays on a lower row, because the stack "
+            f"rows: before slide-off {event}, snow stays on a lower row, because the stack "
             "reaches it; that row is buried, and no further snow can be laid on it. Give a greater "
             "height"
         ) from None

@@ -189,7 +189,8 @@ def recorded_bias(dimension: int, events: int, mechanisms: Optional[Mechanisms] 
     resolved = _resolved(stacks)
     if not resolved:
         return _no_runs_text(mechanisms)
-    low, high = 100 * min(resolved.values()), 100 * max(resolved.values())
+    biases = [stack.biases[0] for stack in resolved.values()]
+    low, high = 100 * min(biases), 100 * max(biases)
     return _clauses(
         f"stacks of {_scene_label(stacks[0].settings)} were {_span(low, high)} with "
         f"{_numbers(min(resolved), max(resolved))} cells in the slab, relative to the finest "
@@ -210,25 +211,20 @@ def resolved_biases(
     >>> sorted(resolved_biases(2, 5))
     [2.0, 4.0]
     """
+    stacks = resolved_stacks(dimension, events, mechanisms)
+    return {cells: stack.biases[0] for cells, stack in stacks.items()}
+
+
+def resolved_stacks(
+    dimension: int, events: int, mechanisms: Optional[Mechanisms] = None
+) -> dict[float, RecordedStack]:
+    """Return recorded stacks by the cells across the slab; the parameters are the same."""
     return _resolved(_nearest_stacks(dimension, events, mechanisms or Mechanisms()))
 
 
-def resolved_costs(
-    dimension: int, events: int, mechanisms: Optional[Mechanisms] = None
-) -> dict[float, float]:
-    """Return the run time of recorded stacks, s, by the cells across the slab.
-
-    The parameters are those of `recorded_bias`.
-    """
-    stacks = _nearest_stacks(dimension, events, mechanisms or Mechanisms())
-    return {PRESET_THICKNESS / float(stack.settings[ORDER_IN]): stack.wall_s for stack in stacks}
-
-
-def _resolved(stacks: Iterable[RecordedStack]) -> dict[float, float]:
-    biases = {
-        PRESET_THICKNESS / float(stack.settings[ORDER_IN]): stack.biases[0] for stack in stacks
-    }
-    return {cells: bias for cells, bias in biases.items() if cells > MIN_CELLS_ACROSS - 1e-9}
+def _resolved(stacks: Iterable[RecordedStack]) -> dict[float, RecordedStack]:
+    by_cells = {PRESET_THICKNESS / float(stack.settings[ORDER_IN]): stack for stack in stacks}
+    return {cells: stack for cells, stack in by_cells.items() if cells > MIN_CELLS_ACROSS - 1e-9}
 
 
 def _nearest_stacks(dimension: int, events: int, mechanisms: Mechanisms) -> list[RecordedStack]:

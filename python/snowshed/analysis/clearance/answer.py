@@ -18,6 +18,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.analysis.clearance.grid_error import GridError, recorded_grid_error
 from snowshed.analysis.clearance.panel_design import MARGIN, PanelDesign, SnowRanges
+from snowshed.analysis.clearance.panel_snow import PanelSnow, mean_months
 from snowshed.analysis.clearance.seasons import SeasonCase, SeasonOutcome, cases_of
 from snowshed.analysis.clearance.statistics import CauseShare, Level, RequiredHeights
 from snowshed.analysis.clearance.winters import Winter
@@ -26,7 +27,7 @@ from snowshed.base.formatting import plural
 from snowshed.base.json_values import JsonValue
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
-from snowshed.season.rows import check_rows
+from snowshed.season.rows import check_rows, snow_stays_on_a_row
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.weather.season_record import WinterList
 from snowshed.study.session import compute_runs
@@ -108,6 +109,11 @@ class ClearanceResult:
     def is_simulated(self) -> bool:
         """Whether any snow slides, so that there are simulations."""
         return any(case.has_releases for case in self.cases)
+
+    @cached_property
+    def panel_snow(self) -> dict[int, PanelSnow]:
+        """The snow on the panel in a mean winter, by month."""
+        return mean_months([case.days for case in self.cases])
 
     @cached_property
     def grid_error(self) -> GridError:
@@ -403,13 +409,16 @@ class _Search:
         for number, index in self.undecided():
             run = self._runs.get((number, index))
             rows = nothing if run is None else events.get(run.hash, nothing)
-            failed = (rows["ended"] == "failed").any() or (run is not None and rows.empty)
-            if failed and self.cases[number].design.rows.count == 1:
+            case, height = self.cases[number], self.heights[index]
+            failed = rows[rows["ended"] == "failed"]
+            if snow_stays_on_a_row(case.design.rows, " ".join(failed["error"])):
+                outcome = case.outcome_of_lying_snow(height)
+            elif len(failed) or (run is not None and rows.empty):
                 self._low[number] = self._high[number]  # left out
                 self.outcomes[number] = []
                 continue
-            case, height = self.cases[number], self.heights[index]
-            outcome = case.outcome_of_lying_snow(height) if failed else case.outcome(height, rows)
+            else:
+                outcome = case.outcome(height, rows)
             self.outcomes[number].append(outcome)
             if outcome.contact is None:
                 self._high[number] = index

@@ -292,8 +292,11 @@ def _thaw(answer: ClearanceResult) -> list[str]:
     share = irradiance_share([day for case in answer.cases for day in case.winter.days])
     sun = ", or colder in sunshine" if share else ""
     wet = f"In air warmer than 0 °C{sun}, snow does not adhere to the panel ({season.thaw})."
-    left_out = [] if share == 1.0 else [f"{sunshine_left_out(share)}."]
-    return [*([melt] if season.melt_factor else []), *([wet] if season.thaw else []), *left_out]
+    sentences = [*([melt] if season.melt_factor else []), *([wet] if season.thaw else [])]
+    if share < 1.0:
+        left_out = sunshine_left_out(share)
+        sentences.append(f"{left_out[0].upper()}{left_out[1:]}.")
+    return sentences
 
 
 def _settling(season: SeasonSettings) -> str:

@@ -9,10 +9,11 @@ from typing import Any
 from snowshed.analysis.accuracy.mechanisms import Mechanisms
 from snowshed.analysis.accuracy.recorded import load_recorded
 from snowshed.analysis.accuracy.recorded_stacks import recorded_stacks
+from snowshed.analysis.accuracy.solutions import quickest
 from snowshed.analysis.accuracy.stack_errors import (
     recorded_bias,
     resolved_biases,
-    resolved_costs,
+    resolved_stacks,
 )
 
 #: Fewest cells across a slab.
@@ -77,15 +78,12 @@ def choose_grid(accuracy: float) -> GridChoice:
     >>> choose_grid(0.2).scheme, choose_grid(0.4).scheme
     ('objective', 'thesis')
     """
-    candidates = []
+    choices, costs = [], []
     for scheme in _recorded_schemes():
-        costs = resolved_costs(2, TYPICAL_SLIDE_OFFS, Mechanisms(scheme))
-        for cells, bias in resolved_biases(2, TYPICAL_SLIDE_OFFS, Mechanisms(scheme)).items():
-            candidates.append((costs[cells], GridChoice(scheme, cells, abs(bias))))
-    accurate = [pair for pair in candidates if pair[1].error <= accuracy]
-    if accurate:
-        return min(accurate, key=lambda pair: pair[0])[1]
-    return min((choice for _, choice in candidates), key=lambda choice: choice.error)
+        stacks = resolved_stacks(2, TYPICAL_SLIDE_OFFS, Mechanisms(scheme))
+        choices += [GridChoice(scheme, cells, abs(stacks[cells].biases[0])) for cells in stacks]
+        costs += [stack.wall_s for stack in stacks.values()]
+    return choices[quickest(costs, [choice.error for choice in choices], accuracy)]
 
 
 def recorded_grid_error(scene: Mapping[str, Any], cells: float = MIN_CELLS) -> GridError:

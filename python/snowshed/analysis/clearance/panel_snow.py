@@ -11,10 +11,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Optional
 
-from snowshed.analysis.clearance.seasons import SeasonCase
 from snowshed.season.accumulation import WinterDay
+from snowshed.season.settings import DAY
 
-DAY = 86400.0  # s
 #: Share of a month that must have an irradiance.
 MEASURED = 0.9
 
@@ -37,19 +36,10 @@ class PanelSnow:
     blocked: Optional[float]
 
 
-def panel_snow(cases: Sequence[SeasonCase]) -> dict[int, PanelSnow]:
-    """Return the snow on a panel in a mean winter by month, in the order of a winter.
-
-    Parameters
-    ----------
-    cases
-        The seasons of the panel: all winters, each with its draws.
-    """
-    return mean_months([case.days for case in cases])
-
-
 def mean_months(seasons: Sequence[Sequence[WinterDay]]) -> dict[int, PanelSnow]:
-    """Return the mean of several seasons by month; months without snow on the panel are left out.
+    """Return the mean of several seasons by month, in the order of a winter.
+
+    Months without snow on the panel are left out.
 
     Examples
     --------

@@ -14,9 +14,8 @@ import numpy as np
 from snowshed.analysis.clearance import answer_text
 from snowshed.analysis.clearance.answer import ClearanceResult
 from snowshed.analysis.clearance.panel_design import SnowRanges
-from snowshed.analysis.clearance.panel_snow import panel_snow
 from snowshed.analysis.clearance.statistics import FIRST_PROBABILITY
-from snowshed.analysis.clearance.tables import panel_columns, write_tables
+from snowshed.analysis.clearance.tables import burials, panel_columns, write_tables
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
 from snowshed.plot.clearance_figure import (
@@ -61,7 +60,7 @@ def write_report(
     notes
         Notes from reading the weather.
     price
-        Cost of a metre of height, for the table of panels.
+        Price of a metre of height. With it, the table of panels has costs.
     """
     import pandas as pd
 
@@ -110,23 +109,13 @@ def summary(
                 "confidence": answer.heights_by_probability.confidence,
                 "levels": [vars(level) for level in answer.levels],
                 "worst_winter": dict(zip(("height", "low", "high"), answer.highest)),
-                "heights": _burials(answer),
+                "heights": burials(answer),
                 "shares": [vars(share) for share in answer.shares],
                 "grid_error": vars(answer.grid_error),
             }
             for answer in answers
         ],
     }
-
-
-def _burials(answer: ClearanceResult) -> list[dict[str, float]]:
-    """Return the probability of burial at each candidate height; none of a single winter."""
-    burials = []
-    for height in answer.heights:
-        burial = answer.heights_by_probability.burial(height)
-        if burial is not None:
-            burials.append({"height": height, **dict(zip(("buried", "low", "high"), burial))})
-    return burials
 
 
 def _winter_table(answer: ClearanceResult) -> Optional[tuple[str, HtmlTable]]:
@@ -204,7 +193,7 @@ def _design_grid(answers: Sequence[ClearanceResult], price: Optional[float]) -> 
 
 def _panel_snow_grid(answers: Sequence[ClearanceResult]) -> Optional[HtmlTable]:
     """Return the days with snow on each panel by month, and the energy that it blocks."""
-    months = [panel_snow(answer.cases) for answer in answers]
+    months = [answer.panel_snow for answer in answers]
     names = list(dict.fromkeys(month for panel in months for month in panel))
     if not names:
         return None
@@ -244,7 +233,7 @@ def _height_grid(answer: ClearanceResult) -> HtmlTable:
             f"{100 * burial['low']:.0f} to {100 * burial['high']:.0f}",
             _years(burial["buried"]),
         )
-        for burial in _burials(answer)
+        for burial in burials(answer)
     ]
     head = ("height, m", "buried in, %", "90 % interval, %", "return period, years")
     return HtmlTable(head, rows, "rrrr")

@@ -21,6 +21,7 @@ from snowshed.analysis.clearance.panel_design import (
     season_settings,
 )
 from snowshed.analysis.clearance.winters import Winter
+from snowshed.scene.panel_edge import ground_tilt
 from snowshed.scene.scene import ResolvedScene
 from snowshed.season.accumulation import WinterDay, accumulate, stack_ageing
 from snowshed.season.panel_contact import PanelContact, first_contact
@@ -136,7 +137,7 @@ class SeasonCase:
         scene = self.panel_scene(height).data
         table = season_table(scene, self.days, self.settings, events, outlines)
         contact = first_contact(table, MARGIN)
-        upright = math.cos(math.radians(float((scene.get("ground") or {}).get("tilt") or 0.0)))
+        upright = math.cos(math.radians(ground_tilt(scene)))
         normal = table["crest_clearance_m"] + table["stack_height_m"] - table["settled_height_m"]
         distance = normal / upright
         margin = float(distance.min()) - MARGIN

@@ -13,7 +13,6 @@ from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 from snowshed.analysis.clearance.answer import ClearanceResult
 from snowshed.analysis.clearance.answer_text import rounded_up
-from snowshed.analysis.clearance.panel_snow import panel_snow
 from snowshed.base.extras import require
 from snowshed.io.atomic import replacing
 from snowshed.io.csv_table import write_csv
@@ -33,7 +32,7 @@ def height_table(answers: Sequence[ClearanceResult], price: Optional[float] = No
     answers
         One answer for each panel.
     price
-        Cost of a metre of height, rounded up to 10 cm; None: the table has no costs.
+        Price of a metre of height; None: the table has no costs. Heights are rounded up to 10 cm.
     """
     import pandas as pd
 
@@ -72,16 +71,18 @@ def burial_table(answers: Sequence[ClearanceResult]) -> pd.DataFrame:
     """Return the probability of burial in a winter at each candidate height, with its interval."""
     import pandas as pd
 
+    rows = [{**panel_columns(answer), **row} for answer in answers for row in burials(answer)]
+    return pd.DataFrame(rows).rename(columns={"height": "height_m", "buried": "probability"})
+
+
+def burials(answer: ClearanceResult) -> list[dict[str, float]]:
+    """Return the probability of burial at each candidate height; none of a single winter."""
     rows = []
-    for answer in answers:
-        for height in answer.heights:
-            burial = answer.heights_by_probability.burial(height)
-            if burial is not None:
-                names = ("probability", "low", "high")
-                rows.append(
-                    {**panel_columns(answer), "height_m": height, **dict(zip(names, burial))}
-                )
-    return pd.DataFrame(rows)
+    for height in answer.heights:
+        burial = answer.heights_by_probability.burial(height)
+        if burial is not None:
+            rows.append({"height": height, **dict(zip(("buried", "low", "high"), burial))})
+    return rows
 
 
 def panel_snow_table(answers: Sequence[ClearanceResult]) -> pd.DataFrame:
@@ -90,7 +91,7 @@ def panel_snow_table(answers: Sequence[ClearanceResult]) -> pd.DataFrame:
 
     rows: list[Mapping[str, Any]] = []
     for answer in answers:
-        for month, snow in panel_snow(answer.cases).items():
+        for month, snow in answer.panel_snow.items():
             row = {**panel_columns(answer), "month": calendar.month_abbr[month], "days": snow.days}
             rows.append({**row, "covered_days": snow.covered_days, "blocked": snow.blocked})
     table = pd.DataFrame(rows)

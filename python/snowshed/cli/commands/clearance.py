@@ -96,7 +96,7 @@ SHORT_NAMES = {"sliding": "sliding_friction", "melt": "melt_factor"}
 @click.option(
     "--price",
     type=click.FloatRange(0.0),
-    help="Cost of a metre of height, in any currency, for the costs in the tables.",
+    help="Price of a metre of height, in any currency. With it, the tables have costs.",
 )
 @rows_options
 @weather_options

@@ -16,7 +16,7 @@ from snowshed.scene.builders.slope import (
     upright_box,
 )
 from snowshed.scene.components import Body, Ground, Obstacle, Panel, Slab
-from snowshed.scene.panel_edge import panel_edge
+from snowshed.scene.panel_edge import ground_tilt, panel_edge
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 
@@ -142,7 +142,7 @@ def further_rows(scene: Mapping[str, Any], count: int, pitch: float) -> list[Slo
         raise InputError(
             f"pitch: {pitch:g} m is not allowed; the panels overlap below {least:.3g} m"
         )
-    fall = math.tan(math.radians((scene.get("ground") or {}).get("tilt") or 0.0))
+    fall = math.tan(math.radians(ground_tilt(scene)))
     width = panel.get("width") if scene["dimension"] == 3 else None
     away = [number * pitch for number in range(1, count)]
     return [Slope((edge.x + x, edge.z - x * fall), panel["tilt"], width) for x in away]

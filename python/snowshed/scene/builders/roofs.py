@@ -79,7 +79,7 @@ def shed_roof(
     scene.append("obstacles", _house([slope], upper, length, overhang, dx))
     rails = _rails(slope, guards, length, (guard_height, guard_thickness), dx)
     _add_rails(scene, "guard", rails)
-    _check_guards(scene, guards, length, guard_height, guard_thickness)
+    _note_unheld_snow(scene, guards, length, guard_height, guard_thickness)
     if rails:  # the scene's own slab would lie in them
         scene.slab = None
         scene.append("bodies", snow_layer(slope, 0.0, length, snow, rails))
@@ -134,7 +134,7 @@ def gable_roof(
     rails, far_rails = (_rails(side, guards, length, size, dx) for side in (slope, far))
     _add_rails(scene, "guard", rails)
     _add_rails(scene, "far-guard", far_rails)
-    _check_guards(scene, guards, length, guard_height, guard_thickness)
+    _note_unheld_snow(scene, guards, length, guard_height, guard_thickness)
     if rails:  # the scene's own slab would lie in them
         scene.slab = None
         scene.append("bodies", snow_layer(slope, 0.0, length, snow, rails))
@@ -206,6 +206,10 @@ def _rails(
                 f"guards: {start:g} m is outside the allowed range "
                 f"(0 <= value <= {length - thickness:g} m)"
             )
+    starts = sorted(guards)
+    for lower, upper in zip(starts, starts[1:]):
+        if upper < lower + thickness:
+            raise InputError(f"guards: those at {lower:g} and {upper:g} m overlap")
     return [slope.layer(start, start + thickness, -dx, height) for start in guards]
 
 
@@ -213,15 +217,12 @@ def _rails(
 UNHELD = 1.0
 
 
-def _check_guards(
+def _note_unheld_snow(
     scene: Scene, guards: Sequence[float], length: float, height: float, thickness: float
 ) -> None:
-    """Note that snow flows over the guard with the longest slope above it, if it does."""
+    """Note which snow the guards do not hold: below the lowest, and above an overloaded one."""
     if guards:
         starts = sorted(guards)
-        for lower, upper in zip(starts, starts[1:]):
-            if upper < lower + thickness:
-                raise InputError(f"guards: those at {lower:g} and {upper:g} m overlap")
         if starts[0] > UNHELD:
             issue_note(f"no guard holds the snow on the lowest {starts[0]:.1f} m of the roof")
         above = [end - start - thickness for start, end in zip(starts, [*starts[1:], length])]
