@@ -12,6 +12,7 @@
 #include "snowshed/methods/capabilities.hpp"
 #include "snowshed/methods/quantities.hpp"
 #include "snowshed/run/energy_history.hpp"
+#include "snowshed/run/force_history.hpp"
 #include "snowshed/run/run_record.hpp"
 
 namespace py = pybind11;
@@ -66,6 +67,65 @@ py::dict energy(const run::Simulation& sim) {
 py::dict energy_history(const run::Simulation& sim) {
   const run::EnergyHistory& history = sim.energy_history();
   return columns_of(history.columns(), history.values());
+}
+
+const run::ForceHistory& force_history(const run::Simulation& sim) {
+  if (!sim.force_history())
+    throw InputError("/output/forces", "false; forces are recorded only if it is true");
+  return *sim.force_history();
+}
+
+/// A table of numbers by column; "obstacle" has names.
+py::dict named_table(const run::NumberTable& table, const std::vector<std::string>& names) {
+  py::dict d = columns_of(table.columns, table.values);
+  py::list obstacles;
+  for (const auto at : d["obstacle"].cast<std::vector<double>>())
+    obstacles.append(names[std::size_t(at)]);
+  d["obstacle"] = obstacles;
+  return d;
+}
+
+/// The impulses and the forces on obstacles up to now, a row each.
+py::dict obstacle_forces(const run::Simulation& sim) {
+  const auto* keeping = methods::capability<methods::KeepsForces>(sim.method());
+  if (!keeping || !keeping->forces())
+    throw InputError("/output/forces", "false; forces are recorded only if it is true");
+  const methods::ObstacleForces& record = *keeping->forces();
+  std::vector<Vec3> impulse, force, moment, center;
+  std::vector<double> normal, tangential;
+  for (const methods::ObstacleForce& of : record.forces()) {
+    impulse.push_back(of.impulse.total());
+    force.push_back(of.recent.total());
+    moment.push_back(of.recent.moment);
+    center.push_back(of.recent.center());
+    normal.push_back(of.recent.push);
+    tangential.push_back(of.recent.tangential.norm());
+  }
+  py::dict d;
+  d["obstacle"] = record.names();
+  d["impulse"] = rows(impulse);
+  d["force"] = rows(force);
+  d["moment"] = rows(moment);
+  d["center"] = rows(center);
+  d["normal"] = column<double>(normal);
+  d["tangential"] = column<double>(tangential);
+  return d;
+}
+
+py::dict pressures(const run::Simulation& sim) {
+  force_history(sim);
+  const run::Simulation::Pressures p = sim.pressures();
+  std::vector<Vec3> corners;
+  for (const auto& x : p.corners) corners.emplace_back(x[0], x[1], x[2]);
+  py::dict d;
+  d["corners"] = rows(corners);
+  d["corners_per_patch"] = p.per_patch;
+  d["obstacle"] = column<std::int64_t>(p.obstacle);
+  d["area"] = column<double>(p.area);
+  d["rest"] = column<double>(p.rest);
+  d["peak"] = column<double>(p.peak);
+  d["peak_time"] = column<double>(p.peak_time);
+  return d;
 }
 
 py::object frame(const run::Simulation& sim) { return panel_frame_dict(sim.scene()); }
@@ -233,6 +293,14 @@ void bind_facts(SimulationClass& c) {
   using namespace py::literals;
   c.reads("energy", &energy);
   c.reads("energy_history", &energy_history);
+  c.reads("force_history", [](const run::Simulation& s) {
+    return named_table(force_history(s).forces(), force_history(s).names());
+  });
+  c.reads("loads", [](const run::Simulation& s) {
+    return named_table(force_history(s).loads(), force_history(s).names());
+  });
+  c.reads("obstacle_forces", &obstacle_forces);
+  c.reads("pressures", &pressures);
   c.reads("panel_frame", &frame);
   c.reads("obstacle_distance", &distances_at<&run::Simulation::obstacle_distance>, "points"_a);
   c.reads("resolved_distance", &distances_at<&run::Simulation::resolved_distance>, "points"_a);

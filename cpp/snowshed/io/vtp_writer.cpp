@@ -80,8 +80,9 @@ class AppendedData {
   std::uint64_t offset_ = 0;
 };
 
-std::string point_data(const std::vector<PointArray>& arrays, std::size_t points,
-                       AppendedData& appended) {
+/// The arrays of points, or of cells.
+std::string data_of(const std::vector<PointArray>& arrays, std::size_t points,
+                    AppendedData& appended) {
   std::string xml;
   for (const PointArray& array : arrays)
     std::visit(
@@ -95,6 +96,34 @@ std::string point_data(const std::vector<PointArray>& arrays, std::size_t points
         },
         array.values);
   return xml;
+}
+
+/// The beginning of a file with these numbers of cells.
+std::string head(std::size_t points, std::size_t vertices, std::size_t lines,
+                 std::size_t polygons) {
+  const auto number = [](const char* name, std::size_t count) {
+    return std::string(" NumberOf") + name + "=\"" + std::to_string(count) + "\"";
+  };
+  return "<?xml version=\"1.0\"?>\n"
+         "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
+         "header_type=\"UInt64\">\n"
+         "  <PolyData>\n"
+         "    <Piece" +
+         number("Points", points) + number("Verts", vertices) + number("Lines", lines) +
+         number("Strips", 0) + number("Polys", polygons) + ">\n";
+}
+
+/// Ends the XML and writes the file.
+void finish(const std::filesystem::path& path, std::string xml, const AppendedData& appended) {
+  xml +=
+      "    </Piece>\n"
+      "  </PolyData>\n"
+      "  <AppendedData encoding=\"raw\">\n_";
+  ChecksummedXml file(path);
+  file.write(xml);
+  appended.write(file);
+  file.write("\n  </AppendedData>\n");
+  file.finish();
 }
 
 /// Writes the file. Every point is a cell, so that filters on cells (threshold, clip) see
@@ -115,35 +144,18 @@ void write(const std::filesystem::path& path, const std::vector<std::array<Real,
   }
 
   AppendedData appended;
-  const std::string n = std::to_string(count);
   const Real* coordinates = points.empty() ? nullptr : points.front().data();
-  std::string xml =
-      "<?xml version=\"1.0\"?>\n"
-      "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
-      "header_type=\"UInt64\">\n"
-      "  <PolyData>\n"
-      "    <Piece NumberOfPoints=\"" +
-      n + "\" NumberOfVerts=\"" + n + "\" NumberOfLines=\"" + std::to_string(lines.size()) +
-      "\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n";
+  std::string xml = head(count, count, lines.size(), 0);
   xml += "      <Points>\n" + appended.add("position", 3, coordinates, 3 * count) +
          "      </Points>\n";
-  xml += "      <PointData>\n" + point_data(arrays, count, appended) + "      </PointData>\n";
+  xml += "      <PointData>\n" + data_of(arrays, count, appended) + "      </PointData>\n";
   xml += "      <Verts>\n" + appended.add("connectivity", 1, index.data(), count) +
          appended.add("offsets", 1, index.data() + 1, count) + "      </Verts>\n";
   if (!lines.empty())
     xml += "      <Lines>\n" +
            appended.add("connectivity", 1, line_points.data(), line_points.size()) +
            appended.add("offsets", 1, line_ends.data(), line_ends.size()) + "      </Lines>\n";
-  xml +=
-      "    </Piece>\n"
-      "  </PolyData>\n"
-      "  <AppendedData encoding=\"raw\">\n_";
-
-  ChecksummedXml file(path);
-  file.write(xml);
-  appended.write(file);
-  file.write("\n  </AppendedData>\n");
-  file.finish();
+  finish(path, xml, appended);
 }
 
 template <class Real>
@@ -167,6 +179,27 @@ void write_vtp(const std::filesystem::path& path, const std::vector<std::array<f
 void write_vtp(const std::filesystem::path& path, const std::vector<std::array<double, 3>>& points,
                const std::vector<PointArray>& arrays) {
   write_with_smallest_index(path, points, arrays);
+}
+
+void write_faces_vtp(const std::filesystem::path& path,
+                     const std::vector<std::array<double, 3>>& corners, std::size_t per_face,
+                     const std::vector<PointArray>& arrays) {
+  const std::size_t faces = corners.size() / per_face;
+  const bool lines = per_face == 2;
+  std::vector<std::int64_t> index(corners.size()), ends(faces);
+  std::iota(index.begin(), index.end(), 0);
+  for (std::size_t i = 0; i < faces; ++i) ends[i] = std::int64_t((i + 1) * per_face);
+  AppendedData appended;
+  const char* kind = lines ? "Lines" : "Polys";
+  const double* coordinates = corners.empty() ? nullptr : corners.front().data();
+  std::string xml = head(corners.size(), 0, lines ? faces : 0, lines ? 0 : faces);
+  xml += "      <Points>\n" + appended.add("position", 3, coordinates, 3 * corners.size()) +
+         "      </Points>\n";
+  xml += "      <CellData>\n" + data_of(arrays, faces, appended) + "      </CellData>\n";
+  xml += std::string("      <") + kind + ">\n" +
+         appended.add("connectivity", 1, index.data(), index.size()) +
+         appended.add("offsets", 1, ends.data(), ends.size()) + "      </" + kind + ">\n";
+  finish(path, xml, appended);
 }
 
 }  // namespace snowshed::io

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -28,5 +29,12 @@ void write_vtp(const std::filesystem::path& path, const std::vector<std::array<f
                const std::vector<PointArray>& arrays, const PointPairs& lines = {});
 void write_vtp(const std::filesystem::path& path, const std::vector<std::array<double, 3>>& points,
                const std::vector<PointArray>& arrays);
+
+/// Writes faces with the same number of corners each, at least 2: lines, or polygons. `corners` has
+/// the points (metres) of one face after the other; `arrays` has the values of each face. Throws as
+/// `write_vtp`.
+void write_faces_vtp(const std::filesystem::path& path,
+                     const std::vector<std::array<double, 3>>& corners, std::size_t per_face,
+                     const std::vector<PointArray>& arrays);
 
 }  // namespace snowshed::io

@@ -46,6 +46,7 @@ struct MethodInfo {
   std::vector<std::string> energies{};  // names with units, as in tables; the last is the residual
   // Quantities of its particles beside those that all methods share.
   std::vector<Quantity> quantities{};
+  bool records_forces = false;  // whether it can record the forces on obstacles
 };
 
 /// A method together with its settings. The registry holds one of each method with the default

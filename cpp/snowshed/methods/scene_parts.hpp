@@ -104,6 +104,8 @@ struct Output {
   bool film = true;                // record the run, so that it can be viewed
   double film_interval = 0.0;      // s between its frames; 0: from the events' duration
   bool energy = false;             // keep the energy balance
+  bool forces = false;             // record the forces on obstacles
+  double force_interval = 0.01;    // s between the rows of their table
   double checkpoint_interval = 60.0;  // s of wall time between checkpoints; 0: none
 };
 

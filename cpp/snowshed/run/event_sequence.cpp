@@ -122,6 +122,7 @@ void EventSequence::end_event(EventObserver& observer, RunEnd end) {
   if (scene.output.energy)
     record.energy = methods::capability<methods::KeepsEnergy>(sim_->method())->energies();
   folder_.write_particles(*sim_);
+  folder_.write_pressures(*sim_);
   observer.event_ended(*sim_, record);
   steps_before_ += record.steps;
   wall_before_ += record.wall;
@@ -131,6 +132,8 @@ void EventSequence::end_event(EventObserver& observer, RunEnd end) {
 
 void EventSequence::checkpoint(EventObserver& observer, RunStatus status) {
   observer.before_checkpoint(*sim_);
+  for (const std::string& name : folder_.write_forces(*sim_))
+    record_.mark_file(folder_.path(), name);
   write_record(status);
   sim_->save(folder_.checkpoint());
   since_checkpoint_.restart();

@@ -10,6 +10,8 @@
 #include "snowshed/io/atomic_file.hpp"
 #include "snowshed/io/file_bytes.hpp"
 #include "snowshed/io/pvd_series.hpp"
+#include "snowshed/io/vtp_writer.hpp"
+#include "snowshed/run/force_history.hpp"
 #include "snowshed/scene/json_text.hpp"
 #include "snowshed/scene/scene_json.hpp"
 
@@ -41,6 +43,12 @@ auto with_file_errors(Action action) {
   } catch (const fs::filesystem_error& error) {
     throw FileError(error.path1().string(), error.code().message(), error.code().value());
   }
+}
+
+std::string event_file(const char* folder, const Simulation& sim) {
+  char name[32];
+  std::snprintf(name, sizeof name, "%s/event_%03d.vtp", folder, sim.event());
+  return name;
 }
 
 void make_folder(const fs::path& folder) {
@@ -103,9 +111,28 @@ std::string ResultsFolder::scene_checksum() const {
   return snowshed::scene::scene_checksum(io::read_bytes(folder_ / "scene.json"));
 }
 
+std::vector<std::string> ResultsFolder::write_forces(const Simulation& sim) const {
+  const ForceHistory* history = sim.force_history();
+  if (!history) return {};
+  io::write_atomic(folder_ / "forces.csv", history->forces_csv());
+  io::write_atomic(folder_ / "loads.csv", history->loads_csv());
+  return {"forces.csv", "loads.csv"};
+}
+
+void ResultsFolder::write_pressures(const Simulation& sim) const {
+  const Simulation::Pressures p = sim.pressures();
+  if (p.area.empty()) return;
+  make_folder(folder_ / "pressures");
+  io::write_faces_vtp(folder_ / event_file("pressures", sim), p.corners, p.per_patch,
+                      {{"obstacle", 1, p.obstacle},
+                       {"area", 1, p.area},
+                       {"rest_pressure", 1, p.rest},
+                       {"peak_pressure", 1, p.peak},
+                       {"peak_time", 1, p.peak_time}});
+}
+
 void ResultsFolder::write_particles(const Simulation& sim) const {
-  char name[32];
-  std::snprintf(name, sizeof name, "particles/event_%03d.vtp", sim.event());
+  const std::string name = event_file("particles", sim);
   make_folder(folder_ / "particles");
   sim.write_vtp(folder_ / name);
   io::PvdSeries::reopen(folder_ / "particles.pvd", sim.event()).append(sim.event(), name);

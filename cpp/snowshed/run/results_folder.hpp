@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "snowshed/io/folder_lock.hpp"
 #include "snowshed/run/simulation.hpp"
@@ -10,7 +12,8 @@
 namespace snowshed::run {
 
 /// Holds scene.json, run.json (`RunRecord`), checkpoint.bin, particles/event_NNN.vtp,
-/// particles.pvd, film.bin and snapshots/. It is locked: no other run writes into it meanwhile.
+/// particles.pvd, film.bin, snapshots/, and with forces forces.csv, loads.csv and
+/// pressures/event_NNN.vtp. It is locked: no other run writes into it meanwhile.
 /// Opening it removes files that a killed run left half-written.
 class ResultsFolder {
  public:
@@ -40,6 +43,11 @@ class ResultsFolder {
 
   /// Writes the particles after an event, and adds them to the series of all events.
   void write_particles(const Simulation&) const;
+
+  /// Writes the forces on obstacles so far, if they are recorded. Returns the names of the files.
+  std::vector<std::string> write_forces(const Simulation&) const;
+  /// Writes the pressures on faces after an event, if they are recorded.
+  void write_pressures(const Simulation&) const;
 
  private:
   explicit ResultsFolder(std::filesystem::path folder);

@@ -207,6 +207,13 @@ void RunRecord::write(const std::filesystem::path& file, const Simulation& sim, 
   io::write_atomic(file, scene::sealed_text(j));
 }
 
+void RunRecord::mark_file(const std::filesystem::path& folder, const std::string& name) {
+  const std::string bytes = io::read_bytes(folder / name);
+  io::Crc32 sum;
+  sum.update(bytes.data(), bytes.size());
+  files[name] = {bytes.size(), io::hexadecimal(sum.value())};
+}
+
 void RunRecord::check_files(const std::filesystem::path& folder) const {
   for (const auto& [name, mark] : files) {
     const std::filesystem::path file = folder / name;

@@ -65,6 +65,9 @@ class RunRecord {
   void write(const std::filesystem::path& file, const Simulation&, RunStatus,
              const std::string& error = "") const;
 
+  /// Records length and checksum of a file in the folder.
+  void mark_file(const std::filesystem::path& folder, const std::string& name);
+
   /// Throws InputError if one of `files` exists, but is not as the run wrote it.
   void check_files(const std::filesystem::path& folder) const;
 

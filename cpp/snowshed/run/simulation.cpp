@@ -12,6 +12,7 @@
 #include "snowshed/methods/capabilities.hpp"
 #include "snowshed/run/energy_history.hpp"
 #include "snowshed/run/film_recorder.hpp"
+#include "snowshed/run/force_history.hpp"
 #include "snowshed/run/record_times.hpp"
 #include "snowshed/run/shape_fingerprints.hpp"
 #include "snowshed/run/snapshot_series.hpp"
@@ -59,6 +60,8 @@ Simulation::Simulation(const scene::Scene& scene, const std::filesystem::path& b
   else if (scene_.output.energy)
     energies_ = std::make_unique<EnergyHistory>(scene_.numerics->info().energies,
                                                 record_interval(scene_, cost_));
+  if (scene_.output.forces)
+    forces_ = std::make_unique<ForceHistory>(*method_, scene_.output.force_interval);
 }
 
 Simulation::~Simulation() = default;
@@ -103,6 +106,7 @@ std::optional<Reseeding> Simulation::begin_event(const StopRequest& stop) {
   event_start_ = method_->time();
   rest_.start_event(event_start_);
   if (curve_) curve_->record(*method_);
+  if (forces_) forces_->begin_event(*method_, event_);
   return reseeding;
 }
 
@@ -239,6 +243,7 @@ RunEnd Simulation::run(const std::function<bool(const RunReport&)>& observer, do
     if (const auto end = event_end()) {
       if (film_) film_->record_end(*method_, event_);
       if (energies_) energies_->record_end(*method_, event_);
+      if (forces_) forces_->end_event(*method_, *end == RunEnd::rest);
       running_ = false;
       return *end;
     }
@@ -257,6 +262,7 @@ RunEnd Simulation::run(const std::function<bool(const RunReport&)>& observer, do
 void Simulation::record() {
   if (snapshots_ && snapshots_->due(method_->time())) snapshots_->write(*method_);
   if (energies_) energies_->record(*method_, event_);
+  if (forces_) forces_->record(*method_);
   if (film_ && film_->due({event_, running_, method_->time()})) film_->record(*method_, event_);
 }
 
@@ -279,6 +285,28 @@ bool Simulation::is_at_rest() {
   const double brought = event_mass_ > 0 ? event_mass_ : m.mass;
   const double speed = m.rms_speed * std::sqrt(m.mass / std::max(brought, 1e-300));
   return rest_.at_rest(method_->time(), speed);
+}
+
+Simulation::Pressures Simulation::pressures() const {
+  Pressures p;
+  if (!forces_) return p;
+  const auto& keeping = *methods::capability<methods::KeepsForces>(std::as_const(*method_));
+  const methods::ObstacleForces& forces = *keeping.forces();
+  p.rest = keeping.resting_forces(forces_->ended_at_rest()).pressures;
+  for (const methods::Patch& patch : forces.pressures().patches()) {
+    const std::vector<Vec3> corners = forces.pressures().corners(patch);
+    const auto& motion = surroundings_.resolved[std::size_t(patch.obstacle())].motion;
+    for (const Vec3& corner : corners) {
+      const Vec3 x = motion ? motion->at(method_->time()).to_world(corner) : corner;
+      p.corners.push_back({x[0], x[1], x[2]});
+    }
+    p.per_patch = corners.size();
+    p.obstacle.push_back(std::int32_t(forces.name_of(patch.obstacle())));
+    p.area.push_back(patch.area);
+    p.peak.push_back(patch.peak);
+    p.peak_time.push_back(patch.peak_time);
+  }
+  return p;
 }
 
 void Simulation::step(int count) {

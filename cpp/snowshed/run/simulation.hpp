@@ -2,6 +2,8 @@
 // `EventSequence` drives it through all events and keeps a results folder.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -29,6 +31,7 @@ class Curve;
 namespace snowshed::run {
 
 class EnergyHistory;
+class ForceHistory;
 class FilmRecorder;
 class SnapshotSeries;
 
@@ -122,6 +125,17 @@ class Simulation {
   /// The energies over time that `run` recorded. Throws InputError if the scene does not keep them,
   /// or if a curve has them.
   const EnergyHistory& energy_history() const;
+  /// The forces on obstacles that `run` recorded; null unless the scene asks for them.
+  const ForceHistory* force_history() const { return forces_.get(); }
+  /// The pressures on the faces of obstacles after an event, at rest and at their largest, with the
+  /// faces where they are now.
+  struct Pressures {
+    std::vector<std::array<double, 3>> corners;  // m, of one patch after the other
+    std::size_t per_patch = 0;                   // number of corners
+    std::vector<std::int32_t> obstacle;          // place in the names of the history
+    std::vector<double> area, rest, peak, peak_time;  // m2, Pa, Pa, s
+  };
+  Pressures pressures() const;
   int event() const { return event_; }
   /// Notes for readers of the results on the snow that was laid since this object was made, a
   /// sentence each.
@@ -197,6 +211,7 @@ class Simulation {
   std::optional<io::FilmMark> film_mark_;    // in the checkpoint that was loaded
   std::unique_ptr<methods::Curve> curve_;    // for methods that have one
   std::unique_ptr<EnergyHistory> energies_;  // for methods without a curve, if output.energy is set
+  std::unique_ptr<ForceHistory> forces_;     // if output.forces is set
   RestDetector rest_;
   std::vector<std::string> notes_;
   int event_ = 0;

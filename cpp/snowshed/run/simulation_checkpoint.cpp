@@ -6,6 +6,7 @@
 #include "snowshed/io/binary_archive.hpp"
 #include "snowshed/methods/capabilities.hpp"
 #include "snowshed/run/energy_history.hpp"
+#include "snowshed/run/force_history.hpp"
 #include "snowshed/run/shape_fingerprints.hpp"
 #include "snowshed/run/simulation.hpp"
 #include "snowshed/run/snapshot_series.hpp"
@@ -82,6 +83,7 @@ void Simulation::save(const std::filesystem::path& checkpoint) const {
     out.add(surroundings_.input->section(), fingerprints_of(*surroundings_.input));
   if (curve_) curve_->save(out);
   if (energies_) energies_->save(out);
+  if (forces_) forces_->save(out);
   if (const auto film = film_mark())
     out.add("film", std::vector<std::uint64_t>{film->frames, film->checksum});
   out.add("event", std::vector<std::int64_t>{event_, running_});
@@ -149,6 +151,7 @@ std::unique_ptr<Simulation> Simulation::from_archive(const io::BinaryReader& in,
   sim->laid_height_ = run[6];
   if (sim->curve_) sim->curve_->load(in);
   if (sim->energies_) sim->energies_->load(in);
+  if (sim->forces_) sim->forces_->load(in);
   if (in.has("film")) {
     const auto film = in.get<std::uint64_t>("film", 2);
     sim->film_mark_ = io::FilmMark{std::size_t(film[0]), std::uint32_t(film[1])};

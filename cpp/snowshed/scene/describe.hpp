@@ -343,6 +343,9 @@ void describe(V& v, methods::Output& o) {
       "film_interval", o.film_interval, "s", methods::allowed::time,
       "Simulated time between frames of the film; 0: chosen by the expected duration of an event");
   v.flag("energy", o.energy, "Keep the energy balance");
+  v.flag("forces", o.forces, "Record the forces between the snow and what it meets");
+  v.number("force_interval", o.force_interval, "s", methods::between(1e-4, 1e9),
+           "Simulated time between rows of forces.csv, each the mean since the row before");
   v.number("checkpoint_interval", o.checkpoint_interval, "s", methods::allowed::time,
            "Wall time between checkpoints; 0: none");
 }

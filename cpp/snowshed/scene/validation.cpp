@@ -191,6 +191,8 @@ class SceneRules {
       fail(scene_.events.between, name + " does not support \"reseed\"; use \"carry\"");
     if (scene_.output.energy && method.energies.empty())
       fail(scene_.output.energy, name + " has no energy balance");
+    if (scene_.output.forces && !method.records_forces)
+      fail(scene_.output.forces, name + " records no forces on obstacles");
   }
 
   void check_terrain(const methods::TerrainSpec& terrain) const {

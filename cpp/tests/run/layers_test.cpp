@@ -19,7 +19,7 @@ namespace snowshed::run {
 namespace {
 
 /// The first time step of a scene at rest, s.
-double first_time_step(const scene::Scene& scene) { return estimate_cost(scene).time_step; }
+double estimated_time_step(const scene::Scene& scene) { return estimate_cost(scene).time_step; }
 
 material::Snow light_snow() {
   material::Snow snow;
@@ -113,8 +113,8 @@ TEST_F(Layers, KeepTheirMassWhenTheStackIsReseeded) {
 TEST_F(Layers, TheStiffestSnowDeterminesTheEstimatedStep) {
   scene::Scene scene = layered_scene(), stiff = layered_scene();
   stiff.slab->layers[0].snow->youngs_modulus = 1e7;
-  EXPECT_DOUBLE_EQ(first_time_step(scene), first_time_step(small_scene()));
-  EXPECT_LT(first_time_step(stiff), 0.3 * first_time_step(scene));
+  EXPECT_DOUBLE_EQ(estimated_time_step(scene), estimated_time_step(small_scene()));
+  EXPECT_LT(estimated_time_step(stiff), 0.3 * estimated_time_step(scene));
   const CostReport p = report_cost(scene);
   EXPECT_NE(std::find(p.used.begin(), p.used.end(), "several snows"), p.used.end());
   EXPECT_NEAR(p.cost.particles[1] / p.cost.particles[0], 4.0 / 3.0, 0.02);

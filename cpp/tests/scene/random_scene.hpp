@@ -128,7 +128,7 @@ inline void mend_slide(Randomizer& randomizer, Scene& scene) {
   if (!scene.terrain) describe(randomizer, scene.terrain.emplace());
   scene.terrain->max_thickness = 100;  // as thick as an area may be
   scene.events.count = 1;
-  scene.output.energy = false;
+  scene.output.energy = scene.output.forces = false;
   methods::slide::Settings& settings = scene.numerics.as<methods::slide::Settings>();
   settings.explicit_friction = false;
   if (settings.mode == methods::slide::Mode::compatible) scene.terrain->thickness_file.clear();
@@ -146,6 +146,7 @@ inline void mend_grains(Randomizer& randomizer, Scene& scene) {
   scene.seeding = {};
   if (!scene.sample) describe(randomizer, scene.sample.emplace());
   scene.events.count = 1;
+  scene.output.forces = false;
   scene.numerics.as<methods::grains::Settings>().bonded_plates = true;
   scene.loading.insert(scene.loading.begin(), methods::LoadingStage{});
   for (methods::LoadingStage& stage : scene.loading) {

@@ -79,8 +79,8 @@ inline auto tied(const methods::Events& s) {
   return std::tie(a, b, c, d, e);
 }
 inline auto tied(const methods::Output& s) {
-  auto& [a, b, c, d, e] = s;
-  return std::tie(a, b, c, d, e);
+  auto& [a, b, c, d, e, f, g] = s;
+  return std::tie(a, b, c, d, e, f, g);
 }
 inline auto tied(const Domain& s) {
   auto& [a, b] = s;

@@ -119,7 +119,7 @@ TEST(SceneJson, EveryFieldIsRead) {
     "events": {"count": 4, "between": "reseed", "max_time": 3, "rest_speed": 0.1,
                "rest_time": 0.2},
     "output": {"snapshot_interval": 0.25, "film": false, "film_interval": 0.5,
-               "energy": true, "checkpoint_interval": 30}})");
+               "energy": true, "forces": true, "force_interval": 0.02, "checkpoint_interval": 30}})");
   EXPECT_EQ(scene.title, "all");
   EXPECT_EQ(scene.gravity, 1.62);
   EXPECT_TRUE(scene.snow ==
@@ -137,7 +137,7 @@ TEST(SceneJson, EveryFieldIsRead) {
                               methods::mpm::ContactRule::touch, 0.7, methods::mpm::Fields::events,
                               0.5, methods::mpm::Basis::cubic, 0.3, 0.1, 0.4, 0.7, 3}));
   EXPECT_TRUE(scene.events == (methods::Events{4, methods::Between::reseed, 3, 0.1, 0.2}));
-  EXPECT_TRUE(scene.output == (methods::Output{0.25, false, 0.5, true, 30}));
+  EXPECT_TRUE(scene.output == (methods::Output{0.25, false, 0.5, true, true, 0.02, 30}));
 
   ASSERT_EQ(scene.obstacles.size(), 1u);
   const ObstacleSpec& post = scene.obstacles[0];

@@ -17,6 +17,8 @@ UNITS = MappingProxyType(
         "pa": "Pa",
         "kpa": "kPa",
         "n": "N",
+        "nm": "N m",
+        "ns": "N s",
         "kg": "kg",
         "kg_m3": "kg/m3",
         "s": "s",

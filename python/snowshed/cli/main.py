@@ -63,6 +63,7 @@ DEFERRED = (
     ("predict", "predict", "Predict a stack's height and length without a simulation."),
     ("season", "season", "Simulate a winter: snow accumulates, is released and piles up."),
     ("clearance", "clearance", "Find how high a panel's lower edge must be to stay clear."),
+    ("loads", "loads", "Find the loads of the snow on structures."),
     ("sensitivity", "sensitivity", "Find the snow parameters that matter for the stack."),
     ("calibrate", "calibrate", "Find the snow whose simulated stacks agree with measured ones."),
     ("view", "view", "Write the moving view of a run as a page, or as a video."),

@@ -12,6 +12,10 @@ energy_history.csv the same over time, with energy.png, a picture of it
 run.json           version, machine, size, speed and status of the run, and a record of each event
 checkpoint.bin     the state from which the run resumes
 particles/         the particles after each event (.vtp); ``particles.pvd`` opens them as a series
+forces.csv         forces on each obstacle over time, as means since the row before (only with
+                   output.forces), with forces.png, a picture of them
+loads.csv          loads on each obstacle in each event: at rest, peaks and impulse
+pressures/         pressures on the faces of obstacles after each event (.vtp)
 film.bin           the particles over time, for `snowshed view` (unless output.film = false)
 solids.vtp         panel, ground and obstacles as triangles
 snapshots/         particle snapshots during the events (only with output.snapshot_interval)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Union, cast
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -35,6 +35,11 @@ class MethodResults(ABC):
         return cast("pd.DataFrame", self.result("curve"))
 
     @property
-    def forces(self) -> pd.DataFrame:
-        """The contacts between grains at the end of a loading test, with their forces, N."""
-        return cast("pd.DataFrame", self.result("forces"))
+    def forces(self) -> Union[pd.DataFrame, xarray.Dataset]:
+        """The forces between the snow and what it touches.
+
+        For a run that makes a stack and has ``output.forces``: the forces on each obstacle over
+        time (`snowshed.results.obstacle_forces`). For a loading test: a table of the contacts
+        between grains at its end.
+        """
+        return cast("Union[pd.DataFrame, xarray.Dataset]", self.result("forces"))

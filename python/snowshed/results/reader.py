@@ -43,9 +43,9 @@ class Results(MethodResults):
     """The results folder of a run, as `snowshed.run` and ``snowshed run`` write it.
 
     All methods have particles, a film and, on request, energies. Further attributes depend on the
-    method: `events` and `stack`, or `summary`, `maps`, `curve` and `forces`. An attribute that the
-    method of the scene does not have, or that the run did not write, raises an InputError that is
-    also an AttributeError: `hasattr` returns False.
+    method: `events`, `stack`, `forces`, `loads` and `pressures`, or `summary`, `maps`, `curve` and
+    `forces`. An attribute that the method of the scene does not have, or that the run did not
+    write, raises an InputError that is also an AttributeError: `hasattr` returns False.
 
     Files are read on access. Every table has a dict of units by column in ``attrs["units"]``, every
     variable of a Dataset its ``units`` and ``long_name`` in `attrs`. A damaged file raises
@@ -215,6 +215,20 @@ class Results(MethodResults):
     def stack(self) -> StackMeasure:
         """The measure of the stack after the last event, from the stored particles."""
         return cast("StackMeasure", self.result("stack"))
+
+    @property
+    def loads(self) -> pd.DataFrame:
+        """The loads on each obstacle in each event: at rest, peaks and impulse (loads.csv)."""
+        return cast("pd.DataFrame", self.result("loads"))
+
+    @property
+    def pressures(self) -> Mapping[str, Any]:
+        """The pressures on the faces of obstacles after the last event (``pressures/``).
+
+        ``corners`` (n, k, 3), ``obstacle``, ``area``, ``rest_pressure``, ``peak_pressure`` and
+        ``peak_time`` (n,) of the n patches; see `snowshed.results.obstacle_forces.read_pressures`.
+        """
+        return cast("Mapping[str, Any]", self.result("pressures"))
 
     @property
     def summary(self) -> Summary:

@@ -28,7 +28,16 @@ if TYPE_CHECKING:
 #: Files of a run from which the new run continues.
 CONTINUED_FILES = (
     *("run.json", "events.csv", "outline.csv", "conversions.csv", "ageing.csv", "ageing.json"),
-    *("energy.csv", "film.bin", "particles.pvd", "particles", "snapshots"),
+    *(
+        "energy.csv",
+        "forces.csv",
+        "loads.csv",
+        "pressures",
+        "film.bin",
+        "particles.pvd",
+        "particles",
+        "snapshots",
+    ),
 )
 
 

@@ -24,6 +24,11 @@ class Output(Record):
         [s]. 0 <= value <= 1e+09; default 0.
     energy : bool
         Keep the energy balance. Default False.
+    forces : bool
+        Record the forces between the snow and what it meets. Default False.
+    force_interval : float
+        Simulated time between rows of forces.csv, each the mean since the row before [s]. 0.0001
+        <= value <= 1e+09; default 0.01.
     checkpoint_interval : float
         Wall time between checkpoints; 0: none [s]. 0 <= value <= 1e+09; default 60.
     """
@@ -32,4 +37,6 @@ class Output(Record):
     film: Optional[bool] = default(True)
     film_interval: Optional[float] = default(0.0)
     energy: Optional[bool] = default(False)
+    forces: Optional[bool] = default(False)
+    force_interval: Optional[float] = default(0.01)
     checkpoint_interval: Optional[float] = default(60.0)

@@ -20,8 +20,8 @@ Obstacle thickened_obstacle(Obstacle obstacle, double dx, int dimension) {
 
 template <class T, int D>
 Boundary<T, D>::Boundary(std::vector<Obstacle> obstacles, double dx,
-                         std::vector<geometry::Shape> surfaces, double margin)
-    : surfaces_(std::move(surfaces)), dx_(dx), margin_(margin) {
+                         std::vector<geometry::Shape> surfaces, double margin, bool records_forces)
+    : surfaces_(std::move(surfaces)), dx_(dx), margin_(margin), records_forces_(records_forces) {
   if (surfaces_.empty())
     for (const Obstacle& o : obstacles) surfaces_.push_back(o.shape);
   for (Obstacle& o : obstacles) {
@@ -32,14 +32,6 @@ Boundary<T, D>::Boundary(std::vector<Obstacle> obstacles, double dx,
 }
 
 namespace {
-
-template <int D>
-VecD<D> node_position(const BlockCoord<D>& block, int node, double dx) {
-  constexpr int B = block_edge<D>;
-  VecD<D> x;
-  for (int d = D - 1; d >= 0; --d, node /= B) x[d] = (block[d] * B + node % B) * dx;
-  return x;
-}
 
 template <int D>
 VecD<D> block_center(const BlockCoord<D>& block, double dx) {
@@ -88,17 +80,32 @@ void Boundary<T, D>::find(BlockKey key, double time, bool moving,
 }
 
 template <class T, int D>
+typename Boundary<T, D>::FacePoint Boundary<T, D>::face_point(BlockKey key, const Contact<T>& c,
+                                                              double time) const {
+  const Obstacle& obstacle = obstacles_[std::size_t(c.obstacle)];
+  const geometry::LevelSet& surface = *surfaces_[std::size_t(c.obstacle)];
+  Vec3 x = embed(node_position<D>(block_coord<D>(key), c.node, dx_));
+  if (obstacle.motion) x = obstacle.motion->to_body(x, time);
+  const Vec3 normal = embed(normal_in_section<D>(surface.normal(x)));
+  return {x - surface.distance(x) * normal, normal};
+}
+
+template <class T, int D>
 template <class Find>
-Contacts<T, D> Contacts<T, D>::gathered(const std::vector<BlockKey>& blocks, int threads,
+Contacts<T, D> Contacts<T, D>::gathered(const Boundary<T, D>& boundary,
+                                        const std::vector<BlockKey>& blocks, int threads,
                                         Find find) {
-  std::vector<std::vector<Contact<T>>> by_block(blocks.size());
-  parallel_for_dynamic(std::ptrdiff_t(blocks.size()), threads, 8,
-                       [&](std::ptrdiff_t b) { find(std::size_t(b), by_block[b]); });
+  std::vector<OfBlock> by_block(blocks.size());
+  parallel_for_dynamic(std::ptrdiff_t(blocks.size()), threads, 8, [&](std::ptrdiff_t b) {
+    find(std::size_t(b), by_block[b]);
+    if (boundary.records_forces()) by_block[b].forces.resize(by_block[b].contacts.size());
+  });
   Contacts all;
   all.blocks_ = blocks;
   all.first_.reserve(blocks.size() + 1);
-  for (const auto& block : by_block) {
-    all.contacts_.insert(all.contacts_.end(), block.begin(), block.end());
+  for (const OfBlock& block : by_block) {
+    all.contacts_.insert(all.contacts_.end(), block.contacts.begin(), block.contacts.end());
+    all.forces_.insert(all.forces_.end(), block.forces.begin(), block.forces.end());
     all.first_.push_back(all.contacts_.size());
   }
   return all;
@@ -108,14 +115,16 @@ template <class T, int D>
 Contacts<T, D> Contacts<T, D>::relocated(const Boundary<T, D>& boundary,
                                          const std::vector<BlockKey>& grid_blocks, double time,
                                          int threads) const {
-  return gathered(grid_blocks, threads, [&](std::size_t b, std::vector<Contact<T>>& contacts) {
+  return gathered(boundary, grid_blocks, threads, [&](std::size_t b, OfBlock& found) {
     const auto old = std::lower_bound(blocks_.begin(), blocks_.end(), grid_blocks[b]);
     if (old != blocks_.end() && *old == grid_blocks[b]) {
-      const std::size_t o = std::size_t(old - blocks_.begin());
-      contacts.assign(contacts_.begin() + first_[o], contacts_.begin() + first_[o + 1]);
+      const auto begin = std::ptrdiff_t(first_[std::size_t(old - blocks_.begin())]);
+      const auto end = std::ptrdiff_t(first_[std::size_t(old - blocks_.begin()) + 1]);
+      found.contacts.assign(contacts_.begin() + begin, contacts_.begin() + end);
+      if (!forces_.empty()) found.forces.assign(forces_.begin() + begin, forces_.begin() + end);
     } else {
-      boundary.find(grid_blocks[b], time, false, contacts);
-      if (boundary.any_motion()) boundary.find(grid_blocks[b], time, true, contacts);
+      boundary.find(grid_blocks[b], time, false, found.contacts);
+      if (boundary.any_motion()) boundary.find(grid_blocks[b], time, true, found.contacts);
     }
   });
 }
@@ -123,20 +132,47 @@ Contacts<T, D> Contacts<T, D>::relocated(const Boundary<T, D>& boundary,
 template <class T, int D>
 void Contacts<T, D>::follow(const Boundary<T, D>& boundary, double time, int threads) {
   if (!boundary.any_motion()) return;
-  *this = gathered(blocks_, threads, [&](std::size_t b, std::vector<Contact<T>>& contacts) {
-    const auto begin = contacts_.begin() + first_[b], end = contacts_.begin() + first_[b + 1];
-    std::copy_if(begin, end, std::back_inserter(contacts),
-                 [&](const Contact<T>& c) { return !boundary.is_moving(c); });
-    const std::size_t still = contacts.size();
-    boundary.find(blocks_[b], time, true, contacts);
-    for (std::size_t i = still; i < contacts.size(); ++i) {
-      Contact<T>& c = contacts[i];
-      const auto before = std::find_if(begin, end, [&](const Contact<T>& old) {
-        return old.node == c.node && old.obstacle == c.obstacle;
-      });
-      if (before != end) c.normal_impulse = c.next_normal_impulse = before->next_normal_impulse;
+  *this = gathered(boundary, blocks_, threads, [&](std::size_t b, OfBlock& found) {
+    const auto keep = [&](std::size_t old) {
+      found.contacts.push_back(contacts_[old]);
+      if (!forces_.empty()) found.forces.push_back(forces_[old]);
+    };
+    for (std::size_t i = first_[b]; i < first_[b + 1]; ++i)
+      if (!boundary.is_moving(contacts_[i])) keep(i);
+    const std::size_t still = found.contacts.size();
+    boundary.find(blocks_[b], time, true, found.contacts);
+    if (boundary.records_forces()) found.forces.resize(found.contacts.size());
+    for (std::size_t i = still; i < found.contacts.size(); ++i) {
+      Contact<T>& c = found.contacts[i];
+      for (std::size_t old = first_[b]; old < first_[b + 1]; ++old) {
+        const Contact<T>& before = contacts_[old];
+        if (before.node != c.node || before.obstacle != c.obstacle) continue;
+        c.normal_impulse = c.next_normal_impulse = before.next_normal_impulse;
+        if (forces_.empty()) continue;
+        found.forces[i] = forces_[old];
+        found.forces[i].patch = -1;  // the obstacle has moved past the node
+      }
     }
   });
+}
+
+template <class T, int D>
+void Contacts<T, D>::find_patches(const Boundary<T, D>& boundary, double time,
+                                  PressureMap& pressures) {
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    for (std::size_t i = first_[b]; i < first_[b + 1]; ++i) {
+      if (forces_[i].patch >= 0) continue;
+      const auto face = boundary.face_point(blocks_[b], contacts_[i], time);
+      forces_[i].patch = pressures.patch_at(contacts_[i].obstacle, face.point, face.normal);
+    }
+}
+
+template <class T, int D>
+void Contacts<T, D>::give_pushes(PressureMap& pressures) noexcept {
+  for (ContactForce<T>& force : forces_) {
+    if (force.patch >= 0) pressures.push(force.patch, double(force.pushed));
+    force.pushed = 0;
+  }
 }
 
 template <class T, int D>
@@ -175,15 +211,47 @@ std::vector<typename Contacts<T, D>::StoredImpulse> Contacts<T, D>::stored_impul
 }
 
 template <class T, int D>
-void Contacts<T, D>::restore(const std::vector<StoredImpulse>& stored) {
-  for (const StoredImpulse& d : stored) {
+template <class Stored, class F>
+void Contacts<T, D>::for_each_stored(const std::vector<Stored>& stored, const F& f) {
+  for (const Stored& d : stored) {
     const auto at = std::lower_bound(blocks_.begin(), blocks_.end(), d.block);
     if (at == blocks_.end() || *at != d.block) continue;
     const std::size_t b = std::size_t(at - blocks_.begin());
     for (std::size_t i = first_[b]; i < first_[b + 1]; ++i)
-      if (contacts_[i].node == d.node && contacts_[i].obstacle == d.obstacle)
-        contacts_[i].normal_impulse = contacts_[i].next_normal_impulse = T(d.amount);
+      if (contacts_[i].node == d.node && contacts_[i].obstacle == d.obstacle) f(i, d);
   }
+}
+
+template <class T, int D>
+void Contacts<T, D>::restore(const std::vector<StoredImpulse>& stored) {
+  for_each_stored(stored, [&](std::size_t i, const StoredImpulse& d) {
+    contacts_[i].normal_impulse = contacts_[i].next_normal_impulse = T(d.amount);
+  });
+}
+
+template <class T, int D>
+std::vector<typename Contacts<T, D>::StoredForce> Contacts<T, D>::stored_forces() const {
+  std::vector<StoredForce> stored;
+  if (forces_.empty()) return stored;
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    for (std::size_t i = first_[b]; i < first_[b + 1]; ++i) {
+      const ContactForce<T>& f = forces_[i];
+      if (f.age == T(0) && f.pushed == T(0)) continue;
+      stored.push_back({blocks_[b], contacts_[i].node, contacts_[i].obstacle,
+                        {double(f.mean[0]), double(f.mean[1]), double(f.mean[2])},
+                        double(f.age), double(f.pushed)});
+    }
+  return stored;
+}
+
+template <class T, int D>
+void Contacts<T, D>::restore(const std::vector<StoredForce>& stored) {
+  if (forces_.empty()) return;
+  for_each_stored(stored, [&](std::size_t i, const StoredForce& d) {
+    for (int k = 0; k < 3; ++k) forces_[i].mean[k] = T(d.mean[std::size_t(k)]);
+    forces_[i].age = T(d.age);
+    forces_[i].pushed = T(d.pushed);
+  });
 }
 
 template class Boundary<float, 2>;

@@ -9,10 +9,12 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <vector>
 
 #include "snowshed/geometry/thickened.hpp"
+#include "snowshed/methods/forces/pressure_map.hpp"
 #include "snowshed/methods/mpm/block_layout.hpp"
 #include "snowshed/methods/obstacle.hpp"
 
@@ -46,8 +48,9 @@ class Boundary {
   /// `surfaces` are the shapes of the obstacles before thin parts were made thicker. If the list is
   /// empty, the shapes of `obstacles` are used. Nodes outside a surface have contacts, too, if they
   /// are within `margin` (m) of it.
+  /// `records_forces`: contacts have the data to record forces.
   Boundary(std::vector<Obstacle> obstacles, double dx, std::vector<geometry::Shape> surfaces = {},
-           double margin = 0);
+           double margin = 0, bool records_forces = false);
 
   const std::vector<ContactLaw>& laws() const { return laws_; }
   bool any_motion() const { return any_motion_; }
@@ -57,6 +60,7 @@ class Boundary {
                        [](const ContactLaw& law) { return law.condition == Condition::slip; });
   }
   bool is_moving(const Contact<T>& c) const { return obstacles_[c.obstacle].motion.has_value(); }
+  bool records_forces() const { return records_forces_; }
 
   /// The surface of an obstacle, not thickened, at a time.
   class Surface {
@@ -86,13 +90,29 @@ class Boundary {
   /// rest.
   void find(BlockKey block, double time, bool moving, std::vector<Contact<T>>& contacts) const;
 
+  /// The point of an obstacle's surface that is nearest to a contact's node, and its outward normal,
+  /// in the frame of the obstacle.
+  struct FacePoint {
+    Vec3 point, normal;
+  };
+  FacePoint face_point(BlockKey block, const Contact<T>& contact, double time) const;
+
  private:
   std::vector<Obstacle> obstacles_;
   std::vector<geometry::Shape> surfaces_;  // shapes of the obstacles, not thickened
   std::vector<ContactLaw> laws_;
   double dx_, margin_;
-  bool any_motion_ = false;
+  bool any_motion_ = false, records_forces_;
 };
+
+/// Position of a node of a block, m.
+template <int D>
+VecD<D> node_position(const BlockCoord<D>& block, int node, double dx) {
+  constexpr int B = block_edge<D>;
+  VecD<D> x;
+  for (int d = D - 1; d >= 0; --d, node /= B) x[d] = (block[d] * B + node % B) * dx;
+  return x;
+}
 
 /// The share of friction that remains and the sum of the positive impulses (N s) of each obstacle,
 /// see Contacts::find_friction_shares.
@@ -117,7 +137,20 @@ class Contacts {
   void follow(const Boundary<T, D>& boundary, double time, int threads = 1);
 
   Contact<T>* of_block(std::size_t block) { return contacts_.data() + first_[block]; }
+  const Contact<T>* of_block(std::size_t block) const { return contacts_.data() + first_[block]; }
   int count(std::size_t block) const { return int(first_[block + 1] - first_[block]); }
+
+  /// The forces at a block's contacts; null if they are not recorded.
+  ContactForce<T>* forces_of(std::size_t block) {
+    return forces_.empty() ? nullptr : forces_.data() + first_[block];
+  }
+  const ContactForce<T>* forces_of(std::size_t block) const {
+    return forces_.empty() ? nullptr : forces_.data() + first_[block];
+  }
+  /// Finds the patch of each contact that has none.
+  void find_patches(const Boundary<T, D>& boundary, double time, PressureMap& pressures);
+  /// Gives the pressure map the normal impulses that it has not yet received.
+  void give_pushes(PressureMap& pressures) noexcept;
 
   std::size_t size() const { return contacts_.size(); }
 
@@ -151,15 +184,36 @@ class Contacts {
   std::vector<StoredImpulse> stored_impulses() const;
   void restore(const std::vector<StoredImpulse>& stored_impulses);
 
+  /// The same for the recorded forces.
+  struct StoredForce {
+    BlockKey block;
+    std::int32_t node, obstacle;
+    std::array<double, 3> mean;
+    double age, pushed;
+  };
+  std::vector<StoredForce> stored_forces() const;
+  void restore(const std::vector<StoredForce>& stored_forces);
+
  private:
-  /// Collects the contacts of `blocks`. `find(index, contacts)` appends the contacts of the block
+  struct OfBlock {
+    std::vector<Contact<T>> contacts;
+    std::vector<ContactForce<T>> forces;
+  };
+
+  /// Collects the contacts of `blocks`. `find(index, of_block)` appends the contacts of the block
   /// with that index.
   template <class Find>
-  static Contacts gathered(const std::vector<BlockKey>& blocks, int threads, Find find);
+  static Contacts gathered(const Boundary<T, D>& boundary, const std::vector<BlockKey>& blocks,
+                           int threads, Find find);
+
+  /// Calls f(contact index, stored) for each stored item whose contact exists.
+  template <class Stored, class F>
+  void for_each_stored(const std::vector<Stored>& stored, const F& f);
 
   std::vector<BlockKey> blocks_;
   std::vector<std::size_t> first_{0};
   std::vector<Contact<T>> contacts_;
+  std::vector<ContactForce<T>> forces_;  // one for each contact; empty if they are not recorded
 };
 
 }  // namespace snowshed::methods::mpm

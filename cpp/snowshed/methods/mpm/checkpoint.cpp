@@ -15,6 +15,7 @@ struct CheckpointParts {
   std::vector<typename Contacts<T, D>::StoredImpulse> impulses;
   std::vector<typename Sleep<D>::State> sleep;
   std::vector<EventContact<T>> event_contacts;
+  std::vector<typename Contacts<T, D>::StoredForce> forces;
 };
 
 /// Returns whether a solver with a single snow may lack this array. Solvers with several snows have
@@ -71,6 +72,19 @@ void visit_rest(Archive& archive, Layout& layout, CheckpointParts<T, D>& stored,
   }
 }
 
+/// The record of forces. The obstacles' part of it is saved by `ObstacleForces`.
+template <class T, int D, class Archive, class Record>
+void visit_forces(Archive& archive, CheckpointParts<T, D>& stored, Record& record) {
+  using Force = typename Contacts<T, D>::StoredForce;
+  archive.columns(stored.forces, column("forces/block", &Force::block),
+                  column("forces/node", &Force::node), column("forces/obstacle", &Force::obstacle),
+                  column("forces/mean", &Force::mean), column("forces/age", &Force::age),
+                  column("forces/to_push", &Force::pushed));
+  archive.packed("forces/held", record.held, record.forces.names().size(),
+                 [](auto& held, const auto& number) { ContactImpulse::for_each_number(held, number); });
+  archive.numbers("forces/held_since", record.held_since);
+}
+
 /// Returns whether the blocks are in order and none is empty. A small file with many empty blocks
 /// would take a lot of memory.
 template <int D>
@@ -118,9 +132,12 @@ void SolverImpl<T, D>::save(io::BinaryWriter& out) const {
   soundness_.require();
   StateWriter archive(out);
   CheckpointParts<T, D> stored{state_.contacts.stored_impulses(), state_.sleep.states(),
-                               state_.event_contacts};
+                               state_.event_contacts, state_.contacts.stored_forces()};
   visit_particles(archive, state_.particles, model_.materials.size());
   visit_rest<T, D>(archive, state_.layout, stored, state_.totals, model_.options.settings);
+  if (!state_.forces) return;
+  visit_forces<T, D>(archive, stored, *state_.forces);
+  state_.forces->forces.save(out);
 }
 
 template <class T, int D>
@@ -137,10 +154,26 @@ State<T, D> SolverImpl<T, D>::read_state(const io::BinaryReader& in) const {
   next.contacts =
       next.contacts.relocated(model_.boundary, next.layout.grid_blocks, next.totals.time);
   next.contacts.restore(stored.impulses);
+  if (next.forces) read_forces(in, next);
   next.sleep = next.sleep.with_states(next.layout, std::move(stored.sleep));
   next.event_contacts = std::move(stored.event_contacts);
   next.find_event_fields();
   return next;
+}
+
+/// A checkpoint of a run that did not record forces has none; the record begins then.
+template <class T, int D>
+void SolverImpl<T, D>::read_forces(const io::BinaryReader& in, State<T, D>& next) const {
+  if (in.has("forces/block")) {
+    const StateReader archive(in);
+    CheckpointParts<T, D> stored;
+    visit_forces<T, D>(archive, stored, *next.forces);
+    next.forces->forces.load(in);
+    next.contacts.restore(stored.forces);
+  } else {
+    next.begin_balance();
+  }
+  next.contacts.find_patches(model_.boundary, next.totals.time, next.forces->forces.pressures());
 }
 
 template <class T, int D>

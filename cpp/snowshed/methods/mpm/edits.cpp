@@ -13,6 +13,7 @@ namespace {
 template <class T, int D>
 void add_to(State<T, D>& state, const Model<T, D>& model,
             const std::vector<ParticleBatch>& batches) {
+  state.end_balance();
   const bool energy = model.options.energy;
   const double before = energy ? state.energy(model).stored() : 0.0;
   std::vector<BlockKey> blocks = blocks_of_particles(state.layout);
@@ -20,6 +21,7 @@ void add_to(State<T, D>& state, const Model<T, D>& model,
   state.find_elastic_limits(model);
   state.arrange(model, std::move(blocks));
   if (energy) state.record_added(model, before);
+  state.begin_balance();
 }
 
 }  // namespace
@@ -43,6 +45,12 @@ void SolverImpl<T, D>::replace(const std::vector<ParticleBatch>& batches) {
   soundness_.require();
   State<T, D> next(model_);
   next.totals = state_.totals;
+  if (state_.forces) {
+    state_.give_pushes();
+    state_.end_balance();
+    next.forces = state_.forces;
+    next.begin_balance();
+  }
   if (model_.options.energy) {
     EnergyBalance& balance = next.totals.energy;
     balance.added -= state_.energy(model_).stored();
@@ -57,6 +65,7 @@ void SolverImpl<T, D>::add_velocity(const std::vector<Vec3>& velocity_changes) {
   soundness_.require();
   const std::vector<std::uint32_t>& at = order_by_id();
   check_velocity_changes(velocity_changes, at.size());
+  state_.end_balance();
   // Nothing can fail from here on.
   const double before = model_.options.energy ? state_.kinetic_energy(model_) : 0.0;
   double fastest = 0;
@@ -77,6 +86,7 @@ void SolverImpl<T, D>::add_velocity(const std::vector<Vec3>& velocity_changes) {
     balance.added += balance.kinetic - before;
   }
   state_.sleep.wake_all(state_.layout, state_.totals.time);
+  state_.begin_balance();
   workspace_.tiles_valid = false;
 }
 
@@ -93,6 +103,7 @@ void SolverImpl<T, D>::settle(const std::vector<double>& drops,
   const Settings& n = model_.options.settings;
   const double stored = model_.options.energy ? state_.energy(model_).stored() : 0.0;
   State<T, D> next = state_;
+  next.end_balance();
   std::vector<BlockKey> blocks = blocks_of_particles(next.layout);
   for (std::size_t k = 0; k < at.size(); ++k) {
     const std::size_t i = at[k];
@@ -103,6 +114,7 @@ void SolverImpl<T, D>::settle(const std::vector<double>& drops,
   }
   next.arrange(model_, std::move(blocks));
   next.sleep.wake_all(next.layout, next.totals.time);
+  next.begin_balance();
   if (model_.options.energy) {
     EnergyBalance& balance = next.totals.energy;
     balance.gravitational = next.gravitational_energy(model_);

@@ -190,6 +190,16 @@ struct Contact {
   bool acts = true;  // whether snow has come close enough
 };
 
+/// The force at a contact, where forces are recorded. The kernels write the impulse only.
+template <class T>
+struct ContactForce {
+  T impulse[3];             // N s, on the snow in the step being tried
+  T mean[3];                // N, running mean of the force on the snow
+  T age;                    // s, time over which it is a mean
+  T pushed;                 // N s, normal impulse that the pressure map has not yet received
+  std::int32_t patch = -1;  // of the pressure map
+};
+
 template <class T>
 struct Kernels {
   /// Writes the sums of a block's particles, in their present state, to the block's tile.
@@ -209,14 +219,15 @@ struct Kernels {
                 const T* const* velocities, BlockStats&);
   /// Adds the tiles of the 3^D particle blocks around (null: none) to a block's node sums.
   void (*gather)(const T* const* tiles, T* sums);
-  /// Computes the velocities of nodes from their sums, with forces, gravity and contact.
+  /// Computes the velocities of nodes from their sums, with forces, gravity and contact. `forces`
+  /// receives the impulse of each contact; null: they are not recorded.
   void (*update)(const StepParameters<T>&, const T* sums, T* velocities, Contact<T>* contacts,
-                 int contact_count, const ContactLaw*, NodeStats&);
+                 ContactForce<T>* forces, int contact_count, const ContactLaw*, NodeStats&);
   /// The same in two parts, between which other snow may act. `update_free` applies forces and
   /// gravity, `finish` contact.
   void (*update_free)(const StepParameters<T>&, const T* sums, T* velocities);
   void (*finish)(const StepParameters<T>&, const T* sums, T* velocities, Contact<T>* contacts,
-                 int contact_count, const ContactLaw*, NodeStats&);
+                 ContactForce<T>* forces, int contact_count, const ContactLaw*, NodeStats&);
   /// Computes the motion that the 3^D blocks of nodes around (null: at rest) would give to the snow
   /// on a tile. `reach` tells where its particles are.
   void (*carried_motion)(const T* tile, int reach, const T* const* sums, const T* const* velocities,

@@ -70,7 +70,8 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
          {"volumetric_plastic_strain", "1",
           "Volumetric plastic strain, logarithmic, negative in compaction", 1, 0.01},
          {"be_minus_identity", "1", "Elastic left Cauchy-Green tensor less the identity"},
-         {"affine", "1/s", "Affine velocity matrix C of APIC, by rows", 9}}};
+         {"affine", "1/s", "Affine velocity matrix C of APIC, by rows", 9}},
+        true};
     return info;
   }
 
@@ -99,6 +100,7 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
     o.obstacles = surroundings.resolved;
     for (const Obstacle& obstacle : surroundings.obstacles) o.surfaces.push_back(obstacle.shape);
     o.energy = scene.output.energy;
+    o.forces = scene.output.forces;
     return make_solver(std::move(o));
   }
 

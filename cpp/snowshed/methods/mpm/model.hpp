@@ -69,8 +69,8 @@ struct Model {
         material_per_particle(choice.material_per_particle()),
         kernels(select_kernels<T>(choice)),
         max_threads(threads_to_use(options.settings.threads)),
-        boundary(std::move(options.obstacles), options.settings.dx, std::move(options.surfaces),
-                 touches() ? touch_margin * options.settings.dx : 0.0) {
+        boundary(options.obstacles, options.settings.dx, std::move(options.surfaces),
+                 touches() ? touch_margin * options.settings.dx : 0.0, options.forces) {
     for (const material::Snow& snow : options.snows) {
       materials.emplace_back(snow, D, options.settings);
       constants.push_back(material_constants<T>(snow, D, options.settings.softening()));

@@ -192,6 +192,7 @@ void SolverImpl<T, D>::update_sleep() noexcept {
   if (!state_.sleep.allowed() || counters().steps % steps_between_checks != 0) return;
   const ParticleView<T> view = state_.particles.view();
   const StepParameters<T> step = parameters(state_.totals.dt);
+  if (state_.forces) workspace_.idle_before = state_.sleep.idle();
   const auto& newly_asleep =
       state_.sleep.update(state_.layout, time(), steps_between_checks, time_step(), block_probe());
   for (std::int32_t b : newly_asleep) {
@@ -201,6 +202,10 @@ void SolverImpl<T, D>::update_sleep() noexcept {
     scatter_block(step, view, b);
   }
   if (!newly_asleep.empty()) clear_idle_nodes();
+  if (state_.forces && workspace_.idle_before != state_.sleep.idle()) {
+    state_.give_held_pushes(workspace_.idle_before);
+    hold_sleeping_forces();
+  }
 }
 
 template <class T, int D>

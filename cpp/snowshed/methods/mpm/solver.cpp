@@ -97,6 +97,7 @@ void SolverImpl<T, D>::record_step(double dt) noexcept {
   if (model_.options.energy) update_energy_balance();
   record_damping(dt);
   p.time += dt;
+  record_forces(dt);
   ++p.counters.steps;
   p.counters.particle_updates += state_.sleep.awake_particles();
   p.slept_updates += std::int64_t(size()) - state_.sleep.awake_particles();
@@ -126,6 +127,7 @@ void SolverImpl<T, D>::scatter() {
   const std::ptrdiff_t n = std::ptrdiff_t(state_.layout.particle_blocks.size());
   parallel_for_dynamic(n, threads(), 1, [&](std::ptrdiff_t b) { scatter_block(step, view, b); });
   clear_idle_nodes();
+  if (state_.forces) hold_sleeping_forces();
   workspace_.tiles_valid = true;
 }
 
@@ -141,7 +143,7 @@ void SolverImpl<T, D>::scatter_block(const StepParameters<T>& step, const Partic
 /// First half of a step: the node sums and, in the same loop, the node velocities for a step of dt.
 template <class T, int D>
 void SolverImpl<T, D>::gather_and_update(double dt) {
-  state_.contacts.follow(model_.boundary, time(), threads());
+  follow_obstacles();
   if (model_.touches())
     workspace_.touch.update(model_, state_, state_.totals.speed * state_.totals.dt, threads());
   if (model_.boundary.any_slip()) state_.contacts.find_friction_shares(workspace_.friction_shares);
@@ -198,8 +200,9 @@ void SolverImpl<T, D>::update_overlap(const StepParameters<T>& step, std::ptrdif
   for (auto g = begin; g != end; ++g)
     if (workspace_.grid.touched[*g])
       model_.kernels.finish(step, workspace_.grid.sum(*g), workspace_.grid.velocity(*g),
-                            state_.contacts.of_block(*g), state_.contacts.count(*g),
-                            model_.boundary.laws().data(), workspace_.grid.node_stats[*g]);
+                            state_.contacts.of_block(*g), state_.contacts.forces_of(*g),
+                            state_.contacts.count(*g), model_.boundary.laws().data(),
+                            workspace_.grid.node_stats[*g]);
 }
 
 template <class T, int D>
@@ -207,8 +210,9 @@ void SolverImpl<T, D>::update_block(const StepParameters<T>& step, std::ptrdiff_
   workspace_.grid.node_stats[g] = {};
   if (!workspace_.grid.touched[g]) return clear_block(g);
   model_.kernels.update(step, workspace_.grid.sum(g), workspace_.grid.velocity(g),
-                        state_.contacts.of_block(g), state_.contacts.count(g),
-                        model_.boundary.laws().data(), workspace_.grid.node_stats[g]);
+                        state_.contacts.of_block(g), state_.contacts.forces_of(g),
+                        state_.contacts.count(g), model_.boundary.laws().data(),
+                        workspace_.grid.node_stats[g]);
 }
 
 /// No particle touches these nodes, so their velocities are not used.
@@ -217,7 +221,11 @@ void SolverImpl<T, D>::clear_block(std::ptrdiff_t g) {
   std::fill_n(workspace_.grid.node_stats[g].low, D, geometry::infinity);
   std::fill_n(workspace_.grid.node_stats[g].high, D, -geometry::infinity);
   Contact<T>* contacts = state_.contacts.of_block(g);
-  for (int c = 0; c < state_.contacts.count(g); ++c) contacts[c].next_normal_impulse = 0;
+  ContactForce<T>* forces = state_.contacts.forces_of(g);
+  for (int c = 0; c < state_.contacts.count(g); ++c) {
+    contacts[c].next_normal_impulse = 0;
+    if (forces) std::fill_n(forces[c].impulse, D, T(0));
+  }
 }
 
 /// Shortens a step that would strain a particle beyond the limit. The grid's sums do not depend on

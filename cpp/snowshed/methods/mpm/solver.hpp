@@ -7,6 +7,7 @@
 
 #include "snowshed/material/snow.hpp"
 #include "snowshed/methods/capabilities.hpp"
+#include "snowshed/methods/forces/obstacle_forces.hpp"
 #include "snowshed/methods/mpm/settings.hpp"
 #include "snowshed/methods/obstacle.hpp"
 
@@ -25,10 +26,15 @@ struct Options {
   // thickened.
   std::vector<geometry::Shape> surfaces;
   bool energy = false;  // whether to keep the energy balance
+  bool forces = false;  // whether to record the forces on obstacles
 };
 
-/// A solver of MPM: a method that can also settle, balance energy and sleep.
-class Solver : public Method, public Settles, public KeepsEnergy, public Sleeps {
+/// A solver of MPM: a method that can also settle, balance energy, record forces and sleep.
+class Solver : public Method,
+               public Settles,
+               public KeepsEnergy,
+               public KeepsForces,
+               public Sleeps {
  public:
   /// Number of sorts of the particles by blocks since the method was made.
   virtual std::int64_t sorts() const = 0;

@@ -16,6 +16,15 @@
 
 namespace snowshed::methods::mpm {
 
+/// Impulses on obstacles in a step, by block of nodes: sums over its contacts with each obstacle.
+struct BlockForces {
+  struct Sum {
+    std::int32_t obstacle;
+    ContactImpulse impulse;
+  };
+  std::vector<std::vector<Sum>> sums;  // one list for each block
+};
+
 /// Data that is computed from a state. It may be dropped before any sort.
 template <class T, int D>
 struct Workspace {
@@ -30,6 +39,8 @@ struct Workspace {
   Touch<T, D> touch;
   EventContacts<T, D> event_contacts;
   std::vector<double> block_strain;  // 1/s, of the step being tried
+  BlockForces block_forces;          // of the last step
+  std::vector<std::int32_t> idle_before;
   bool tiles_valid = false;          // whether the tiles hold the sums of the particles
   int since_sort = 0;                // steps
   int until_sort = steps_between_sorts;
@@ -60,6 +71,12 @@ class SolverImpl final : public Solver {
   }
   MotionSummary motion(double speed) const override;
   NamedEnergies energies() const override { return named_energies(state_.energy(model_)); }
+  const ObstacleForces* forces() const override {
+    return state_.forces ? &state_.forces->forces : nullptr;
+  }
+  void begin_force_event() noexcept override;
+  std::vector<ForceSample> sample_forces(double duration) override;
+  RestingForces resting_forces(bool at_rest) const override;
   std::int64_t sorts() const override { return state_.totals.sorts; }
   std::int64_t slept_updates() const override { return state_.totals.slept_updates; }
   std::size_t bytes() const override;
@@ -69,6 +86,7 @@ class SolverImpl final : public Solver {
 
  private:
   State<T, D> read_state(const io::BinaryReader&) const;
+  void read_forces(const io::BinaryReader&, State<T, D>& next) const;
 
   // The phases of a step.
   double try_step();  ///< returns the length of the step
@@ -90,6 +108,10 @@ class SolverImpl final : public Solver {
   void average_velocities(double dt) noexcept;
   void record_step(double dt) noexcept;
   void record_damping(double dt) noexcept;
+  void follow_obstacles();
+  void record_forces(double dt) noexcept;
+  void record_block_forces(std::int32_t block, double dt) noexcept;
+  void hold_sleeping_forces() noexcept;
   void update_sleep() noexcept;
   typename Sleep<D>::BlockProbe block_probe();
   BlockStats probe(const StepParameters<T>& step, const ParticleView<T>& view, std::int32_t block);

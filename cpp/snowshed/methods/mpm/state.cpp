@@ -33,6 +33,9 @@ State<T, D>::State(const Model<T, D>& model)
   particles.has_plastic = model.has_plastic();
   find_elastic_limits(model);
   totals.counters.smallest_dt = elastic_limit;
+  if (!model.options.forces) return;
+  forces.emplace(ForceRecord{ObstacleForces(model.options.obstacles, D, model.options.settings.dx), {}});
+  forces->held.resize(forces->forces.names().size());
 }
 
 template <class T, int D>
@@ -125,8 +128,11 @@ void State<T, D>::arrange(const Model<T, D>& model, std::vector<BlockKey> blocks
   const int threads = model.threads(sleep.awake_particles());
   ParticleSort<T, D> sort(particles, std::move(blocks), layout, threads);
   std::optional<Contacts<T, D>> relocated;
-  if (sort.layout.grid_blocks != layout.grid_blocks)
+  if (forces) give_pushes();  // contacts may vanish, and snow may wake
+  if (sort.layout.grid_blocks != layout.grid_blocks) {
     relocated = contacts.relocated(model.boundary, sort.layout.grid_blocks, totals.time, threads);
+    if (forces) relocated->find_patches(model.boundary, totals.time, forces->forces.pressures());
+  }
   Sleep<D> sleep_after = sleep.relocated(sort.layout, totals.time);
   // All memory is reserved: nothing fails from here on.
   sort.apply(particles);

@@ -4,8 +4,10 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
+#include "snowshed/methods/forces/obstacle_forces.hpp"
 #include "snowshed/methods/method.hpp"
 #include "snowshed/methods/mpm/boundary.hpp"
 #include "snowshed/methods/mpm/event_contact.hpp"
@@ -34,6 +36,14 @@ struct StepTotals {
   EnergyBalance energy;      // the gravitational part as it was when snow was last added
 };
 
+/// The record of forces. Sleeping snow takes part in no step, so it goes on pressing with its
+/// contacts' mean forces.
+struct ForceRecord {
+  ObstacleForces forces;
+  std::vector<ContactImpulse> held;  // N, forces of sleeping snow by name of the obstacles
+  double held_since = 0;             // s, from when the pressure map lacks these forces
+};
+
 template <class T, int D>
 struct State {
   explicit State(const Model<T, D>& model);
@@ -45,6 +55,7 @@ struct State {
   std::vector<EventContact<T>> event_contacts;
   Sleep<D> sleep;
   StepTotals totals;
+  std::optional<ForceRecord> forces;  // if the options ask for it
 
   std::map<int, int> event_fields;  // field of each event
 
@@ -80,6 +91,16 @@ struct State {
   double contact_radius(const Model<T, D>& model, std::size_t particle) const;
   /// An upper bound of all contact radii, m.
   double largest_contact_radius(const Model<T, D>& model) const;
+  Momentum momentum() const;
+  /// Ends the balance of momentum so far, because the snow is going to be changed or a sample is
+  /// taken. What it leaves is the work of sleep, and belongs to the obstacles below sleeping snow.
+  void end_balance();
+  /// Begins a balance with the present snow.
+  void begin_balance() noexcept;
+  /// Gives the pressure map all normal impulses up to now. The second one is for the contacts of
+  /// these blocks, whose snow slept.
+  void give_pushes() noexcept;
+  void give_held_pushes(const std::vector<std::int32_t>& idle_blocks) noexcept;
   double kinetic_energy(const Model<T, D>& model) const;
   double gravitational_energy(const Model<T, D>& model) const;
   double elastic_energy(const Model<T, D>& model) const;

@@ -50,6 +50,20 @@ template <int D>
 void SolverImpl<D>::save(io::BinaryWriter& out) const {
   StateWriter archive(out);
   visit_state(archive, state_);
+  if (forces_) forces_->save(out);
+}
+
+/// The record of forces. A checkpoint of a run without one has none; the record begins then.
+template <int D>
+std::optional<ObstacleForces> SolverImpl<D>::read_forces(const io::BinaryReader& in,
+                                                         const State<D>& state) const {
+  if (!forces_) return std::nullopt;
+  ObstacleForces read(model_.options.obstacles, D, model_.settings().spacing);
+  if (in.has("forces/obstacles"))
+    read.load(in);
+  else
+    read.begin_balance(momentum_of(state.particles));
+  return read;
 }
 
 template <int D>
@@ -64,13 +78,15 @@ State<D> SolverImpl<D>::read_state(const io::BinaryReader& in) const {
 
 template <int D>
 void SolverImpl<D>::load(const io::BinaryReader& in) {
-  state_ = read_state(in);
+  State<D> next = read_state(in);
+  forces_ = read_forces(in, next);
+  state_ = std::move(next);
   order_.forget();
 }
 
 template <int D>
 void SolverImpl<D>::check(const io::BinaryReader& in) const {
-  read_state(in);
+  read_forces(in, read_state(in));
 }
 
 template class SolverImpl<2>;

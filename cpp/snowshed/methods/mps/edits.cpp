@@ -63,7 +63,9 @@ void SolverImpl<D>::accept(State<D> next) {
   if (model_.options.energy)
     next.energy.added += stored_energy(model_, next.particles).stored() -
                          stored_energy(model_, state_.particles).stored();
+  end_balance();
   state_ = std::move(next);
+  if (forces_) forces_->begin_balance(momentum_of(state_.particles));
   order_.forget();
 }
 

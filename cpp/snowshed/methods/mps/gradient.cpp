@@ -118,12 +118,15 @@ VecD<D> gradient_at_walls(const Model<D>& model, const Particles<D>& particles,
 }
 
 /// Removes the part of a velocity that would bring the particle too near to a wall within the step.
+/// Returns the speed that the particle gains away from the wall, m/s.
 template <int D>
-void keep_out(const WallContact<D>& c, double spacing, double dt, VecD<D>& velocity) {
+double keep_out(const WallContact<D>& c, double spacing, double dt, VecD<D>& velocity) {
   const double approach = (velocity - c.velocity).dot(c.normal);
   const double room = c.distance - min_wall_distance * spacing;
   const double slowest = std::min(-room, max_push * spacing) / dt;
-  if (approach < slowest) velocity += (slowest - approach) * c.normal;
+  if (!(approach < slowest)) return 0;
+  velocity += (slowest - approach) * c.normal;
+  return slowest - approach;
 }
 
 }  // namespace
@@ -135,6 +138,7 @@ void apply_pressure(const Model<D>& model, double dt, Particles<D>& particles, W
   const bool corrected = s.gradient == Gradient::corrected;
   sum_pressures(model, particles, work);
   work.change.resize(particles.size());
+  if (work.records_forces) work.wall_stop.assign(near.contacts.all().size(), 0.0);
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
     work.change[i].setZero();
     if (particles.is_wall(i)) return;
@@ -147,7 +151,8 @@ void apply_pressure(const Model<D>& model, double dt, Particles<D>& particles, W
     const VecD<D> before = particles.velocity[i];
     VecD<D> velocity = before - dt * particles.pressure_acceleration[i];
     for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c)
-      keep_out(*c, s.spacing, dt, velocity);
+      if (const double gain = keep_out(*c, s.spacing, dt, velocity); work.records_forces)
+        work.wall_stop[near.contacts.index_of(c)] = gain;
     work.change[i] = velocity - before;
   });
   for_each_particle(particles.size(), model.threads_for(particles.size()),

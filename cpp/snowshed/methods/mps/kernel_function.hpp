@@ -1,6 +1,7 @@
 // The weight function of the MPS method, and its sums on a lattice.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 namespace snowshed::methods::mps {
@@ -63,6 +64,15 @@ inline double second_layer_share(int dimension, const KernelConstants& k) {
   double sum = 0;
   visit_beyond_second_layer(dimension, k, [&](double w, int z) { sum += w * z; });
   return 2 * dimension / (k.lambda * k.number_density) * sum;
+}
+
+/// Fraction of a wall's stress that acts on a particle at a distance, in l0; `second` is that of the
+/// second layer. The fractions of the layers of a lattice sum to one.
+inline double share_of_wall(double distance, double second) {
+  const auto falls = [&](double from, double to) {
+    return std::clamp((to - distance) / (to - from), 0.0, 1.0);
+  };
+  return (1 - 2 * second) * falls(0.75, 1.25) + second * falls(1.75, 2.25);
 }
 
 /// The part of n0 and of the filling that the second layer of a lattice below a surface lacks.

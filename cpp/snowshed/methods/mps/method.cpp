@@ -26,7 +26,8 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
         {{"number_density", "1", "Number density of particles over that of a lattice", 1, 0.01},
          {"shear_rate", "1/s", "Shear rate, the root of 2 D:D"},
          {"apparent_viscosity", "Pa s", "Shear stress over shear rate"},
-         {"particle_kind", "1", "0: moving, 1: erodible, 2: inner wall, 3: dummy wall", 1, 1.0}}};
+         {"particle_kind", "1", "0: moving, 1: erodible, 2: inner wall, 3: dummy wall", 1, 1.0}},
+        true};
     return info;
   }
 
@@ -51,6 +52,9 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
     if (scene.output.energy && s.order == Order::published)
       throw InputError("/output/energy",
                        "the balance is kept with /numerics/order \"single_move\" only");
+    if (scene.output.forces && s.order == Order::published)
+      throw InputError("/output/forces",
+                       "they are recorded with /numerics/order \"single_move\" only");
   }
   geometry::ThickSolid thickened(const geometry::Shape& shape, int dimension) const override {
     return thickened_for_particles(shape, settings_.spacing, dimension);
@@ -63,6 +67,7 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
     o.settings = settings_;
     o.obstacles = surroundings.resolved;
     o.energy = scene.output.energy;
+    o.forces = scene.output.forces;
     return make_solver(std::move(o));
   }
 

@@ -157,6 +157,7 @@ void SolverImpl<D>::apply_viscosity(double dt, State<D>& next) {
   require_converged(next.solves.viscosity, "viscous", model_.settings().max_iterations);
   for (std::size_t i = 0; i < p.size(); ++i)
     p.viscous_acceleration[i] = (p.velocity[i] - before[i]) / dt;
+  if (forces_) record_drag(dt, p);
   energy_recorder_.after_viscosity(before, p);
 }
 
@@ -295,6 +296,7 @@ void SolverImpl<D>::step() {
   for (std::size_t i = 0; i < next.particles.size(); ++i)
     next.particles.relative_density[i] = workspace_.near.density[i] / model_.kernel.number_density;
   energy_recorder_.end_step(model_, workspace_, dt, next);
+  if (forces_) find_wall_impulses(dt, next);
   if (model_.has_wall_particles()) remove_walls(next.particles);
   next.time += dt;
   next.dt = dt;
@@ -305,6 +307,7 @@ void SolverImpl<D>::step() {
   c.particle_updates += std::int64_t(size());
   c.smallest_dt = c.smallest_dt > 0 ? std::min(c.smallest_dt, dt) : dt;
   std::swap(state_, next);
+  if (forces_) record_wall_impulses();
   order_.forget();
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "snowshed/methods/capabilities.hpp"
+#include "snowshed/methods/forces/obstacle_forces.hpp"
 #include "snowshed/methods/mps/settings.hpp"
 #include "snowshed/methods/obstacle.hpp"
 
@@ -18,6 +19,7 @@ struct Options {
   Vec3 gravity{0, 0, -9.81};  // m/s2
   std::vector<Obstacle> obstacles;
   bool energy = false;  // whether to keep the energy balance
+  bool forces = false;  // whether to record the forces on obstacles
   double period = 0;    // m, period along x, from x = 0; 0: not periodic
 };
 
@@ -31,7 +33,7 @@ struct Report {
 };
 
 /// MPS as a method, with its own additions.
-class Solver : public Method, public KeepsEnergy, public ReportsRun {
+class Solver : public Method, public KeepsEnergy, public KeepsForces, public ReportsRun {
  public:
   virtual Report report() const = 0;
 };

@@ -1,11 +1,17 @@
 // The solver of the MPS method: its data, and the order of its parts.
 #pragma once
 
+#include <optional>
+
 #include "snowshed/methods/mps/energy.hpp"
 #include "snowshed/methods/mps/forces.hpp"
 #include "snowshed/methods/particle_method.hpp"
 
 namespace snowshed::methods::mps {
+
+/// Mass and momentum of all particles.
+template <int D>
+Momentum momentum_of(const Particles<D>&);
 
 /// A step builds the next state beside the present one, and can fail only before it takes the next
 /// one over. A failed step therefore never leaves unsound particles, and the class has no
@@ -15,6 +21,9 @@ class SolverImpl final : public Solver {
  public:
   explicit SolverImpl(Options options)
       : model_(std::move(options)), energy_recorder_(model_.options.energy) {
+    if (model_.options.forces)
+      forces_.emplace(model_.options.obstacles, D, model_.settings().spacing);
+    workspace_.records_forces = model_.options.forces;
     if (model_.has_wall_particles())
       workspace_.walls =
           WallParticles<D>(model_.options.obstacles, model_.settings().spacing, model_.reach());
@@ -41,6 +50,10 @@ class SolverImpl final : public Solver {
   ParticleState state() const override;
   MotionSummary motion(double speed) const override;
   NamedEnergies energies() const override;
+  const ObstacleForces* forces() const override { return forces_ ? &*forces_ : nullptr; }
+  void begin_force_event() noexcept override;
+  std::vector<ForceSample> sample_forces(double duration) override;
+  RestingForces resting_forces(bool at_rest) const override;
   std::size_t bytes() const override;
 
   void save(io::BinaryWriter&) const override;
@@ -64,7 +77,12 @@ class SolverImpl final : public Solver {
   double choose_step(const Particles<D>&) const;
   double pressure_step(const Particles<D>&) const;
   double largest_speed(const Particles<D>&) const;
+  void record_drag(double dt, const Particles<D>&);
+  void find_wall_impulses(double dt, const State<D>& next);
+  void record_wall_impulses() noexcept;
+  void end_balance() noexcept;
   State<D> read_state(const io::BinaryReader&) const;
+  std::optional<ObstacleForces> read_forces(const io::BinaryReader&, const State<D>&) const;
   template <class Visit>
   void visit_fields(Visit) const;
 
@@ -72,6 +90,7 @@ class SolverImpl final : public Solver {
   State<D> state_;
   Workspace<D> workspace_;
   EnergyRecorder<D> energy_recorder_;
+  std::optional<ObstacleForces> forces_;  // if the options ask for it
   IdOrder order_;
 };
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "snowshed/core/parallel.hpp"
+#include "snowshed/methods/forces/obstacle_forces.hpp"
 #include "snowshed/methods/method.hpp"
 #include "snowshed/methods/mps/boundary.hpp"
 #include "snowshed/methods/mps/conjugate_gradients.hpp"
@@ -179,6 +180,13 @@ struct SpacingCorrection {
   AlignedVector<VecD<D>> concentration;  // gradient of the concentration, 1/m, for shifting
 };
 
+/// Impulses of the snow on the walls in a step, N s.
+struct WallImpulses {
+  std::vector<ContactImpulse> by_name;
+  std::vector<std::pair<std::int32_t, double>> pushes;  // patch of the pressure map, impulse
+  double moving_mass = 0;                               // kg
+};
+
 template <int D>
 struct Workspace {
   WallParticles<D> walls;  // if the settings ask for them
@@ -194,6 +202,12 @@ struct Workspace {
   ShearRates<D> rates;
   WallFriction wall_friction;
   SpacingCorrection<D> spacing;
+  // If forces are recorded, one per contact: impulse on the wall by its drag (N s), and speed with
+  // which the wall pushed the particle out (m/s).
+  AlignedVector<VecD<D>> wall_impulse;
+  AlignedVector<double> wall_stop;
+  WallImpulses wall_impulses;
+  bool records_forces = false;
   CgWorkspace cg;  // shared by both solves
 };
 

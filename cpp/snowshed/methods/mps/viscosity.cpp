@@ -12,15 +12,6 @@ namespace {
 /// Lower limit of the wall distance that enters wall friction, in l0.
 constexpr double min_friction_distance = 0.25;
 
-/// Fraction of the wall's shear stress that acts on a particle at a distance, in l0. The fractions
-/// of the first and the second layer of a lattice sum to one.
-double share_of_mirror(double distance, double second) {
-  const auto falls = [&](double from, double to) {
-    return std::clamp((to - distance) / (to - from), 0.0, 1.0);
-  };
-  return (1 - 2 * second) * falls(0.75, 1.25) + second * falls(1.75, 2.25);
-}
-
 /// Weight of a wall particle's friction on a particle that touches its obstacle, m; 0 if the wall
 /// particle is not in the layer at the surface.
 template <int D>
@@ -60,7 +51,7 @@ void compute_wall_contact_fractions(const Model<D>& model, const Particles<D>& p
   work.wall_friction.share.resize(near.contacts.all().size());
   if (!model.has_wall_particles()) {
     for (std::size_t k = 0; k < work.wall_friction.share.size(); ++k)
-      work.wall_friction.share[k] = share_of_mirror(
+      work.wall_friction.share[k] = share_of_wall(
           near.contacts.all()[k].distance / model.settings().spacing, model.second_layer);
     return;
   }

@@ -56,20 +56,55 @@ def read_particles(path: Union[str, os.PathLike[str]]) -> dict[str, NDArray[Any]
     OSError
         If it cannot be read.
     """
-    content = read_regular(Path(path))
     try:
-        _check_sum(content)
-        head, separator, data = content.partition(APPENDED_HEAD)
-        if not separator:
-            raise ValueError("it has no appended raw data")
-        piece = ElementTree.fromstring(head + b"</VTKFile>").find("PolyData/Piece")
-        if piece is None:
-            raise ValueError("it has no points")
+        piece, data = _piece(path)
         count = int(piece.attrib["NumberOfPoints"])
         arrays = [*piece.iterfind("Points/DataArray"), *piece.iterfind("PointData/DataArray")]
         return {array.attrib["Name"]: _values(array, data, count) for array in arrays}
     except (ValueError, LookupError, OverflowError, ElementTree.ParseError) as error:
         raise InputError(f"{path}: not particles that snowshed wrote: {error}") from None
+
+
+def read_cells(
+    path: Union[str, os.PathLike[str]],
+) -> tuple[NDArray[np.float64], dict[str, NDArray[Any]]]:
+    """Read the faces in a file of ``pressures/``: lines or polygons with as many corners each.
+
+    Returns
+    -------
+    points : (n, 3)
+        The corners of one face after the other, m.
+    values
+        The quantities of the faces, by name.
+
+    Raises
+    ------
+    InputError
+        If the file is not one that snowshed wrote, or is damaged.
+    """
+    try:
+        piece, data = _piece(path)
+        (points,) = piece.iterfind("Points/DataArray")
+        cells = int(piece.attrib["NumberOfLines"]) + int(piece.attrib["NumberOfPolys"])
+        return _values(points, data, int(piece.attrib["NumberOfPoints"])), {
+            array.attrib["Name"]: _values(array, data, cells)
+            for array in piece.iterfind("CellData/DataArray")
+        }
+    except (ValueError, LookupError, OverflowError, ElementTree.ParseError) as error:
+        raise InputError(f"{path}: not faces that snowshed wrote: {error}") from None
+
+
+def _piece(path: Union[str, os.PathLike[str]]) -> tuple[ElementTree.Element, bytes]:
+    """Return the description of a file's piece and its raw data."""
+    content = read_regular(Path(path))
+    _check_sum(content)
+    head, separator, data = content.partition(APPENDED_HEAD)
+    if not separator:
+        raise ValueError("it has no appended raw data")
+    piece = ElementTree.fromstring(head + b"</VTKFile>").find("PolyData/Piece")
+    if piece is None:
+        raise ValueError("it has no points")
+    return piece, data
 
 
 def _check_sum(content: bytes) -> None:

@@ -8,7 +8,13 @@ METHOD = Method(
     title="Snow in motion",
     settings=MpmSettings,
     run="snowshed.running.stack_run:StackRun",
-    results={"stack": "snowshed.results.event_particles:last_stack"},
+    results={
+        "stack": "snowshed.results.event_particles:last_stack",
+        "forces": "snowshed.results.obstacle_forces:read_forces",
+        "loads": "snowshed.results.obstacle_forces:read_loads",
+        "pressures": "snowshed.results.obstacle_forces:read_pressures",
+    },
+    in_memory={"forces": "snowshed.results.obstacle_forces:present_forces"},
     ages=True,
     has_grid=True,
 )

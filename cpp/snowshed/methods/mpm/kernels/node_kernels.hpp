@@ -27,11 +27,11 @@ struct NodeKernels {
   }
 
   static void update(const StepParameters<T>& step, const T* sums, T* velocities,
-                     Contact<T>* contacts, int contact_count, const ContactLaw* laws,
-                     NodeStats& stats) {
+                     Contact<T>* contacts, ContactForce<T>* forces, int contact_count,
+                     const ContactLaw* laws, NodeStats& stats) {
     Range range;
     apply_forces(step, sums, velocities, range);
-    constrain(step, sums, velocities, contacts, contact_count, laws, stats, range);
+    constrain(step, sums, velocities, contacts, forces, contact_count, laws, stats, range);
     range.store(stats);
     if constexpr (energy) record_kinetic_energy(step, sums, velocities, stats);
   }
@@ -42,12 +42,12 @@ struct NodeKernels {
   }
 
   static void finish(const StepParameters<T>& step, const T* sums, T* velocities,
-                     Contact<T>* contacts, int contact_count, const ContactLaw* laws,
-                     NodeStats& stats) {
+                     Contact<T>* contacts, ContactForce<T>* forces, int contact_count,
+                     const ContactLaw* laws, NodeStats& stats) {
     Range range;
     for (int k = 0; k < block_nodes<D>; ++k)
       if (sums[k * node_values] > min_mass) range.add(load_half(velocities + k * node_values));
-    constrain(step, sums, velocities, contacts, contact_count, laws, stats, range);
+    constrain(step, sums, velocities, contacts, forces, contact_count, laws, stats, range);
     range.store(stats);
     if constexpr (energy) record_kinetic_energy(step, sums, velocities, stats);
   }
@@ -113,21 +113,29 @@ struct NodeKernels {
 
   /// Applies the conditions of obstacles.
   static SNOWSHED_INLINE void constrain(const StepParameters<T>& step, const T* sums, T* velocities,
-                                        Contact<T>* contacts, int contact_count,
-                                        const ContactLaw* laws, NodeStats& stats, Range& range) {
+                                        Contact<T>* contacts, ContactForce<T>* forces,
+                                        int contact_count, const ContactLaw* laws,
+                                        NodeStats& stats, Range& range) {
     for (int c = 0; c < contact_count; ++c) {
       const T* sum = sums + contacts[c].node * node_values;
       T* out = velocities + contacts[c].node * node_values;
       const bool acts = contacts[c].acts || contacts[c].normal_impulse > T(0);
       if (sum[0] > min_mass && acts) {
         Half node = load_half(out);
+        const Half free = node;
         apply(step, contacts[c], laws[contacts[c].obstacle], sum, node, stats);
         store_velocity(out, node, velocity(sum));
         range.add(node);
+        if (forces) record(forces[c], sum[0] * (node - free));
       } else {
         contacts[c].next_normal_impulse = 0;
+        if (forces) record(forces[c], Half{});
       }
     }
+  }
+
+  static void record(ContactForce<T>& force, const Half& impulse) {
+    for (int d = 0; d < D; ++d) force.impulse[d] = impulse[d];
   }
 
   /// Velocity before the step; the fourth value is zero.

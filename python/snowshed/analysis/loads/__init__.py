@@ -1,0 +1,5 @@
+"""Loads of shed snow on structures: simulated, by hand, and by the rules of standards."""
+
+import lazy_loader as _lazy
+
+__getattr__, __dir__, __all__ = _lazy.attach_stub(__name__, __file__)

@@ -1,0 +1,273 @@
+"""The page of loads, loads.html, and the table of the largest loads beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Optional
+
+import numpy as np
+
+from snowshed.analysis.loads.landing import landing
+from snowshed.analysis.loads.peak_errors import peak_error_sentence
+from snowshed.analysis.loads.reach import SHARES, distance_passed_by
+from snowshed.analysis.loads.rules import Rule, RuleInputs, rules
+from snowshed.analysis.loads.structures import WINDOWS, structure_loads
+from snowshed.base.formatting import percent
+from snowshed.io.atomic import write_text
+from snowshed.io.csv_table import write_csv
+from snowshed.plot.html_page import HtmlTable, Picture, template
+from snowshed.scene.panel_edge import ground_tilt, panel_edge
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from snowshed.results.reader import Results
+
+PAGE, TABLE = "loads.html", "largest_loads.csv"
+#: Obstacles that carry the snow in any scene; a sentence prefers the others.
+CARRIERS = ("ground", "panel", "domain")
+#: The balance of momentum may leave this share of the largest impulse without a word.
+MAX_UNBALANCED = 0.02
+
+
+def write_loads(
+    results: Sequence[Results], folder: Path, inputs: Optional[RuleInputs] = None
+) -> Path:
+    """Write loads.html and largest_loads.csv for one run, or for several designs.
+
+    Parameters
+    ----------
+    results
+        Results of runs with ``output.forces``.
+    folder
+        Folder of the page.
+    inputs
+        Inputs of the rules. [default: none]
+
+    Returns
+    -------
+    Path
+        The page.
+
+    Raises
+    ------
+    MissingResultError
+        If a run did not record forces.
+    """
+    import pandas as pd
+
+    designs = [Design(run) for run in results]
+    several = len(designs) > 1
+    table = pd.concat(
+        [
+            design.largest.assign(design=design.name) if several else design.largest
+            for design in designs
+        ],
+        ignore_index=True,
+    )
+    folder.mkdir(parents=True, exist_ok=True)
+    write_csv(table, folder / TABLE, float_format="%.6g")
+    page = template("snowshed.plot", "loads.html.j2").render(
+        title="Loads of the snow",
+        sentence=" ".join(design.sentence(named=several) for design in designs),
+        warnings=list(dict.fromkeys(text for design in designs for text in design.warnings)),
+        comparison=_comparison(designs) if several else None,
+        designs=[design.section(inputs or RuleInputs(), named=several) for design in designs],
+        assumptions=ASSUMPTIONS,
+        table=TABLE,
+    )
+    write_text(folder / PAGE, page)
+    return folder / PAGE
+
+
+ASSUMPTIONS = (
+    "Forces act from the snow on the obstacle. x points in the slide direction, z upwards.",
+    "A peak is the largest mean over the named time. A structure answers to it by its own period: "
+    "a beam of 20 Hz hardly notices 1 ms.",
+    "The snow is the snow of the scene. Wet or icy snow, and blocks of ice, hit harder.",
+    "Obstacles are rigid and stand still. A beam that yields receives a smaller peak.",
+    "Creep and settling over weeks are not simulated. A lower edge that is buried is pulled down by "
+    "settling snow; no rule for it was found that could be read in its source, so none is given.",
+)
+
+
+class Design:
+    """The loads of one run."""
+
+    def __init__(self, results: Results) -> None:
+        self.results, self.scene = results, results.scene.data
+        self.loads: pd.DataFrame = results.loads
+        self.largest = structure_loads(self.loads)
+        self.per = "/m" if self.scene["dimension"] == 2 else ""
+        self.name = str(self.scene.get("title") or results.folder.name)
+
+    def sentence(self, *, named: bool) -> str:
+        """Return the largest loads on the most loaded structure in a sentence."""
+        structures = self.largest[~self.largest["obstacle"].isin(CARRIERS)]
+        row = (structures if len(structures) else self.largest).sort_values("peak_10ms_n").iloc[-1]
+        start = f"{self.name}: the" if named else "The"
+        return (
+            f"{start} snow loads {row['obstacle']} with {self._kn(row['peak_10ms_n'])} for "
+            f"10 ms, and with {self._kn(row['rest_n'])} at rest."
+        )
+
+    @property
+    def warnings(self) -> list[str]:
+        """What limits the loads, a sentence each."""
+        found = [peak_error_sentence(self.scene)]
+        if (self.loads["at_rest"] == 0).any():
+            found.append(
+                "An event ended at its time limit: its loads at rest are those of snow that moves."
+            )
+        share = self._unbalanced_share()
+        if share > MAX_UNBALANCED:
+            found.append(
+                f"The impulses of obstacles and gravity leave {percent(share)} of the largest "
+                "impulse unexplained: the method itself changes the momentum by that much."
+            )
+        return found
+
+    def _unbalanced_share(self) -> float:
+        from snowshed.results.obstacle_forces import UNBALANCED
+
+        forces = self.results.forces
+        impulse = (forces.force * forces.duration).sum("time")
+        sizes = np.linalg.norm(impulse.to_numpy(), axis=-1)
+        names = impulse.obstacle.to_numpy().tolist()
+        at = names.index(UNBALANCED)
+        most = max((size for place, size in enumerate(sizes) if place != at), default=0.0)
+        return float(sizes[at] / most) if most > 0.0 else 0.0
+
+    def section(self, inputs: RuleInputs, *, named: bool) -> dict[str, Any]:
+        """Return the section of the page."""
+        return {
+            "title": self.name if named else None,
+            "loads": self._load_grid(),
+            "forces": self._forces_picture(),
+            "pressures": self._pressures_picture(),
+            "landing": self._landing_grid(),
+            "reach": self._reach_grid(),
+            "rules": self._rule_grid(inputs),
+        }
+
+    def _kn(self, newtons: float) -> str:
+        return f"{newtons / 1000:.3g} kN{self.per}"
+
+    def _load_grid(self) -> HtmlTable:
+        rows = []
+        for row in self.largest.to_dict("records"):
+            peaks = [f"{row[f'peak_{window}ms_n'] / 1000:.3g}" for window in WINDOWS]
+            rows.append(
+                (
+                    row["obstacle"],
+                    f"{row['rest_n'] / 1000:.3g}",
+                    f"{row['rest_fx_n'] / 1000:.3g}",
+                    f"{-row['rest_fz_n'] / 1000:.3g}",
+                    *peaks,
+                    f"{row['rest_pressure_pa'] / 1000:.3g}",
+                    f"{row['peak_pressure_pa'] / 1000:.3g}",
+                )
+            )
+        head = (
+            "on", "in all", "along x", "down", *(f"{window} ms" for window in WINDOWS),
+            "at rest", "10 ms",
+        )  # fmt: skip
+        groups = (
+            ("", 1), (f"at rest, kN{self.per}", 3), (f"peaks, kN{self.per}", 3), ("pressure, kPa", 2)
+        )  # fmt: skip
+        return HtmlTable(head, rows, "l" + "r" * (len(head) - 1), groups)
+
+    def _forces_picture(self) -> Picture:
+        from snowshed.plot.forces_figure import forces_figure
+
+        return Picture.drawn(
+            forces_figure(self.results.forces, self.scene), f"forces-{self.name}",
+            "Forces over time", "All rows are in forces.csv.",
+        )  # fmt: skip
+
+    def _pressures_picture(self) -> Optional[Picture]:
+        from snowshed.plot.forces_figure import pressures_figure
+
+        if self.scene["dimension"] != 2:
+            return None  # the faces are in pressures/, for ParaView
+        edge = float(self.loads["patch_m"].iloc[0])
+        return Picture.drawn(
+            pressures_figure(self.results.pressures, self.scene), f"pressures-{self.name}",
+            "Pressures on faces", f"Means over patches of {100 * edge:.3g} cm, last event.",
+        )  # fmt: skip
+
+    def _landing_grid(self) -> Optional[HtmlTable]:
+        """Return the free flight of the first, the middle and the last snow of the slab."""
+        panel = self.scene.get("panel")
+        if not panel:
+            return None
+        rows = []
+        for part, label in ((0.0, "at the edge"), (0.5, "halfway up"), (1.0, "at the upper end")):
+            flight = landing(
+                part * panel["length"], panel["tilt"], panel["friction"],
+                panel["height"], self.scene["gravity"], ground_tilt(self.scene),
+            )  # fmt: skip
+            rows.append(
+                (
+                    label,
+                    f"{flight.edge_speed:.1f}",
+                    f"{flight.distance:.2f}",
+                    f"{flight.speed:.1f}",
+                    f"{flight.angle:.0f}",
+                )
+            )
+        head = ("snow that lay", "speed at the edge, m/s", "lands at, m", "at, m/s", "degrees down")
+        return HtmlTable(head, rows, "lrrrr")
+
+    def _reach_grid(self) -> Optional[HtmlTable]:
+        """Return the distances from the edge beyond which shares of each event's snow rest."""
+        if not self.scene.get("panel"):
+            return None
+        edge, rows = panel_edge(self.scene), []
+        particles = self.results.particles()
+        for event in np.unique(particles.event.to_numpy()):
+            of_event = particles.event.to_numpy() == event
+            distances = particles.position.to_numpy()[of_event, 0] - edge.x
+            masses = particles.mass.to_numpy()[of_event]
+            far = [distance_passed_by(share, distances, masses) for share in SHARES]
+            rows.append((f"{event}", *(f"{x:.2f}" for x in far), f"{distances.max():.2f}"))
+        head = ("event", *(f"{percent(share)} beyond, m" for share in SHARES), "farthest, m")
+        return HtmlTable(head, rows, "r" * len(head))
+
+    def _rule_grid(self, inputs: RuleInputs) -> Optional[HtmlTable]:
+        panel = self.scene.get("panel")
+        if not panel:
+            return None
+        rows = [_rule_row(rule) for rule in rules(panel["length"], panel["tilt"], inputs)]
+        head = ("load", "value", "clause", "formula and inputs", "where it ends", "read in")
+        return HtmlTable(head, rows, "lrllll")
+
+
+def _rule_row(rule: Rule) -> tuple[str, ...]:
+    value = (
+        f"{rule.value:.2f} {rule.unit}"
+        if rule.value is not None
+        else (f"needs {', '.join(rule.missing)}")
+    )
+    return (
+        rule.name, value, rule.clause, f"{rule.formula}; {rule.inputs}", rule.limits, rule.source
+    )  # fmt: skip
+
+
+def _comparison(designs: Sequence[Design]) -> HtmlTable:
+    """Return the largest loads of several designs beside each other."""
+    names = list(dict.fromkeys(name for design in designs for name in design.largest["obstacle"]))
+    rows = []
+    for name in names:
+        cells = []
+        for design in designs:
+            of_name = design.largest[design.largest["obstacle"] == name]
+            cells.append(_both(of_name.iloc[0]) if len(of_name) else "")
+        rows.append((name, *cells))
+    head = ("on", *(design.name for design in designs))
+    return HtmlTable(head, rows, "l" + "r" * len(designs))
+
+
+def _both(row: Mapping[str, Any]) -> str:
+    return f"{row['peak_10ms_n'] / 1000:.3g} (10 ms), {row['rest_n'] / 1000:.3g} (rest)"
