@@ -112,7 +112,7 @@ py::dict obstacle_forces(const run::Simulation& sim) {
   return d;
 }
 
-py::dict pressures(const run::Simulation& sim) {
+py::dict face_pressures(const run::Simulation& sim) {
   force_history(sim);
   const run::Simulation::Pressures p = sim.pressures();
   std::vector<Vec3> corners;
@@ -300,7 +300,7 @@ void bind_facts(SimulationClass& c) {
     return named_table(force_history(s).loads(), force_history(s).names());
   });
   c.reads("obstacle_forces", &obstacle_forces);
-  c.reads("pressures", &pressures);
+  c.reads("face_pressures", &face_pressures);
   c.reads("panel_frame", &frame);
   c.reads("obstacle_distance", &distances_at<&run::Simulation::obstacle_distance>, "points"_a);
   c.reads("resolved_distance", &distances_at<&run::Simulation::resolved_distance>, "points"_a);

@@ -42,7 +42,7 @@ def test_a_damaged_file_is_not_a_missing_attribute(tmp_path):
 
 def test_a_simulation_has_no_results_of_other_methods():
     simulation = Simulation(tiny_scene())
-    for name in ("maps", "curve", "forces"):
+    for name in ("maps", "curve"):
         assert not hasattr(simulation, name)
     with pytest.raises(InputError, match='the method "mpm" has no maps'):
         _ = simulation.maps

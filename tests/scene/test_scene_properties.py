@@ -29,6 +29,7 @@ from snowshed import (
 )
 from snowshed.cli.main import main
 from snowshed.cli.options.scene import option_name
+from snowshed.running.scene_notes import notes_of_beginning
 from snowshed.scene.schema import Parameter, scene_parameters
 
 # The same examples in every run, so that failures can be repeated.
@@ -294,7 +295,9 @@ def test_options_make_the_same_scene_as_sets_or_the_same_error(sets):
     assume("GB of memory" not in errors.getvalue())  # the free memory changes between runs
     try:
         scene.update(dict(sets))
-        expected = scene.resolve().json
+        resolved = scene.resolve()
+        notes_of_beginning(resolved)  # the command refuses misplaced snow, too
+        expected = resolved.json
     except InputError as error:
         assert code == 2
         assert " ".join(str(error).split()).partition(":")[2] in errors.getvalue()

@@ -299,7 +299,7 @@ def test_a_page_without_marks_is_refused():
 
 AREAS = {
     *("material", "transfer", "contact", "time step", "sleep", "seeding", "events"),
-    *("measures", "post-processing", "scheme", "clearance", "plants"),
+    *("measures", "post-processing", "scheme", "clearance", "plants", "forces"),
 }
 
 

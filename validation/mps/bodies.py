@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from typing import Optional
 
 from snowshed.analysis.accuracy.measurements import CaseSettings
+from snowshed.base.json_values import JsonValue
 from snowshed.methods.mps.settings import MpsSettings
 from snowshed.scene.components import Body, Events, Obstacle
 from snowshed.scene.scene import Scene
@@ -43,6 +45,7 @@ def mps_driver(
     bodies: Sequence[Body],
     settings: CaseSettings,
     case_settings: Collection[str] = (),
+    scene_settings: Optional[Mapping[str, JsonValue]] = None,
 ) -> TimedEventDriver:
     """Return a driver for a fluid with a case's settings, on one thread."""
     scene = Scene(
@@ -53,4 +56,5 @@ def mps_driver(
     for name, value in settings.items():
         if name not in case_settings:
             scene.set(f"numerics.{name}", value)
+    scene.update(dict(scene_settings or {}))
     return TimedEventDriver(scene)

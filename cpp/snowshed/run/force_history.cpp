@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "snowshed/core/errors.hpp"
+#include "snowshed/core/message_format.hpp"
 #include "snowshed/methods/archive.hpp"
 #include "snowshed/methods/capabilities.hpp"
 #include "snowshed/run/record_times.hpp"
@@ -25,9 +26,7 @@ std::vector<std::string> force_columns(const std::string& prefix) {
   return columns;
 }
 
-void append(std::vector<double>& row, const Vec3& v) {
-  row.insert(row.end(), {v[0], v[1], v[2]});
-}
+void append(std::vector<double>& row, const Vec3& v) { row.insert(row.end(), {v[0], v[1], v[2]}); }
 
 /// The numbers of `force_columns`.
 void append(std::vector<double>& row, const methods::ContactImpulse& force,
@@ -46,22 +45,27 @@ std::string peak_prefix(double window) {
   return name;
 }
 
+/// A name as a cell. A spreadsheet would compute a name that begins like a formula.
+std::string csv_cell(const std::string& given) {
+  std::string name = printable(given);
+  if (!name.empty() && std::string("=+-@\t\r").find(name.front()) != std::string::npos)
+    name = "'" + name;
+  if (name.find_first_of(",\"\n\r") == std::string::npos) return name;
+  std::string text = "\"";
+  for (const char c : name) text += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return text + "\"";
+}
+
 std::string csv_of(const NumberTable& table, const std::vector<std::string>& names) {
   std::string csv;
   for (std::size_t c = 0; c < table.columns.size(); ++c)
     csv += (c > 0 ? "," : "") + table.columns[c];
   csv += "\n";
-  const auto quoted = [](const std::string& name) {
-    if (name.find_first_of(",\"\n\r") == std::string::npos) return name;
-    std::string text = "\"";
-    for (const char c : name) text += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return text + "\"";
-  };
   for (std::size_t i = 0; i < table.values.size(); ++i) {
     const std::size_t c = i % table.columns.size();
     if (c > 0) csv += ",";
     if (table.columns[c] == "obstacle") {
-      csv += quoted(names[std::size_t(table.values[i])]);
+      csv += csv_cell(names[std::size_t(table.values[i])]);
     } else {
       char number[32];
       std::snprintf(number, sizeof number, "%.9g", table.values[i]);
@@ -83,9 +87,9 @@ ForceHistory::ForceHistory(const methods::Method& method, double interval) : int
   for (std::string& column : force_columns("")) forces_.columns.push_back(std::move(column));
   loads_.columns = {"event", "obstacle", "at_rest"};
   for (std::string& column : force_columns("rest_")) loads_.columns.push_back(std::move(column));
-  for (const methods::RunningMean& mean : methods::ObstacleForce().means)
+  for (std::size_t k = 0; k < methods::RunningMeans::windows.size(); ++k)
     for (const char* name : {"n", "fx_n", "fy_n", "fz_n", "time_s"})
-      loads_.columns.push_back(peak_prefix(mean.window()) + name);
+      loads_.columns.push_back(peak_prefix(methods::RunningMeans::window(k)) + name);
   for (const char* name : {"impulse_x_ns", "impulse_y_ns", "impulse_z_ns", "peak_pressure_pa",
                            "peak_pressure_time_s", "patch_m"})
     loads_.columns.emplace_back(name);
@@ -142,10 +146,11 @@ void ForceHistory::add_loads(const methods::KeepsForces& method) {
   for (std::size_t i = 0; i < record.names().size(); ++i) {
     std::vector<double> row{double(event_), double(i), double(at_rest_)};
     append(row, resting.forces[i].force, resting.forces[i].pressed);
-    for (const methods::RunningMean& mean : record.forces()[i].means) {
-      row.push_back(mean.peak().norm());
-      append(row, mean.peak());
-      row.push_back(mean.peak_time());
+    const methods::RunningMeans& means = record.forces()[i].means;
+    for (std::size_t k = 0; k < means.windows.size(); ++k) {
+      row.push_back(means.peak(k).norm());
+      append(row, means.peak(k));
+      row.push_back(means.peak_time(k));
     }
     append(row, (before_[i] - at_begin_[i]).total());
     row.insert(row.end(), {highest[i] ? highest[i]->peak : 0.0,

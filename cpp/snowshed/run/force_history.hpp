@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "snowshed/methods/forces/obstacle_forces.hpp"
 #include "snowshed/methods/method.hpp"
+#include "snowshed/methods/obstacle_forces.hpp"
 
 namespace snowshed::run {
 

@@ -130,9 +130,9 @@ class Simulation {
   /// The pressures on the faces of obstacles after an event, at rest and at their largest, with the
   /// faces where they are now.
   struct Pressures {
-    std::vector<std::array<double, 3>> corners;  // m, of one patch after the other
-    std::size_t per_patch = 0;                   // number of corners
-    std::vector<std::int32_t> obstacle;          // place in the names of the history
+    std::vector<std::array<double, 3>> corners;       // m, of one patch after the other
+    std::size_t per_patch = 0;                        // number of corners
+    std::vector<std::int32_t> obstacle;               // place in the names of the history
     std::vector<double> area, rest, peak, peak_time;  // m2, Pa, Pa, s
   };
   Pressures pressures() const;

@@ -3,6 +3,7 @@ from . import calibration as calibration
 from . import clearance as clearance
 from . import grains as grains
 from . import hazard as hazard
+from . import loads as loads
 from . import regression as regression
 from . import sensitivity as sensitivity
 from . import tomography as tomography

@@ -17,6 +17,7 @@ from snowshed.io.film import Film
 from snowshed.plot.film_picture import still_picture, view_lift
 from snowshed.plot.film_summary import Colouring, FilmSummary, summarise_film
 from snowshed.plot.html_page import HtmlTable, template
+from snowshed.plot.pressed_faces import PressurePicture
 from snowshed.plot.solids import Box, Solid
 
 VIEWER = Path(__file__).with_name("viewer")
@@ -53,6 +54,8 @@ class ViewContent:
         The measures of all events.
     events
         Number of events.
+    pressures
+        Pressures on faces; None without any.
     """
 
     title: str
@@ -64,6 +67,7 @@ class ViewContent:
     measures: Sequence[MeasureLine] = field(default_factory=tuple)
     table: Optional[HtmlTable] = None
     events: int = 1
+    pressures: Optional[PressurePicture] = None
 
 
 def write_view_page(file: Path, film: Film, content: ViewContent) -> None:
@@ -97,6 +101,7 @@ def write_view_page(file: Path, film: Film, content: ViewContent) -> None:
         section=not flat,
         flat=flat,
         measured=bool(content.measures),
+        pressed=content.pressures is not None,
     )
     write_text(file, text)
 
@@ -110,6 +115,7 @@ def _data(film: Film, summary: FilmSummary, content: ViewContent) -> dict[str, A
         "lift": view_lift(content.solids),
         "events": content.events,
         "meshes": [solid.data for solid in content.solids],
+        "pressures": None if content.pressures is None else content.pressures.data,
         "colourings": [_colouring(colouring) for colouring in summary.colourings],
         "measures": [
             {

@@ -31,17 +31,14 @@ def forces_figure(forces: xarray.Dataset, scene: Mapping[str, Any]) -> Figure:
     Parameters
     ----------
     forces
-        As from `Results.forces`.
+        As from `Results.forces`, of obstacles alone.
     scene
         Complete scene data, as in scene.json.
     """
-    from snowshed.results.obstacle_forces import UNBALANCED
-
     two = scene.get("dimension") == 2
     largest = {
         str(name): float(np.linalg.norm(forces.force.sel(obstacle=name), axis=-1).max(initial=0.0))
         for name in forces.obstacle.to_numpy()
-        if name != UNBALANCED
     }
     most = max(largest.values(), default=0.0)
     drawn = [name for name, force in largest.items() if force > MIN_SHARE * most][:MAX_DIAGRAMS]

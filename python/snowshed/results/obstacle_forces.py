@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any, Optional, TypedDict
 
 import numpy as np
+from numpy.typing import NDArray
 
 import snowshed._core as _core
 from snowshed._core import InputError
+from snowshed.base.arrays import Floats
 from snowshed.base.extras import require
 from snowshed.base.missing_result import MissingResultError
 from snowshed.base.units import with_units
@@ -43,6 +45,36 @@ SCALARS = {
 }
 
 
+class FacePressures(TypedDict):
+    """Pressures on the patches of faces.
+
+    Attributes
+    ----------
+    corners : (n, k, 3)
+        The corners of each patch, m: k is 2 in 2D and 4 in 3D.
+    obstacle : (n,)
+        Names of the obstacles.
+    area : (n,)
+        Areas, m2; in 2D m per metre of width.
+    rest_pressure, peak_pressure : (n,)
+        Pressure at rest, and the largest mean over 10 ms, Pa.
+    peak_time : (n,)
+        Ends of the windows of the peaks, s.
+    """
+
+    corners: Floats
+    obstacle: NDArray[np.str_]
+    area: Floats
+    rest_pressure: Floats
+    peak_pressure: Floats
+    peak_time: Floats
+
+
+def on_obstacles(forces: xarray.Dataset) -> xarray.Dataset:
+    """Return the forces on obstacles, without the change of momentum that is unexplained."""
+    return forces.sel(obstacle=forces.obstacle != UNBALANCED)
+
+
 def read_forces(folder: Path) -> xarray.Dataset:
     """Read the forces of a run over time, from forces.csv.
 
@@ -63,7 +95,7 @@ def read_forces(folder: Path) -> xarray.Dataset:
     library = require("xarray", "study", "a Dataset of forces")
     names = list(dict.fromkeys(table["obstacle"]))
     if len(table) % max(len(names), 1) or (
-        len(names) and table["obstacle"].tolist() != names * (len(table) // len(names))
+        names and table["obstacle"].tolist() != names * (len(table) // len(names))
     ):
         raise InputError(f"{folder / FORCES}: damaged: its rows are not those of all obstacles")
     first = table.iloc[:: max(len(names), 1)]
@@ -73,11 +105,11 @@ def read_forces(folder: Path) -> xarray.Dataset:
         "duration": ("time", first["duration_s"].to_numpy(float)),
     }
     for name, (column, _, _) in VECTORS.items():
-        values = table[[column.format(axis) for axis in AXES]].to_numpy(float)
-        variables[name] = (("time", "obstacle", "component"), values.reshape(times, -1, 3))
+        vectors = table[[column.format(axis) for axis in AXES]].to_numpy(float)
+        variables[name] = (("time", "obstacle", "component"), vectors.reshape(times, -1, 3))
     for name, (column, _, _) in SCALARS.items():
-        values = table[column].to_numpy(float)
-        variables[name] = (("time", "obstacle"), values.reshape(times, -1))
+        numbers = table[column].to_numpy(float)
+        variables[name] = (("time", "obstacle"), numbers.reshape(times, -1))
     coordinates = {"time": first["time_s"].to_numpy(float), "obstacle": names}
     dataset: xarray.Dataset = library.Dataset(variables, {**coordinates, "component": list(AXES)})
     for name, (_, unit, meaning) in {**VECTORS, **SCALARS}.items():
@@ -105,7 +137,18 @@ def read_loads(folder: Path) -> pd.DataFrame:
     return with_units(_table(folder, LOADS, ("event", "obstacle", "at_rest", "rest_fz_n")))
 
 
-def read_pressures(folder: Path, event: Optional[int] = None) -> dict[str, Any]:
+def pressed_events(folder: Path) -> list[int]:
+    """Return the numbers of the events with pressures on faces."""
+    return [event for event, _ in _pressure_files(folder)]
+
+
+def _pressure_files(folder: Path) -> list[tuple[int, Path]]:
+    files = (folder / "pressures").glob("event_*.vtp")
+    numbered = ((file.stem.removeprefix("event_"), file) for file in files)
+    return sorted((int(number), file) for number, file in numbered if number.isdecimal())
+
+
+def read_pressures(folder: Path, event: Optional[int] = None) -> FacePressures:
     """Read the pressures on faces after an event.
 
     Parameters
@@ -117,37 +160,41 @@ def read_pressures(folder: Path, event: Optional[int] = None) -> dict[str, Any]:
 
     Returns
     -------
-    dict
-        ``corners`` (n, k, 3), m: the k corners of each patch; ``obstacle`` (n,): the names;
-        ``area`` (n,), m2; ``rest_pressure`` and ``peak_pressure`` (n,), Pa; ``peak_time`` (n,), s.
+    FacePressures
+        The pressures.
 
     Raises
     ------
     MissingResultError
-        If there are none.
+        If the run wrote no pressures.
     InputError
         If the file is damaged.
     """
     from snowshed.io.vtk.vtp import read_cells
 
-    files = sorted((folder / "pressures").glob("event_*.vtp"))
-    wanted = [file for file in files if event is None or int(file.stem[-3:]) == event]
+    files = _pressure_files(folder)
+    wanted = [file for number, file in files if event in (None, number)]
     if not wanted:
         raise MissingResultError(
             f"{folder / 'pressures'}: no pressures; a run with output.forces = true writes them"
         )
     points, arrays = read_cells(wanted[-1])
+    if lacking := {*FacePressures.__annotations__} - {"corners", *arrays}:
+        raise InputError(f"{wanted[-1]}: damaged: has no {', '.join(sorted(lacking))}")
     count = len(arrays["area"])
     if not count or len(points) % count:
         raise InputError(f"{wanted[-1]}: damaged: its faces differ in their number of corners")
     names = list(dict.fromkeys(read_loads(folder)["obstacle"]))
-    places = arrays["obstacle"]
-    if places.min() < 0 or places.max() >= len(names):
+    indices = arrays["obstacle"]
+    if indices.min() < 0 or indices.max() >= len(names):
         raise InputError(f"{wanted[-1]}: damaged: a face belongs to no obstacle")
     return {
         "corners": points.reshape(count, -1, 3),
-        **arrays,
-        "obstacle": np.array(names)[places],
+        "obstacle": np.array(names)[indices],
+        "area": arrays["area"],
+        "rest_pressure": arrays["rest_pressure"],
+        "peak_pressure": arrays["peak_pressure"],
+        "peak_time": arrays["peak_time"],
     }
 
 

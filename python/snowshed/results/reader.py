@@ -28,6 +28,7 @@ from snowshed.results.film import film_dataset, run_film
 from snowshed.results.folder import ENERGY, EVENTS, read_events
 from snowshed.results.grid import grid_dataset, stored_grid
 from snowshed.results.method_results import MethodResults
+from snowshed.results.obstacle_forces import FacePressures
 from snowshed.results.particle_dataset import particle_dataset
 from snowshed.scene.scene import ResolvedScene
 from snowshed.snow.stack.measure import StackMeasure
@@ -222,13 +223,9 @@ class Results(MethodResults):
         return cast("pd.DataFrame", self.result("loads"))
 
     @property
-    def pressures(self) -> Mapping[str, Any]:
-        """The pressures on the faces of obstacles after the last event (``pressures/``).
-
-        ``corners`` (n, k, 3), ``obstacle``, ``area``, ``rest_pressure``, ``peak_pressure`` and
-        ``peak_time`` (n,) of the n patches; see `snowshed.results.obstacle_forces.read_pressures`.
-        """
-        return cast("Mapping[str, Any]", self.result("pressures"))
+    def pressures(self) -> FacePressures:
+        """The pressures on the faces of obstacles after the last event (``pressures/``)."""
+        return cast("FacePressures", self.result("pressures"))
 
     @property
     def summary(self) -> Summary:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
 
@@ -16,8 +16,10 @@ from snowshed.plot.caption import scene_caption
 from snowshed.plot.film_page import MeasureLine, ViewContent, write_view_page
 from snowshed.plot.film_summary import summarise_film
 from snowshed.plot.html_page import HtmlTable
-from snowshed.plot.solids import scene_solids
+from snowshed.plot.pressed_faces import PressurePicture, pressure_picture
+from snowshed.plot.solids import Box, Solid, scene_solids
 from snowshed.results.folder import read_events
+from snowshed.results.obstacle_forces import pressed_events, read_pressures
 from snowshed.results.reader import Results
 from snowshed.results.season_folder import SeasonFolder
 from snowshed.scene.panel_edge import ground_tilt
@@ -85,16 +87,18 @@ def view_content(results: Results, film: Film) -> ViewContent:
     solids, focus = scene_solids(scene, bounds, terrain)
     table = _events(results)
     lines = [] if table is None else _measures(data, table, results.folder, float(bounds.low[1]))
+    pressures = _pressures(results.folder, solids, focus)
     return ViewContent(
         title=data.get("title") or method_of(data).title,
         sentence=_sentence(data, table, film),
         facts=_facts(scene, results.folder),
         solids=solids,
         focus=focus,
-        notes=_notes(results, film),
+        notes=[*_notes(results, film), *([] if pressures is None else pressures.notes)],
         measures=lines,
         table=_table(table),
         events=int(data["events"]["count"]),
+        pressures=pressures,
     )
 
 
@@ -202,6 +206,13 @@ def _profiles(folder: Path) -> dict[int, np.ndarray]:
         return {}
     table = Results(folder).outline
     return {int(str(event)): rows[["x", "z"]].to_numpy() for event, rows in table.groupby("event")}
+
+
+def _pressures(folder: Path, solids: Sequence[Solid], focus: Box) -> Optional[PressurePicture]:
+    """Return the pressures on faces, if the run recorded forces."""
+    events = reversed(pressed_events(folder))
+    tables = ((event, read_pressures(folder, event)) for event in events)
+    return pressure_picture(tables, solids, float(focus.size.max()))
 
 
 def _table(table: Optional[pd.DataFrame]) -> Optional[HtmlTable]:

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable, Mapping
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, ClassVar, Optional
 
@@ -144,6 +145,18 @@ class StackRun(MethodRun):
         save_figure(stack_figure(self.simulation, stack, data), self.results.stack_picture)
         save_figure(growth_figure(read_events(self.folder), data), self.results.growth_picture)
         self.draw_energies()
+        self._draw_forces()
+
+    def _draw_forces(self) -> None:
+        """Draw the forces over time, if they are recorded and xarray is installed."""
+        if not self.scene.data["output"]["forces"] or find_spec("xarray") is None:
+            return
+        from snowshed.plot.figure_style import save_figure
+        from snowshed.plot.forces_figure import forces_figure
+        from snowshed.results.obstacle_forces import on_obstacles, read_forces
+
+        figure = forces_figure(on_obstacles(read_forces(self.folder)), self.scene.data)
+        save_figure(figure, self.folder / "forces.png")
 
     @classmethod
     def rows(cls, folder: Path) -> list[dict[str, Cell]]:

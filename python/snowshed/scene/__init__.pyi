@@ -1,5 +1,8 @@
 from .builders.avaframe.project import avaframe_scene as avaframe_scene
 from .builders.grains import grains_scene as grains_scene
+from .builders.in_front import lower_roof as lower_roof
+from .builders.in_front import post as post
+from .builders.in_front import wall as wall
 from .builders.meshes import mesh_structure as mesh_structure
 from .builders.panels import panel_rows as panel_rows
 from .builders.panels import panel_table as panel_table

@@ -107,6 +107,10 @@ Contacts<T, D> Contacts<T, D>::gathered(const Boundary<T, D>& boundary,
     all.contacts_.insert(all.contacts_.end(), block.contacts.begin(), block.contacts.end());
     all.forces_.insert(all.forces_.end(), block.forces.begin(), block.forces.end());
     all.first_.push_back(all.contacts_.size());
+    if (!boundary.records_forces()) continue;
+    const bool one = !block.contacts.empty() &&
+                     block.contacts.front().obstacle == block.contacts.back().obstacle;
+    all.only_.push_back(block.contacts.empty() ? -1 : one ? block.contacts.front().obstacle : -2);
   }
   return all;
 }
@@ -115,16 +119,16 @@ template <class T, int D>
 Contacts<T, D> Contacts<T, D>::relocated(const Boundary<T, D>& boundary,
                                          const std::vector<BlockKey>& grid_blocks, double time,
                                          int threads) const {
-  return gathered(boundary, grid_blocks, threads, [&](std::size_t b, OfBlock& found) {
+  return gathered(boundary, grid_blocks, threads, [&](std::size_t b, OfBlock& of_block) {
     const auto old = std::lower_bound(blocks_.begin(), blocks_.end(), grid_blocks[b]);
     if (old != blocks_.end() && *old == grid_blocks[b]) {
       const auto begin = std::ptrdiff_t(first_[std::size_t(old - blocks_.begin())]);
       const auto end = std::ptrdiff_t(first_[std::size_t(old - blocks_.begin()) + 1]);
-      found.contacts.assign(contacts_.begin() + begin, contacts_.begin() + end);
-      if (!forces_.empty()) found.forces.assign(forces_.begin() + begin, forces_.begin() + end);
+      of_block.contacts.assign(contacts_.begin() + begin, contacts_.begin() + end);
+      if (!forces_.empty()) of_block.forces.assign(forces_.begin() + begin, forces_.begin() + end);
     } else {
-      boundary.find(grid_blocks[b], time, false, found.contacts);
-      if (boundary.any_motion()) boundary.find(grid_blocks[b], time, true, found.contacts);
+      boundary.find(grid_blocks[b], time, false, of_block.contacts);
+      if (boundary.any_motion()) boundary.find(grid_blocks[b], time, true, of_block.contacts);
     }
   });
 }
@@ -132,25 +136,25 @@ Contacts<T, D> Contacts<T, D>::relocated(const Boundary<T, D>& boundary,
 template <class T, int D>
 void Contacts<T, D>::follow(const Boundary<T, D>& boundary, double time, int threads) {
   if (!boundary.any_motion()) return;
-  *this = gathered(boundary, blocks_, threads, [&](std::size_t b, OfBlock& found) {
+  *this = gathered(boundary, blocks_, threads, [&](std::size_t b, OfBlock& of_block) {
     const auto keep = [&](std::size_t old) {
-      found.contacts.push_back(contacts_[old]);
-      if (!forces_.empty()) found.forces.push_back(forces_[old]);
+      of_block.contacts.push_back(contacts_[old]);
+      if (!forces_.empty()) of_block.forces.push_back(forces_[old]);
     };
     for (std::size_t i = first_[b]; i < first_[b + 1]; ++i)
       if (!boundary.is_moving(contacts_[i])) keep(i);
-    const std::size_t still = found.contacts.size();
-    boundary.find(blocks_[b], time, true, found.contacts);
-    if (boundary.records_forces()) found.forces.resize(found.contacts.size());
-    for (std::size_t i = still; i < found.contacts.size(); ++i) {
-      Contact<T>& c = found.contacts[i];
+    const std::size_t still = of_block.contacts.size();
+    boundary.find(blocks_[b], time, true, of_block.contacts);
+    if (boundary.records_forces()) of_block.forces.resize(of_block.contacts.size());
+    for (std::size_t i = still; i < of_block.contacts.size(); ++i) {
+      Contact<T>& c = of_block.contacts[i];
       for (std::size_t old = first_[b]; old < first_[b + 1]; ++old) {
         const Contact<T>& before = contacts_[old];
         if (before.node != c.node || before.obstacle != c.obstacle) continue;
         c.normal_impulse = c.next_normal_impulse = before.next_normal_impulse;
         if (forces_.empty()) continue;
-        found.forces[i] = forces_[old];
-        found.forces[i].patch = -1;  // the obstacle has moved past the node
+        of_block.forces[i] = forces_[old];
+        of_block.forces[i].patch = -1;  // the obstacle has moved past the node
       }
     }
   });
@@ -165,14 +169,6 @@ void Contacts<T, D>::find_patches(const Boundary<T, D>& boundary, double time,
       const auto face = boundary.face_point(blocks_[b], contacts_[i], time);
       forces_[i].patch = pressures.patch_at(contacts_[i].obstacle, face.point, face.normal);
     }
-}
-
-template <class T, int D>
-void Contacts<T, D>::give_pushes(PressureMap& pressures) noexcept {
-  for (ContactForce<T>& force : forces_) {
-    if (force.patch >= 0) pressures.push(force.patch, double(force.pushed));
-    force.pushed = 0;
-  }
 }
 
 template <class T, int D>
@@ -235,11 +231,15 @@ std::vector<typename Contacts<T, D>::StoredForce> Contacts<T, D>::stored_forces(
   if (forces_.empty()) return stored;
   for (std::size_t b = 0; b < blocks_.size(); ++b)
     for (std::size_t i = first_[b]; i < first_[b + 1]; ++i) {
-      const ContactForce<T>& f = forces_[i];
-      if (f.age == T(0) && f.pushed == T(0)) continue;
-      stored.push_back({blocks_[b], contacts_[i].node, contacts_[i].obstacle,
+      ContactForce<T> f = forces_[i];
+      sum_impulse(f);
+      if (f.age == T(0) && f.sum[0] == T(0) && f.sum[1] == T(0) && f.sum[2] == T(0)) continue;
+      stored.push_back({blocks_[b],
+                        contacts_[i].node,
+                        contacts_[i].obstacle,
+                        {double(f.sum[0]), double(f.sum[1]), double(f.sum[2])},
                         {double(f.mean[0]), double(f.mean[1]), double(f.mean[2])},
-                        double(f.age), double(f.pushed)});
+                        double(f.age)});
     }
   return stored;
 }
@@ -248,9 +248,11 @@ template <class T, int D>
 void Contacts<T, D>::restore(const std::vector<StoredForce>& stored) {
   if (forces_.empty()) return;
   for_each_stored(stored, [&](std::size_t i, const StoredForce& d) {
-    for (int k = 0; k < 3; ++k) forces_[i].mean[k] = T(d.mean[std::size_t(k)]);
+    for (int k = 0; k < 3; ++k) {
+      forces_[i].sum[k] = T(d.sum[std::size_t(k)]);
+      forces_[i].mean[k] = T(d.mean[std::size_t(k)]);
+    }
     forces_[i].age = T(d.age);
-    forces_[i].pushed = T(d.pushed);
   });
 }
 

@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "snowshed/geometry/thickened.hpp"
-#include "snowshed/methods/forces/pressure_map.hpp"
 #include "snowshed/methods/mpm/block_layout.hpp"
 #include "snowshed/methods/obstacle.hpp"
+#include "snowshed/methods/pressure_map.hpp"
 
 namespace snowshed::methods::mpm {
 
@@ -90,8 +90,8 @@ class Boundary {
   /// rest.
   void find(BlockKey block, double time, bool moving, std::vector<Contact<T>>& contacts) const;
 
-  /// The point of an obstacle's surface that is nearest to a contact's node, and its outward normal,
-  /// in the frame of the obstacle.
+  /// The point of an obstacle's surface that is nearest to a contact's node, and its outward
+  /// normal, in the frame of the obstacle.
   struct FacePoint {
     Vec3 point, normal;
   };
@@ -149,8 +149,13 @@ class Contacts {
   }
   /// Finds the patch of each contact that has none.
   void find_patches(const Boundary<T, D>& boundary, double time, PressureMap& pressures);
-  /// Gives the pressure map the normal impulses that it has not yet received.
-  void give_pushes(PressureMap& pressures) noexcept;
+  /// Adds the impulses of the step that was just taken to the sums of a block's contacts.
+  void sum_impulses(std::size_t block) noexcept {
+    if (forces_.empty()) return;
+    for (std::size_t i = first_[block]; i < first_[block + 1]; ++i) sum_impulse(forces_[i]);
+  }
+  /// The only obstacle with contacts in a block; -1 if there is none, and -2 if there are several.
+  std::int32_t only_obstacle(std::size_t block) const { return only_[block]; }
 
   std::size_t size() const { return contacts_.size(); }
 
@@ -167,6 +172,9 @@ class Contacts {
   void reject(std::size_t block) {
     for (std::size_t i = first_[block]; i < first_[block + 1]; ++i)
       contacts_[i].next_normal_impulse = contacts_[i].normal_impulse;
+    if (forces_.empty()) return;
+    for (std::size_t i = first_[block]; i < first_[block + 1]; ++i)
+      std::fill_n(forces_[i].impulse, 4, T(0));
   }
 
   /// Finds the share of friction that remains for each obstacle: the sum of its stored impulses
@@ -188,8 +196,8 @@ class Contacts {
   struct StoredForce {
     BlockKey block;
     std::int32_t node, obstacle;
-    std::array<double, 3> mean;
-    double age, pushed;
+    std::array<double, 3> sum, mean;
+    double age;
   };
   std::vector<StoredForce> stored_forces() const;
   void restore(const std::vector<StoredForce>& stored_forces);
@@ -214,6 +222,7 @@ class Contacts {
   std::vector<std::size_t> first_{0};
   std::vector<Contact<T>> contacts_;
   std::vector<ContactForce<T>> forces_;  // one for each contact; empty if they are not recorded
+  std::vector<std::int32_t> only_;       // see `only_obstacle`; empty if forces are not recorded
 };
 
 }  // namespace snowshed::methods::mpm

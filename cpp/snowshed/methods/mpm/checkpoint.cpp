@@ -78,11 +78,13 @@ void visit_forces(Archive& archive, CheckpointParts<T, D>& stored, Record& recor
   using Force = typename Contacts<T, D>::StoredForce;
   archive.columns(stored.forces, column("forces/block", &Force::block),
                   column("forces/node", &Force::node), column("forces/obstacle", &Force::obstacle),
-                  column("forces/mean", &Force::mean), column("forces/age", &Force::age),
-                  column("forces/to_push", &Force::pushed));
-  archive.packed("forces/held", record.held, record.forces.names().size(),
-                 [](auto& held, const auto& number) { ContactImpulse::for_each_number(held, number); });
-  archive.numbers("forces/held_since", record.held_since);
+                  column("forces/sum", &Force::sum), column("forces/mean", &Force::mean),
+                  column("forces/age", &Force::age));
+  archive.packed(
+      "forces/held", record.held, record.forces.names().size(),
+      [](auto& held, const auto& number) { ContactImpulse::for_each_number(held, number); });
+  archive.numbers("forces/collected", record.collected);
+  archive.counts("forces/slept", record.slept);
 }
 
 /// Returns whether the blocks are in order and none is empty. A small file with many empty blocks
@@ -172,6 +174,7 @@ void SolverImpl<T, D>::read_forces(const io::BinaryReader& in, State<T, D>& next
     next.contacts.restore(stored.forces);
   } else {
     next.begin_balance();
+    next.forces->collected = next.totals.time;
   }
   next.contacts.find_patches(model_.boundary, next.totals.time, next.forces->forces.pressures());
 }

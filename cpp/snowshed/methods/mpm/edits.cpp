@@ -13,7 +13,7 @@ namespace {
 template <class T, int D>
 void add_to(State<T, D>& state, const Model<T, D>& model,
             const std::vector<ParticleBatch>& batches) {
-  state.end_balance();
+  state.end_balance(model);
   const bool energy = model.options.energy;
   const double before = energy ? state.energy(model).stored() : 0.0;
   std::vector<BlockKey> blocks = blocks_of_particles(state.layout);
@@ -46,8 +46,7 @@ void SolverImpl<T, D>::replace(const std::vector<ParticleBatch>& batches) {
   State<T, D> next(model_);
   next.totals = state_.totals;
   if (state_.forces) {
-    state_.give_pushes();
-    state_.end_balance();
+    state_.end_balance(model_);
     next.forces = state_.forces;
     next.begin_balance();
   }
@@ -65,7 +64,7 @@ void SolverImpl<T, D>::add_velocity(const std::vector<Vec3>& velocity_changes) {
   soundness_.require();
   const std::vector<std::uint32_t>& at = order_by_id();
   check_velocity_changes(velocity_changes, at.size());
-  state_.end_balance();
+  state_.end_balance(model_);
   // Nothing can fail from here on.
   const double before = model_.options.energy ? state_.kinetic_energy(model_) : 0.0;
   double fastest = 0;
@@ -103,7 +102,7 @@ void SolverImpl<T, D>::settle(const std::vector<double>& drops,
   const Settings& n = model_.options.settings;
   const double stored = model_.options.energy ? state_.energy(model_).stored() : 0.0;
   State<T, D> next = state_;
-  next.end_balance();
+  next.end_balance(model_);
   std::vector<BlockKey> blocks = blocks_of_particles(next.layout);
   for (std::size_t k = 0; k < at.size(); ++k) {
     const std::size_t i = at[k];

@@ -1,8 +1,8 @@
 // The record of the forces on obstacles.
 //
-// Each node's contact gives the snow an impulse, m (v - v_free), in each step; the obstacle receives
-// the opposite. Sleeping snow takes part in no step. Its contacts go on with their mean forces, and
-// what these lack to hold the snow in place follows from the balance of momentum.
+// Each node's contact gives the snow an impulse, m (v - v_free), in each step; the obstacle
+// receives the opposite. Sleeping snow takes part in no step. Its contacts go on with their mean
+// forces, and what these lack to hold the snow in place follows from the balance of momentum.
 #include <map>
 #include <numeric>
 #include <utility>
@@ -21,8 +21,8 @@ constexpr double mean_time = 0.05;
 /// vibrating snow leaves its contacts for moments.
 constexpr double forgetting = 0.25;
 
-template <class T, int D>
-Vec3 vector_of(const T (&values)[3]) {
+template <int D, class T, int size>
+Vec3 vector_of(const T (&values)[size]) {
   VecD<D> v;
   for (int d = 0; d < D; ++d) v[d] = double(values[d]);
   return embed(v);
@@ -32,31 +32,24 @@ Vec3 vector_of(const T (&values)[3]) {
 template <class T, int D>
 ContactImpulse mean_force(const BlockCoord<D>& block, const Contact<T>& c,
                           const ContactForce<T>& force, double dx) {
-  return ContactImpulse::at(embed(node_position<D>(block, c.node, dx)), vector_of<T, D>(c.normal),
-                            -vector_of<T, D>(force.mean));
+  return ContactImpulse::at(embed(node_position<D>(block, c.node, dx)), vector_of<D>(c.normal),
+                            -vector_of<D>(force.mean));
 }
 
 template <class T, int D>
 double mean_push(const Contact<T>& c, const ContactForce<T>& force) {
-  return vector_of<T, D>(force.mean).dot(vector_of<T, D>(c.normal));
+  return vector_of<D>(force.mean).dot(vector_of<D>(c.normal));
 }
 
-/// Updates the mean force and the normal impulse of a contact after a step.
+/// Moves the sum of a contact into its mean force over the last `duration` seconds.
 template <class T, int D>
-void update_mean(const Contact<T>& c, ContactForce<T>& force, T dt) {
-  bool empty = true;
-  T push = 0;
-  for (int d = 0; d < D; ++d) {
-    empty = empty && force.impulse[d] == T(0);
-    push += force.impulse[d] * c.normal[d];
-  }
-  force.pushed += push;
-  if (empty && force.age == T(0)) return;
-  const T share = dt / std::min(force.age + dt, T(mean_time));
-  for (int d = 0; d < D; ++d) force.mean[d] += share * (force.impulse[d] / dt - force.mean[d]);
+void update_mean(ContactForce<T>& force, bool empty, T duration) {
+  if (!(duration > T(0)) || (empty && force.age == T(0))) return;
+  const T share = duration / std::max(std::min(force.age + duration, T(mean_time)), duration);
+  for (int d = 0; d < D; ++d) force.mean[d] += share * (force.sum[d] / duration - force.mean[d]);
   if (!empty) {
-    force.age = std::min(force.age + dt, T(mean_time));
-  } else if ((force.age -= T(forgetting) * dt) <= T(0)) {
+    force.age = std::min(force.age + duration, T(mean_time));
+  } else if ((force.age -= T(forgetting) * duration) <= T(0)) {
     force.age = 0;
     std::fill_n(force.mean, D, T(0));
   }
@@ -167,12 +160,15 @@ void State<T, D>::begin_balance() noexcept {
 }
 
 template <class T, int D>
-void State<T, D>::end_balance() {
+void State<T, D>::end_balance(const Model<T, D>& model) {
   if (!forces) return;
+  collect_forces(model);
   const Vec3 left = forces->forces.end_balance(momentum());
-  if (sleep.awake().size() == sleep.states().size()) return forces->forces.leave_unbalanced(left);
-  // The obstacles below sleeping snow; where its nodes all touch awake snow, those that were pressed
-  // just now.
+  const bool slept = forces->slept;
+  forces->slept = false;
+  if (!slept) return forces->forces.leave_unbalanced(left);
+  // The obstacles below sleeping snow; where its nodes all touch awake snow, those that were
+  // pressed just now.
   std::vector<ContactImpulse> below = forces->held;
   const auto pushes_of = [](const std::vector<ContactImpulse>& all) {
     double sum = 0;
@@ -194,30 +190,77 @@ void State<T, D>::end_balance() {
 
 // --- the steps -----------------------------------------------------------------------------------
 
+/// Gives the sum of a contact to the record of forces.
 template <class T, int D>
-void State<T, D>::give_held_pushes(const std::vector<std::int32_t>& idle_blocks) noexcept {
-  const T held = T(totals.time - forces->held_since);
-  forces->held_since = totals.time;
-  if (!(held > T(0))) return;
-  for (const std::int32_t g : idle_blocks) {
-    const Contact<T>* contact = contacts.of_block(std::size_t(g));
-    ContactForce<T>* force = contacts.forces_of(std::size_t(g));
-    for (int k = 0; k < contacts.count(std::size_t(g)); ++k)
-      force[k].pushed += held * T(mean_push<T, D>(contact[k], force[k]));
-  }
+void collect(ObstacleForces& record, const BlockCoord<D>& block, const Contact<T>& c,
+             ContactForce<T>& force, double dx) {
+  const ContactImpulse impulse = ContactImpulse::at(
+      embed(node_position<D>(block, c.node, dx)), vector_of<D>(c.normal), -vector_of<D>(force.sum));
+  record.add(record.name_of(c.obstacle), impulse);
+  if (force.patch >= 0) record.pressures().push(force.patch, impulse.push);
+  std::fill_n(force.sum, 4, T(0));
+}
+
+template <class T>
+bool is_empty(const ContactForce<T>& force) {
+  return force.sum[0] == T(0) && force.sum[1] == T(0) && force.sum[2] == T(0);
 }
 
 template <class T, int D>
-void State<T, D>::give_pushes() noexcept {
-  give_held_pushes(sleep.idle());
-  contacts.give_pushes(forces->forces.pressures());
+void State<T, D>::collect_forces(const Model<T, D>& model,
+                                 const std::vector<std::int32_t>& idle) noexcept {
+  ObstacleForces& record = forces->forces;
+  const double duration = totals.time - forces->collected, dx = model.options.settings.dx;
+  std::size_t next_idle = 0;
+  for (std::size_t g = 0; g < layout.grid_blocks.size(); ++g) {
+    while (next_idle < idle.size() && std::size_t(idle[next_idle]) < g) ++next_idle;
+    const int count = contacts.count(g);
+    if (count == 0) continue;
+    const bool slept = next_idle < idle.size() && std::size_t(idle[next_idle]) == g;
+    const BlockCoord<D> block = block_coord<D>(layout.grid_blocks[g]);
+    const Contact<T>* contact = contacts.of_block(g);
+    ContactForce<T>* force = contacts.forces_of(g);
+    for (int k = 0; k < count; ++k) {
+      ContactForce<T>& f = force[k];
+      sum_impulse(f);
+      const bool empty = is_empty(f);
+      if (empty && f.age == T(0)) continue;
+      if (slept && f.age > T(0)) {  // it goes on with its mean, which stays
+        record.pressures().push(f.patch, duration * mean_push<T, D>(contact[k], f));
+        record.add(record.name_of(contact[k].obstacle), mean_force<T, D>(block, contact[k], f, dx),
+                   duration);
+      }
+      if (!slept) update_mean<T, D>(f, empty, T(duration));
+      if (!empty) collect<T, D>(record, block, contact[k], f, dx);
+    }
+  }
+  record.end_interval(duration, Vec3(0, 0, -record.mass() * model.options.gravity * duration));
+  forces->collected = totals.time;
+}
+
+template <class T, int D>
+void State<T, D>::collect_vanishing_forces(const Model<T, D>& model,
+                                           const std::vector<BlockKey>& next) noexcept {
+  auto at = next.begin();
+  for (std::size_t g = 0; g < layout.grid_blocks.size(); ++g) {
+    while (at != next.end() && *at < layout.grid_blocks[g]) ++at;
+    if (at != next.end() && *at == layout.grid_blocks[g]) continue;
+    const BlockCoord<D> block = block_coord<D>(layout.grid_blocks[g]);
+    for (int k = 0; k < contacts.count(g); ++k) {
+      const Contact<T>& contact = contacts.of_block(g)[k];
+      ContactForce<T>& f = contacts.forces_of(g)[k];
+      sum_impulse(f);
+      if (is_empty(f)) continue;
+      collect<T, D>(forces->forces, block, contact, f, model.options.settings.dx);
+    }
+  }
 }
 
 /// Moves the contacts with the obstacles in motion.
 template <class T, int D>
 void SolverImpl<T, D>::follow_obstacles() {
   if (!model_.boundary.any_motion()) return;
-  if (state_.forces) state_.give_pushes();  // contacts may vanish
+  if (state_.forces) state_.collect_forces(model_);  // contacts may vanish
   state_.contacts.follow(model_.boundary, time(), threads());
   if (state_.forces)
     state_.contacts.find_patches(model_.boundary, time(), state_.forces->forces.pressures());
@@ -227,7 +270,6 @@ void SolverImpl<T, D>::follow_obstacles() {
 template <class T, int D>
 void SolverImpl<T, D>::hold_sleeping_forces() noexcept {
   std::fill(state_.forces->held.begin(), state_.forces->held.end(), ContactImpulse());
-  state_.forces->held_since = time();
   for (const std::int32_t g : state_.sleep.idle()) {
     const int count = state_.contacts.count(std::size_t(g));
     if (count == 0) continue;
@@ -253,41 +295,26 @@ template <class T, int D>
 void SolverImpl<T, D>::record_forces(double dt) noexcept {
   if (!state_.forces) return;
   ObstacleForces& forces = state_.forces->forces;
-  const std::vector<std::int32_t>& active = state_.sleep.active();
-  std::vector<std::vector<BlockForces::Sum>>& sums = workspace_.block_forces.sums;
-  if (sums.size() < state_.layout.grid_blocks.size())
-    sums.resize(state_.layout.grid_blocks.size());
-  parallel_for_dynamic(std::ptrdiff_t(active.size()), threads(), 16,
-                       [&](std::ptrdiff_t i) { record_block_forces(active[i], dt); });
-  for (const std::int32_t g : active)
-    for (const BlockForces::Sum& sum : sums[g]) forces.add(forces.name_of(sum.obstacle), sum.impulse);
-  for (std::size_t name = 0; name < state_.forces->held.size(); ++name)
-    forces.add(name, state_.forces->held[name], dt);
-  forces.end_step(time(), dt, Vec3(0, 0, -forces.mass() * model_.options.gravity * dt));
-  if (!forces.pressures().half_is_over(time())) return;
-  state_.give_pushes();
-  forces.pressures().end_half(time());
-}
-
-template <class T, int D>
-void SolverImpl<T, D>::record_block_forces(std::int32_t g, double dt) noexcept {
-  std::vector<BlockForces::Sum>& sums = workspace_.block_forces.sums[g];
-  sums.clear();
-  const int count = state_.contacts.count(std::size_t(g));
-  if (count == 0) return;
-  const BlockCoord<D> block = block_coord<D>(state_.layout.grid_blocks[g]);
-  const Contact<T>* contact = state_.contacts.of_block(std::size_t(g));
-  ContactForce<T>* force = state_.contacts.forces_of(std::size_t(g));
-  for (int k = 0; k < count; ++k) {
-    update_mean<T, D>(contact[k], force[k], T(dt));
-    const Vec3 impulse = vector_of<T, D>(force[k].impulse);
-    if (impulse.isZero(0)) continue;
-    if (sums.empty() || sums.back().obstacle != contact[k].obstacle)
-      sums.push_back({contact[k].obstacle, {}});
-    sums.back().impulse += ContactImpulse::at(
-        embed(node_position<D>(block, contact[k].node, model_.options.settings.dx)),
-        vector_of<T, D>(contact[k].normal), -impulse);
+  if (state_.sleep.awake().size() < state_.sleep.states().size()) state_.forces->slept = true;
+  for (const std::int32_t g : state_.sleep.active()) {
+    const std::int32_t only = state_.contacts.only_obstacle(std::size_t(g));
+    if (only == -1 || !workspace_.grid.touched[g]) continue;
+    if (only >= 0) {
+      VecD<D> impulse;
+      for (int d = 0; d < D; ++d) impulse[d] = workspace_.grid.node_stats[g].impulse[d];
+      forces.add_step(forces.name_of(only), -embed(impulse));
+      continue;
+    }
+    for (int k = 0; k < state_.contacts.count(std::size_t(g)); ++k)
+      forces.add_step(forces.name_of(state_.contacts.of_block(std::size_t(g))[k].obstacle),
+                      -vector_of<D>(state_.contacts.forces_of(std::size_t(g))[k].impulse));
   }
+  for (std::size_t name = 0; name < state_.forces->held.size(); ++name)
+    forces.add_step(name, dt * state_.forces->held[name].total());
+  forces.end_step(time(), dt);
+  if (!forces.pressures().half_is_over(time())) return;
+  state_.collect_forces(model_);
+  forces.pressures().end_half(time());
 }
 
 // --- samples -------------------------------------------------------------------------------------
@@ -295,14 +322,13 @@ void SolverImpl<T, D>::record_block_forces(std::int32_t g, double dt) noexcept {
 template <class T, int D>
 void SolverImpl<T, D>::begin_force_event() noexcept {
   if (!state_.forces) return;
-  state_.give_pushes();
+  state_.collect_forces(model_);
   state_.forces->forces.begin_event(time());
 }
 
 template <class T, int D>
 std::vector<ForceSample> SolverImpl<T, D>::sample_forces(double duration) {
-  state_.give_pushes();
-  state_.end_balance();
+  state_.end_balance(model_);
   return state_.forces->forces.sample(duration);
 }
 

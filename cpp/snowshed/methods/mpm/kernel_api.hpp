@@ -98,6 +98,9 @@ struct StepParameters {
   T overstress;  // share of the stress beyond the yield surface that a step leaves, see CamClayLaw
   const MaterialConstants<T>* snows;  // indexed by material_id
   const T* friction_shares;           // indexed by obstacle, see Contacts::find_friction_shares
+  // Whether the contacts still hold the impulses of the step before, which was taken, and not those
+  // of a try of this step.
+  bool holds_last = false;
 };
 
 /// Returns the share of its stored normal impulse for which a contact exerts friction in a step.
@@ -157,7 +160,8 @@ struct NodeStats {
   // Energy of the grid, J: before forces, after contact.
   double kinetic_before = 0, kinetic_after = 0;
   double friction = 0, sticking = 0, impact = 0;  // energy that contact took, J
-  double stress_work = 0;  // J, by the stresses at the velocities before the step
+  double stress_work = 0;               // J, by the stresses at the velocities before the step
+  double impulse[3] = {0.0, 0.0, 0.0};  // N s, by all contacts on the snow, if it is recorded
 };
 
 /// Motion that the nodes of a step would have given to a block of sleeping particles: means over
@@ -193,12 +197,21 @@ struct Contact {
 /// The force at a contact, where forces are recorded. The kernels write the impulse only.
 template <class T>
 struct ContactForce {
-  T impulse[3];             // N s, on the snow in the step being tried
+  T impulse[4];             // N s, on the snow in the step being tried, or just taken
+  T sum[4];                 // N s, on the snow in the steps before, since the last collection
   T mean[3];                // N, running mean of the force on the snow
   T age;                    // s, time over which it is a mean
-  T pushed;                 // N s, normal impulse that the pressure map has not yet received
-  std::int32_t patch = -1;  // of the pressure map
+  std::int32_t patch = -1;  // index into the pressure map
 };
+
+/// Adds the impulse of the step that was just taken to the sum of a contact.
+template <class T>
+SNOWSHED_INLINE void sum_impulse(ContactForce<T>& force) {
+  for (int d = 0; d < 4; ++d) {
+    force.sum[d] += force.impulse[d];
+    force.impulse[d] = 0;
+  }
+}
 
 template <class T>
 struct Kernels {

@@ -203,7 +203,7 @@ void SolverImpl<T, D>::update_sleep() noexcept {
   }
   if (!newly_asleep.empty()) clear_idle_nodes();
   if (state_.forces && workspace_.idle_before != state_.sleep.idle()) {
-    state_.give_held_pushes(workspace_.idle_before);
+    state_.collect_forces(model_, workspace_.idle_before);
     hold_sleeping_forces();
   }
 }

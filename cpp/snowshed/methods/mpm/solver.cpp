@@ -39,7 +39,8 @@ StepParameters<T> SolverImpl<T, D>::parameters(double dt) const {
           T(dt / (friction_reach * n.dx)),
           T(n.overstress_share(dt)),
           model_.constants.data(),
-          workspace_.friction_shares.shares.data()};
+          workspace_.friction_shares.shares.data(),
+          false};
 }
 
 template <class T, int D>
@@ -147,7 +148,8 @@ void SolverImpl<T, D>::gather_and_update(double dt) {
   if (model_.touches())
     workspace_.touch.update(model_, state_, state_.totals.speed * state_.totals.dt, threads());
   if (model_.boundary.any_slip()) state_.contacts.find_friction_shares(workspace_.friction_shares);
-  const StepParameters<T> step = parameters(dt);
+  StepParameters<T> step = parameters(dt);
+  step.holds_last = true;
   const std::vector<std::int32_t>& active = state_.sleep.active();
   parallel_for_dynamic(std::ptrdiff_t(active.size()), threads(), 8, [&](std::ptrdiff_t i) {
     const std::int32_t g = active[i];
@@ -193,7 +195,7 @@ void SolverImpl<T, D>::update_overlap(const StepParameters<T>& step, std::ptrdif
     if (workspace_.grid.touched[*g])
       model_.kernels.update_free(step, workspace_.grid.sum(*g), workspace_.grid.velocity(*g));
     else
-      clear_block(*g);
+      clear_block(step, *g);
   }
   workspace_.event_contacts.exchange(step, model_.event_friction(), state_, workspace_.grid,
                                      overlap);
@@ -208,7 +210,7 @@ void SolverImpl<T, D>::update_overlap(const StepParameters<T>& step, std::ptrdif
 template <class T, int D>
 void SolverImpl<T, D>::update_block(const StepParameters<T>& step, std::ptrdiff_t g) {
   workspace_.grid.node_stats[g] = {};
-  if (!workspace_.grid.touched[g]) return clear_block(g);
+  if (!workspace_.grid.touched[g]) return clear_block(step, g);
   model_.kernels.update(step, workspace_.grid.sum(g), workspace_.grid.velocity(g),
                         state_.contacts.of_block(g), state_.contacts.forces_of(g),
                         state_.contacts.count(g), model_.boundary.laws().data(),
@@ -217,15 +219,16 @@ void SolverImpl<T, D>::update_block(const StepParameters<T>& step, std::ptrdiff_
 
 /// No particle touches these nodes, so their velocities are not used.
 template <class T, int D>
-void SolverImpl<T, D>::clear_block(std::ptrdiff_t g) {
+void SolverImpl<T, D>::clear_block(const StepParameters<T>& step, std::ptrdiff_t g) {
   std::fill_n(workspace_.grid.node_stats[g].low, D, geometry::infinity);
   std::fill_n(workspace_.grid.node_stats[g].high, D, -geometry::infinity);
   Contact<T>* contacts = state_.contacts.of_block(g);
-  ContactForce<T>* forces = state_.contacts.forces_of(g);
-  for (int c = 0; c < state_.contacts.count(g); ++c) {
-    contacts[c].next_normal_impulse = 0;
-    if (forces) std::fill_n(forces[c].impulse, D, T(0));
-  }
+  for (int c = 0; c < state_.contacts.count(g); ++c) contacts[c].next_normal_impulse = 0;
+  if (ContactForce<T>* forces = state_.contacts.forces_of(g))
+    for (int c = 0; c < state_.contacts.count(g); ++c) {
+      if (step.holds_last) sum_impulse(forces[c]);
+      std::fill_n(forces[c].impulse, 4, T(0));
+    }
 }
 
 /// Shortens a step that would strain a particle beyond the limit. The grid's sums do not depend on

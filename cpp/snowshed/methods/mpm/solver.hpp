@@ -7,9 +7,9 @@
 
 #include "snowshed/material/snow.hpp"
 #include "snowshed/methods/capabilities.hpp"
-#include "snowshed/methods/forces/obstacle_forces.hpp"
 #include "snowshed/methods/mpm/settings.hpp"
 #include "snowshed/methods/obstacle.hpp"
+#include "snowshed/methods/obstacle_forces.hpp"
 
 namespace snowshed::methods::mpm {
 

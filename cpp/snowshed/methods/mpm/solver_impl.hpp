@@ -16,15 +16,6 @@
 
 namespace snowshed::methods::mpm {
 
-/// Impulses on obstacles in a step, by block of nodes: sums over its contacts with each obstacle.
-struct BlockForces {
-  struct Sum {
-    std::int32_t obstacle;
-    ContactImpulse impulse;
-  };
-  std::vector<std::vector<Sum>> sums;  // one list for each block
-};
-
 /// Data that is computed from a state. It may be dropped before any sort.
 template <class T, int D>
 struct Workspace {
@@ -39,10 +30,9 @@ struct Workspace {
   Touch<T, D> touch;
   EventContacts<T, D> event_contacts;
   std::vector<double> block_strain;  // 1/s, of the step being tried
-  BlockForces block_forces;          // of the last step
   std::vector<std::int32_t> idle_before;
-  bool tiles_valid = false;          // whether the tiles hold the sums of the particles
-  int since_sort = 0;                // steps
+  bool tiles_valid = false;  // whether the tiles hold the sums of the particles
+  int since_sort = 0;        // steps
   int until_sort = steps_between_sorts;
 };
 
@@ -96,7 +86,7 @@ class SolverImpl final : public Solver {
   void gather_and_update(double dt);
   void update(double dt);
   void update_block(const StepParameters<T>& step, std::ptrdiff_t block);
-  void clear_block(std::ptrdiff_t block);
+  void clear_block(const StepParameters<T>& step, std::ptrdiff_t block);
   bool has_overlap(std::int32_t grid_block) const {
     return !state_.layout.has_overlap.empty() && state_.layout.has_overlap[grid_block];
   }
@@ -110,7 +100,6 @@ class SolverImpl final : public Solver {
   void record_damping(double dt) noexcept;
   void follow_obstacles();
   void record_forces(double dt) noexcept;
-  void record_block_forces(std::int32_t block, double dt) noexcept;
   void hold_sleeping_forces() noexcept;
   void update_sleep() noexcept;
   typename Sleep<D>::BlockProbe block_probe();

@@ -34,7 +34,8 @@ State<T, D>::State(const Model<T, D>& model)
   find_elastic_limits(model);
   totals.counters.smallest_dt = elastic_limit;
   if (!model.options.forces) return;
-  forces.emplace(ForceRecord{ObstacleForces(model.options.obstacles, D, model.options.settings.dx), {}});
+  forces.emplace(
+      ForceRecord{ObstacleForces(model.options.obstacles, D, model.options.settings.dx), {}});
   forces->held.resize(forces->forces.names().size());
 }
 
@@ -128,7 +129,12 @@ void State<T, D>::arrange(const Model<T, D>& model, std::vector<BlockKey> blocks
   const int threads = model.threads(sleep.awake_particles());
   ParticleSort<T, D> sort(particles, std::move(blocks), layout, threads);
   std::optional<Contacts<T, D>> relocated;
-  if (forces) give_pushes();  // contacts may vanish, and snow may wake
+  if (forces) {
+    if (sleep.idle().empty())
+      collect_vanishing_forces(model, sort.layout.grid_blocks);
+    else
+      collect_forces(model);  // snow may wake
+  }
   if (sort.layout.grid_blocks != layout.grid_blocks) {
     relocated = contacts.relocated(model.boundary, sort.layout.grid_blocks, totals.time, threads);
     if (forces) relocated->find_patches(model.boundary, totals.time, forces->forces.pressures());

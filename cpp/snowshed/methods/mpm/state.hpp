@@ -7,13 +7,13 @@
 #include <optional>
 #include <vector>
 
-#include "snowshed/methods/forces/obstacle_forces.hpp"
 #include "snowshed/methods/method.hpp"
 #include "snowshed/methods/mpm/boundary.hpp"
 #include "snowshed/methods/mpm/event_contact.hpp"
 #include "snowshed/methods/mpm/model.hpp"
 #include "snowshed/methods/mpm/particle_sort.hpp"
 #include "snowshed/methods/mpm/sleep.hpp"
+#include "snowshed/methods/obstacle_forces.hpp"
 
 namespace snowshed::methods::mpm {
 
@@ -41,7 +41,8 @@ struct StepTotals {
 struct ForceRecord {
   ObstacleForces forces;
   std::vector<ContactImpulse> held;  // N, forces of sleeping snow by name of the obstacles
-  double held_since = 0;             // s, from when the pressure map lacks these forces
+  double collected = 0;              // s, time of the last collection
+  bool slept = false;                // whether any snow slept since the balance began
 };
 
 template <class T, int D>
@@ -93,14 +94,18 @@ struct State {
   double largest_contact_radius(const Model<T, D>& model) const;
   Momentum momentum() const;
   /// Ends the balance of momentum so far, because the snow is going to be changed or a sample is
-  /// taken. What it leaves is the work of sleep, and belongs to the obstacles below sleeping snow.
-  void end_balance();
+  /// taken. Sleep causes the remaining change, which belongs to the obstacles below
+  /// sleeping snow.
+  void end_balance(const Model<T, D>& model);
   /// Begins a balance with the present snow.
   void begin_balance() noexcept;
-  /// Gives the pressure map all normal impulses up to now. The second one is for the contacts of
-  /// these blocks, whose snow slept.
-  void give_pushes() noexcept;
-  void give_held_pushes(const std::vector<std::int32_t>& idle_blocks) noexcept;
+  /// Collects all impulses up to now in the record of forces. In the blocks of `idle`, snow slept
+  /// since the last collection.
+  void collect_forces(const Model<T, D>& model, const std::vector<std::int32_t>& idle) noexcept;
+  void collect_forces(const Model<T, D>& model) noexcept { collect_forces(model, sleep.idle()); }
+  /// Collects the impulses of contacts in blocks that are not among `next`.
+  void collect_vanishing_forces(const Model<T, D>& model,
+                                const std::vector<BlockKey>& next) noexcept;
   double kinetic_energy(const Model<T, D>& model) const;
   double gravitational_energy(const Model<T, D>& model) const;
   double elastic_energy(const Model<T, D>& model) const;

@@ -66,8 +66,8 @@ inline double second_layer_share(int dimension, const KernelConstants& k) {
   return 2 * dimension / (k.lambda * k.number_density) * sum;
 }
 
-/// Fraction of a wall's stress that acts on a particle at a distance, in l0; `second` is that of the
-/// second layer. The fractions of the layers of a lattice sum to one.
+/// Fraction of a wall's stress that acts on a particle at a distance, in l0; `second` is that of
+/// the second layer. The fractions of the layers of a lattice sum to one.
 inline double share_of_wall(double distance, double second) {
   const auto falls = [&](double from, double to) {
     return std::clamp((to - distance) / (to - from), 0.0, 1.0);

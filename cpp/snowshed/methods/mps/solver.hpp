@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "snowshed/methods/capabilities.hpp"
-#include "snowshed/methods/forces/obstacle_forces.hpp"
 #include "snowshed/methods/mps/settings.hpp"
 #include "snowshed/methods/obstacle.hpp"
+#include "snowshed/methods/obstacle_forces.hpp"
 
 namespace snowshed::methods::mps {
 

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "snowshed/core/parallel.hpp"
-#include "snowshed/methods/forces/obstacle_forces.hpp"
 #include "snowshed/methods/method.hpp"
 #include "snowshed/methods/mps/boundary.hpp"
 #include "snowshed/methods/mps/conjugate_gradients.hpp"
@@ -19,6 +18,7 @@
 #include "snowshed/methods/mps/solver.hpp"
 #include "snowshed/methods/mps/wall_images.hpp"
 #include "snowshed/methods/mps/wall_particles.hpp"
+#include "snowshed/methods/obstacle_forces.hpp"
 #include "snowshed/particles/neighbour_lists.hpp"
 
 namespace snowshed::methods::mps {
@@ -185,6 +185,7 @@ struct WallImpulses {
   std::vector<ContactImpulse> by_name;
   std::vector<std::pair<std::int32_t, double>> pushes;  // patch of the pressure map, impulse
   double moving_mass = 0;                               // kg
+  Vec3 momentum = Vec3::Zero();                         // kg m/s, before the step
 };
 
 template <int D>

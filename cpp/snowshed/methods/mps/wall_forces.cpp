@@ -1,12 +1,14 @@
 // The record of the forces on walls.
 //
 // The corrected gradient does not give pairs of particles equal and opposite forces, so that the
-// sum of the forces on the snow is not the force of the walls. The force on a wall is therefore
-// that of the pressure at its surface, over the area that each contact stands for, with the drag
-// of the wall and the impulses that keep particles out of it. The balance of momentum shows what
-// the scheme adds by itself.
+// reaction to a wall's share of the gradient is not the force on the wall. The record begins with
+// the pressure at the wall's surface, over the area that each contact stands for, the drag of the
+// wall, and the impulses that keep particles out of it. In a flow the particles beside a wall are
+// not a lattice, and stand for too small or too large an area. The balance of momentum corrects
+// this in each step: whatever changed the momentum of the snow, and was neither gravity nor a
+// recorded force, came from the walls that were pressed, along their normals.
+#include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cmath>
 
 #include "snowshed/methods/mps/solver_impl.hpp"
 
@@ -41,45 +43,82 @@ template <int D>
 void SolverImpl<D>::find_wall_impulses(double dt, const State<D>& next) {
   const Particles<D>& p = next.particles;
   const RowLists<WallContact<D>>& contacts = workspace_.near.contacts;
-  WallImpulses& found = workspace_.wall_impulses;
-  found.by_name.assign(forces_->names().size(), ContactImpulse());
-  found.pushes.clear();
-  found.moving_mass = 0;
-  const std::vector<PlacedObstacle> placed =
-      place_obstacles(model_.options.obstacles, state_.time);
+  WallImpulses& impulses = workspace_.wall_impulses;
+  impulses.by_name.assign(forces_->names().size(), ContactImpulse());
+  impulses.pushes.clear();
+  impulses.moving_mass = 0;
+  impulses.momentum = momentum_of(state_.particles).momentum;
+  const std::vector<PlacedObstacle> placed = place_obstacles(model_.options.obstacles, state_.time);
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (!workspace_.start.particles.moves(i)) continue;
-    found.moving_mass += p.mass[i];
+    impulses.moving_mass += p.mass[i];
     for (const WallContact<D>* c = contacts.begin(i); c < contacts.end(i); ++c) {
       const std::size_t k = contacts.index_of(c);
       const double l0 = model_.settings().spacing;
       const double area = share_of_wall(c->distance / l0, model_.second_layer) * p.mass[i] /
                           (model_.settings().density * l0);
-      const double push = dt * area * pressure_at_wall(model_, p, i, *c) +
-                          p.mass[i] * workspace_.wall_stop[k];
+      const double push =
+          dt * area * pressure_at_wall(model_, p, i, *c) + p.mass[i] * workspace_.wall_stop[k];
       const VecD<D> impulse = workspace_.wall_impulse[k] - push * c->normal;
       if (impulse.isZero(0)) continue;
       const Vec3 normal = embed(c->normal);
       const Vec3 x = embed(workspace_.start.particles.position[i]) - c->distance * normal;
-      found.by_name[forces_->name_of(int(c->obstacle))] +=
+      impulses.by_name[forces_->name_of(int(c->obstacle))] +=
           ContactImpulse::at(x, normal, embed(impulse));
       const geometry::RigidPose& pose = placed[c->obstacle].pose;
       const Vec3 body_normal = pose.rotation.transpose() * normal;
-      found.pushes.push_back(
+      impulses.pushes.push_back(
           {forces_->pressures().patch_at(int(c->obstacle), pose.to_body(x), body_normal), push});
     }
   }
 }
 
+/// Impulses on pressed walls, along the directions in which they are pressed, that sum up to
+/// `impulse` as nearly as these directions allow. Walls share it in proportion to their pushes.
+static std::vector<double> shared_by_walls(const std::vector<ContactImpulse>& walls,
+                                           const Vec3& impulse) {
+  Mat3 sum = Mat3::Zero();
+  for (const ContactImpulse& wall : walls) {
+    const Vec3 pressed = wall.normal.stableNormalized();
+    sum += std::max(wall.push, 0.0) * pressed * pressed.transpose();
+  }
+  constexpr double min_share = 1e-6;  // directions with a smaller share of the pushes get nothing
+  const Eigen::SelfAdjointEigenSolver<Mat3> directions(sum);
+  Vec3 solution = Vec3::Zero();
+  for (int k = 0; k < 3; ++k)
+    if (directions.eigenvalues()[k] > min_share * std::max(sum.trace(), 1e-300)) {
+      const Vec3 axis = directions.eigenvectors().col(k);
+      solution += impulse.dot(axis) / directions.eigenvalues()[k] * axis;
+    }
+  constexpr double min_factor = -0.9, max_factor = 10;  // added, as parts of the recorded push
+  std::vector<double> shares;
+  for (const ContactImpulse& wall : walls)
+    shares.push_back(
+        std::clamp(wall.normal.stableNormalized().dot(solution), min_factor, max_factor));
+  return shares;
+}
+
 /// Records the impulses of a step that was taken.
 template <int D>
 void SolverImpl<D>::record_wall_impulses() noexcept {
-  const WallImpulses& found = workspace_.wall_impulses;
-  for (std::size_t name = 0; name < found.by_name.size(); ++name)
-    forces_->add(name, found.by_name[name]);
-  for (const auto& [patch, push] : found.pushes) forces_->pressures().push(patch, push);
-  forces_->end_step(state_.time, state_.dt,
-                    found.moving_mass * state_.dt * embed(model_.gravity));
+  WallImpulses& impulses = workspace_.wall_impulses;
+  const Vec3 gravity = impulses.moving_mass * state_.dt * embed(model_.gravity);
+  Vec3 lacks = gravity + impulses.momentum - momentum_of(state_.particles).momentum;
+  for (const ContactImpulse& on_wall : impulses.by_name) lacks -= on_wall.total();
+  const std::vector<double> shares = shared_by_walls(impulses.by_name, lacks);
+  for (std::size_t name = 0; name < impulses.by_name.size(); ++name) {
+    ContactImpulse& on_wall = impulses.by_name[name];
+    if (on_wall.push > 0)
+      on_wall.add_at_center(shares[name] * on_wall.push * on_wall.normal.stableNormalized());
+    forces_->add(name, on_wall);
+    forces_->add_step(name, on_wall.total());
+  }
+  for (const auto& [patch, push] : impulses.pushes) {
+    const int obstacle = forces_->pressures().patches()[std::size_t(patch)].obstacle();
+    forces_->pressures().push(patch, (1 + shares[forces_->name_of(obstacle)]) * push);
+  }
+  forces_->end_interval(state_.dt, gravity);
+  forces_->end_step(state_.time, state_.dt);
   if (forces_->pressures().half_is_over(state_.time)) forces_->pressures().end_half(state_.time);
 }
 
@@ -109,25 +148,13 @@ std::vector<ForceSample> SolverImpl<D>::sample_forces(double duration) {
   return forces_->sample(duration);
 }
 
-/// Recent means. The pressures at walls are by up to a per cent too high on a coarse spacing; at
-/// rest they are scaled so that the walls carry the weight.
 template <int D>
-RestingForces SolverImpl<D>::resting_forces(bool at_rest) const {
-  double carried = 0, weight = 0;
-  for (const ObstacleForce& force : forces_->forces())
-    carried += force.recent.total().dot(embed(model_.gravity));
-  for (std::size_t i = 0; i < size(); ++i)
-    weight += state_.particles.mass[i] * model_.gravity.squaredNorm();
-  constexpr double max_correction = 0.1;  // more would hide a fault
-  const bool is_near = std::abs(weight - carried) < max_correction * weight;
-  const double factor = at_rest && is_near ? weight / carried : 1.0;
+RestingForces SolverImpl<D>::resting_forces(bool) const {
   RestingForces resting;
-  for (const ObstacleForce& force : forces_->forces())
-    resting.forces.push_back({factor * force.recent, {}});
+  for (const ObstacleForce& force : forces_->forces()) resting.forces.push_back({force.recent, {}});
   for (const Patch& patch : forces_->pressures().patches()) {
-    resting.pressures.push_back(factor * forces_->pressures().last_pressure(patch));
-    resting.forces[forces_->name_of(patch.obstacle())].pressed.add(patch,
-                                                                   resting.pressures.back());
+    resting.pressures.push_back(forces_->pressures().last_pressure(patch));
+    resting.forces[forces_->name_of(patch.obstacle())].pressed.add(patch, resting.pressures.back());
   }
   return resting;
 }

@@ -40,10 +40,10 @@ TEST(Forces, RestingSlabWeighsOnGroundAndPlateOnAnyGrid) {
     for (const double dx : {0.02, 0.01, 0.005}) {
       Options o = recording({2, Precision::float32}, dx);
       if (sleeps) o.settings.sleep_speed = 0.02;
-      const auto solver = make_solver(
-          o, {ground(Condition::separate, 0.4),
-              named("plate", geometry::make_box(Vec3(0.5, 0, 0.1), Vec3(0.3, 1, 0.2)),
-                    Condition::separate, 0.4)});
+      const auto solver =
+          make_solver(o, {ground(Condition::separate, 0.4),
+                          named("plate", geometry::make_box(Vec3(0.5, 0, 0.1), Vec3(0.3, 1, 0.2)),
+                                Condition::separate, 0.4)});
       const ParticleBatch low = filled_box(2, Vec3(0, 0, 0), Vec3(0.2, 0, 0.1), dx / 2);
       const ParticleBatch high = filled_box(2, Vec3(0.4, 0, 0.2), Vec3(0.6, 0, 0.3), dx / 2);
       solver->add({low, high});
@@ -67,8 +67,8 @@ TEST(Forces, NormalAndTangentialPartsOfASlidingSlabFollowCoulomb) {
       Options o = recording({2, Precision::float64});
       o.settings.contact = rule;
       o.snows[0].model = material::SnowModel::elastic;
-      const auto solver = make_solver(o, {named("slope", geometry::make_plane(Vec3::Zero(), normal),
-                                                Condition::slip, mu)});
+      const auto solver = make_solver(
+          o, {named("slope", geometry::make_plane(Vec3::Zero(), normal), Condition::slip, mu)});
       const Vec3 along(normal.z(), 0, -normal.x());
       ParticleBatch slab = filled_box(2, Vec3(0, 0, 0), Vec3(0.2, 0, 0.05), 0.005);
       for (Vec3& x : slab.positions) x = x.x() * along + x.z() * normal;
@@ -120,14 +120,16 @@ TEST(Forces, BalanceOfMomentumClosesInRandomScenes) {
       const Condition conditions[] = {Condition::sticky, Condition::slip, Condition::separate};
       const auto any = [&] { return conditions[int(2.999 * random.uniform())]; };
       const auto solver = make_solver(
-          o, {ground(any(), random.uniform()),
-              named("ball",
-                    geometry::make_sphere(Vec3(0.1, 0, 0.06) + random_vector(random, 2, 0.05), 0.05),
-                    any(), random.uniform()),
-              named("ram", geometry::make_box(Vec3(-0.1, 0, 0.1), Vec3(0.06, 1, 0.2)), any(), 0.2,
-                    Vec3(0.5, 0, 0))});
+          o,
+          {ground(any(), random.uniform()),
+           named("ball",
+                 geometry::make_sphere(Vec3(0.1, 0, 0.06) + random_vector(random, 2, 0.05), 0.05),
+                 any(), random.uniform()),
+           named("ram", geometry::make_box(Vec3(-0.1, 0, 0.1), Vec3(0.06, 1, 0.2)), any(), 0.2,
+                 Vec3(0.5, 0, 0))});
       const auto box = [&](const Vec3& low) {
-        ParticleBatch batch = filled_box(variant.dimension, low, low + Vec3(0.14, 0.06, 0.08), 0.01);
+        ParticleBatch batch =
+            filled_box(variant.dimension, low, low + Vec3(0.14, 0.06, 0.08), 0.01);
         batch.velocity = random_vector(random, variant.dimension, 2.0);
         return batch;
       };
@@ -149,9 +151,9 @@ TEST(Forces, BalanceOfMomentumClosesInRandomScenes) {
   }
 }
 
-/// Sleeping snow keeps its contacts' mean forces; what they lack is given to its obstacles. What is
-/// given is small.
-TEST(Forces, SleepingSnowGoesOnPressing) {
+/// Sleeping snow keeps its contacts' mean forces; its obstacles receive what these lack, and that
+/// is little.
+TEST(Forces, SleepingSnowKeepsPressing) {
   Options o = recording({2, Precision::float32});
   o.settings.sleep_speed = 0.02;
   const auto solver = make_solver(o, {ground(Condition::sticky)});
@@ -164,16 +166,15 @@ TEST(Forces, SleepingSnowGoesOnPressing) {
   solver->add(stone);
   run_until(*solver, begin + 0.2);
   const double duration = solver->time() - begin;
-  const ContactImpulse force =
-      1 / duration * (solver->sample_forces(duration)[0].impulse - before);
+  const ContactImpulse force = 1 / duration * (solver->sample_forces(duration)[0].impulse - before);
   EXPECT_NEAR(force.total().z() / (-gravity * block.total_mass()), 1, 1e-3);
   EXPECT_LT(solver->forces()->unbalanced().norm(), 1e-3 * block.total_mass() * gravity * duration);
   double held = 0;  // the mean of the last 100 ms, which has no part of the balance
-  held = solver->forces()->forces()[0].means[2].mean().z();
+  held = solver->forces()->forces()[0].means.mean(2).z();
   EXPECT_NEAR(held / (-gravity * block.total_mass()), 1, 0.05);
 }
 
-TEST(Forces, PressureAtRestIsThatOfTheWeight) {
+TEST(Forces, PressureAtRestComesFromTheWeight) {
   const auto solver = make_solver(recording({2, Precision::float32}), {ground(Condition::sticky)});
   solver->add(filled_box(2, Vec3(0, 0, 0), Vec3(0.5, 0, 0.1), 0.005));
   run_until(*solver, 0.5);
@@ -219,9 +220,9 @@ TEST_F(StoredForces, ResumeToTheSameBits) {
     EXPECT_EQ(a[i].impulse.total(), b[i].impulse.total());
     EXPECT_EQ(a[i].impulse.moment, b[i].impulse.moment);
     EXPECT_EQ(a[i].pressed.pressure, b[i].pressed.pressure);
-    for (int w = 0; w < 3; ++w)
-      EXPECT_EQ(solver->forces()->forces()[i].means[std::size_t(w)].peak(),
-                fresh->forces()->forces()[i].means[std::size_t(w)].peak());
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_EQ(solver->forces()->forces()[i].means.peak(k),
+                fresh->forces()->forces()[i].means.peak(k));
   }
   const auto &p = solver->forces()->pressures().patches(),
              &q = fresh->forces()->pressures().patches();

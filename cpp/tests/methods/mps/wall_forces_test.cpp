@@ -47,25 +47,23 @@ TEST(WallForces, WaterInATankPressesOnFloorAndSides) {
       // Wall particles hold their first layers less well: the water swells by a few per cent, and
       // the forces converge with the spacing.
       const double exact = walls == Walls::mirrors ? 1 : dimension == 2 ? 1.5 : 5;
-      EXPECT_NEAR(forces[0].total().z() / (-water.total_mass() * g), 1, 0.005 * exact);
+      EXPECT_NEAR(forces[0].total().z() / (-water.total_mass() * g), 1, 1e-4);
       const double side = 0.5 * 1000 * g * depth * depth * across;
       EXPECT_NEAR(forces[1].total().x() / -side, 1, 0.01 * exact) << dimension;
       EXPECT_NEAR(forces[2].total().x() / side, 1, 0.01 * exact) << dimension;
       EXPECT_NEAR(forces[2].center().z() / (depth / 3), 1, 0.05);
       EXPECT_LT(solver->forces()->unbalanced().norm(),
-                0.02 * water.total_mass() * g * solver->time());
+                1e-3 * water.total_mass() * g * solver->time());
     }
 }
 
-TEST(WallForces, RestingForcesAreThoseOfTheLastMoments) {
+TEST(WallForces, RestingForcesAreMeansOverTheLastMoments) {
   Options o = named_tank(2, 0.2, 0.02);
   const auto solver = make_solver(o);
   solver->add(block_of(o, Vec3::Zero(), Vec3(0.2, 0, 0.1)));
   advance_to(*solver, 1.5);
   const RestingForces resting = solver->resting_forces(true);
-  EXPECT_NEAR(resting.forces[0].force.total().z() / (-1000 * 0.02 * g), 1, 1e-6);
-  EXPECT_NEAR(solver->resting_forces(false).forces[0].force.total().z() / (-1000 * 0.02 * g), 1,
-              0.01);
+  EXPECT_NEAR(resting.forces[0].force.total().z() / (-1000 * 0.02 * g), 1, 1e-4);
   EXPECT_NEAR(resting.forces[0].pressed.pressure / (1000 * g * 0.1), 1, 0.05);
   EXPECT_NEAR(resting.forces[0].pressed.area, 0.24, 0.09);
 }

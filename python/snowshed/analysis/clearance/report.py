@@ -13,6 +13,12 @@ import numpy as np
 
 from snowshed.analysis.clearance import answer_text
 from snowshed.analysis.clearance.answer import ClearanceResult
+from snowshed.analysis.clearance.load_chapter import (
+    WorstLoads,
+    landing_text,
+    reach_table,
+    scene_with_forces,
+)
 from snowshed.analysis.clearance.panel_design import SnowRanges
 from snowshed.analysis.clearance.statistics import FIRST_PROBABILITY
 from snowshed.analysis.clearance.tables import burials, panel_columns, write_tables
@@ -135,7 +141,7 @@ def _panel(answer: ClearanceResult, folder: Path) -> dict[str, Any]:
         caption = "Shares of the variance of the height's logarithm."
         causes = Picture.drawn(causes_figure(shares), f"causes-{name}", "Causes", caption)
     view = folder / f"worst-winter-{name}.html"
-    picture = _worst_picture(answer, view)
+    picture, loads = _worst_winter(answer, view)
     return {
         "title": f"Slope length {answer.design.slope_length:g} m, tilt {answer.design.tilt:g}°",
         "parts": _parts_picture(answer, name),
@@ -147,6 +153,9 @@ def _panel(answer: ClearanceResult, folder: Path) -> dict[str, Any]:
         "worst": _worst(answer),
         "picture": picture,
         "view": view.name if picture else None,
+        "reach": reach_table(answer),
+        "landing": landing_text(answer),
+        "loads": loads,
     }
 
 
@@ -257,8 +266,16 @@ def _worst(answer: ClearanceResult) -> str:
     )
 
 
-def _worst_picture(answer: ClearanceResult, view: Path) -> Optional[Picture]:
-    """Simulate the worst winter once more, write its moving view, and return its picture."""
+def _worst_winter(
+    answer: ClearanceResult, view: Path
+) -> tuple[Optional[Picture], Optional[WorstLoads]]:
+    """Simulate the worst winter once more with its forces, and write its moving view.
+
+    Returns
+    -------
+    picture, loads
+        The picture of the season, and its loads; None if nothing slides.
+    """
     from tempfile import TemporaryDirectory
 
     from snowshed.results.view import write_view
@@ -266,18 +283,20 @@ def _worst_picture(answer: ClearanceResult, view: Path) -> Optional[Picture]:
 
     case, outcomes = answer.cases[answer.worst_case_index], answer.outcomes[answer.worst_case_index]
     if not case.has_releases:
-        return None
+        return None, None
     reached = [outcome.height for outcome in outcomes if outcome.contact] or [outcomes[0].height]
     with TemporaryDirectory() as folder:
         out = Path(folder) / "season"
-        run_season(case.winter.days, case.panel_scene(reached[-1]), out, settings=case.settings)
+        scene = scene_with_forces(answer, answer.worst_case_index, reached[-1])
+        run_season(case.winter.days, scene, out, settings=case.settings)
         write_view(out, view)
-        return Picture.read(
+        picture = Picture.read(
             out / "season.png",
             f"The worst winter, {case.winter.name}",
             f"Lower edge at {reached[-1]:g} m.",
             dpi=160,
         )
+        return picture, WorstLoads.read(out)
 
 
 def _chart(answers: Sequence[ClearanceResult]) -> Picture:

@@ -21,7 +21,7 @@ from snowshed.analysis.clearance.panel_design import (
     season_settings,
 )
 from snowshed.analysis.clearance.winters import Winter
-from snowshed.scene.panel_edge import ground_tilt
+from snowshed.scene.panel_edge import ground_tilt, panel_edge
 from snowshed.scene.scene import ResolvedScene
 from snowshed.season.accumulation import WinterDay, accumulate, stack_ageing
 from snowshed.season.panel_contact import PanelContact, first_contact
@@ -49,12 +49,16 @@ class SeasonOutcome:
         The first contact, if any.
     cover
         Depth of the natural snow cover when the snow was highest, m.
+    reach
+        Horizontal distance from the lower edge to the far end of the stack, the largest over the
+        winter, m; 0 without a stack.
     """
 
     height: float
     margin: float
     contact: Optional[PanelContact]
     cover: float = 0.0
+    reach: float = 0.0
 
     @property
     def is_censored(self) -> bool:
@@ -142,7 +146,9 @@ class SeasonCase:
         distance = normal / upright
         margin = float(distance.min()) - MARGIN
         cover = float(table["cover_m"].iloc[int(distance.argmin())])
-        return SeasonOutcome(height, min(margin, 0.0) if contact else margin, contact, cover)
+        reach = max((float(events["tail_m"].max()) - panel_edge(scene).x) if len(events) else 0.0,
+                    0.0)  # fmt: skip
+        return SeasonOutcome(height, min(margin, 0.0) if contact else margin, contact, cover, reach)
 
     def outcome_of_lying_snow(self, height: float) -> SeasonOutcome:
         """Return the outcome if snow stays on a lower row, because the stack reaches it.

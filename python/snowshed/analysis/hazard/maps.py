@@ -134,7 +134,7 @@ def hazard_maps(
         terrain = slide_terrain(ResolvedScene.parse(runs[0].scene))
         sums = _Sums(terrain.heights.shape, len(done), reached, pressures, percentiles)
         for begin, end in _bands(terrain.heights.shape, len(done)):
-            sums.add(begin, end, (_stored_maps(store, hash_) for hash_ in done))
+            sums.add(begin, end, (stored_maps(store, hash_) for hash_ in done))
     failed = sum(run.status == "failed" for run in runs)
     return HazardMaps(terrain, len(done), failed, sums.exceedances(), sums.percentiles)
 
@@ -220,7 +220,14 @@ def _bands(shape: tuple[int, ...], runs: int) -> Iterator[tuple[int, int]]:
         yield begin, min(begin + height, rows)
 
 
-def _stored_maps(store: Store, hash_: str) -> PeakMaps:
+def stored_maps(store: Store, hash_: str) -> PeakMaps:
+    """Return the peak maps of a run.
+
+    Raises
+    ------
+    InputError
+        If the store has none, or they are damaged.
+    """
     for data in store.particles(hash_).values():
         try:
             return PeakMaps.unpacked(data)

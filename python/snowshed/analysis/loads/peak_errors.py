@@ -1,7 +1,8 @@
-"""How far simulated loads depend on the grid and on the seed, from recorded runs.
+"""Dependence of simulated loads on the grid and on the seed, from recorded runs.
 
-The runs are those of ``reproductions/loads`` (docs/trust/forces.md): slabs that slide off onto the
-ground, onto a lower roof and against a fence, on three grids over a factor of four in cells.
+The runs are those of ``validation/forces/peak_records.py`` (docs/trust/forces.md): slabs that slide
+off onto the ground, onto a lower roof and against a fence, on three grids over a factor of four in
+cells.
 """
 
 from __future__ import annotations
@@ -70,17 +71,14 @@ def peak_error_sentence(scene: Mapping[str, Any]) -> str:
     scheme = getattr(settings, "scheme", None)
     if scheme is None:
         return (
-            "How far peaks depend on the spacing of the particles has not been recorded for this "
-            "method: compare with half the spacing."
+            "The dependence of peaks on the spacing of the particles has not been recorded for "
+            "this method: compare with half the spacing."
         )
     dependence = grid_dependence(scheme)
-    changes = {
-        column: max(of_case[column] for of_case in dependence.values()) for column in LOADS
-    }
-    listed = ", ".join(f"{name} by {percent(changes[key])}" for key, name in LOADS.items())
+    changes = {column: max(of_case[column] for of_case in dependence.values()) for column in LOADS}
+    listed = ", ".join(f"{name} by {percent(changes[key], 2)}" for key, name in LOADS.items())
     return (
         f"Loads depend on the grid. In recorded slide-offs (scheme {scheme}, a factor of four in "
-        f"cells, onto ground, a lower roof and a fence) they changed by at most: {listed}. The "
-        "largest pressures grow without a limit as cells shrink, because patches shrink with them "
-        "down to 5 cm."
+        f"cells, onto ground, a lower roof and a fence) they changed by at most: {listed}. Largest "
+        "pressures are means over patches of four cells, at least 5 cm, and grow as patches shrink."
     )

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any, Optional, cast
 
 import numpy as np
 
-from snowshed.analysis.loads.landing import landing
+from snowshed.analysis.loads.free_flight import landing
 from snowshed.analysis.loads.peak_errors import peak_error_sentence
 from snowshed.analysis.loads.reach import SHARES, distance_passed_by
-from snowshed.analysis.loads.rules import Rule, RuleInputs, rules
+from snowshed.analysis.loads.standards import Rule, RuleInputs, rules
 from snowshed.analysis.loads.structures import WINDOWS, structure_loads
 from snowshed.base.formatting import percent
 from snowshed.io.atomic import write_text
@@ -21,6 +21,7 @@ from snowshed.scene.panel_edge import ground_tilt, panel_edge
 
 if TYPE_CHECKING:
     import pandas as pd
+    import xarray
 
     from snowshed.results.reader import Results
 
@@ -57,7 +58,7 @@ def write_loads(
     """
     import pandas as pd
 
-    designs = [Design(run) for run in results]
+    designs = [Design(run, name) for run, name in zip(results, _names(results))]
     several = len(designs) > 1
     table = pd.concat(
         [
@@ -87,20 +88,24 @@ ASSUMPTIONS = (
     "a beam of 20 Hz hardly notices 1 ms.",
     "The snow is the snow of the scene. Wet or icy snow, and blocks of ice, hit harder.",
     "Obstacles are rigid and stand still. A beam that yields receives a smaller peak.",
-    "Creep and settling over weeks are not simulated. A lower edge that is buried is pulled down by "
-    "settling snow; no rule for it was found that could be read in its source, so none is given.",
+    "Creep and settling over weeks are not simulated. Settling snow pulls down a lower edge that "
+    "it buries; no rule for this was found that could be read in its source, so none is given.",
 )
 
 
 class Design:
     """The loads of one run."""
 
-    def __init__(self, results: Results) -> None:
-        self.results, self.scene = results, results.scene.data
+    def __init__(self, results: Results, name: str) -> None:
+        self.results, self.scene, self.name = results, results.scene.data, name
         self.loads: pd.DataFrame = results.loads
         self.largest = structure_loads(self.loads)
         self.per = "/m" if self.scene["dimension"] == 2 else ""
-        self.name = str(self.scene.get("title") or results.folder.name)
+
+    @property
+    def forces(self) -> xarray.Dataset:
+        """The forces over time."""
+        return cast("xarray.Dataset", self.results.forces)
 
     def sentence(self, *, named: bool) -> str:
         """Return the largest loads on the most loaded structure in a sentence."""
@@ -114,24 +119,24 @@ class Design:
 
     @property
     def warnings(self) -> list[str]:
-        """What limits the loads, a sentence each."""
-        found = [peak_error_sentence(self.scene)]
+        """Limits of the loads, a sentence each."""
+        sentences = [peak_error_sentence(self.scene)]
         if (self.loads["at_rest"] == 0).any():
-            found.append(
+            sentences.append(
                 "An event ended at its time limit: its loads at rest are those of snow that moves."
             )
         share = self._unbalanced_share()
         if share > MAX_UNBALANCED:
-            found.append(
+            sentences.append(
                 f"The impulses of obstacles and gravity leave {percent(share)} of the largest "
                 "impulse unexplained: the method itself changes the momentum by that much."
             )
-        return found
+        return sentences
 
     def _unbalanced_share(self) -> float:
         from snowshed.results.obstacle_forces import UNBALANCED
 
-        forces = self.results.forces
+        forces = self.forces
         impulse = (forces.force * forces.duration).sum("time")
         sizes = np.linalg.norm(impulse.to_numpy(), axis=-1)
         names = impulse.obstacle.to_numpy().tolist()
@@ -148,7 +153,7 @@ class Design:
             "pressures": self._pressures_picture(),
             "landing": self._landing_grid(),
             "reach": self._reach_grid(),
-            "rules": self._rule_grid(inputs),
+            "rules": self._rules(inputs),
         }
 
     def _kn(self, newtons: float) -> str:
@@ -163,7 +168,7 @@ class Design:
                     row["obstacle"],
                     f"{row['rest_n'] / 1000:.3g}",
                     f"{row['rest_fx_n'] / 1000:.3g}",
-                    f"{-row['rest_fz_n'] / 1000:.3g}",
+                    f"{0.0 - row['rest_fz_n'] / 1000:.3g}",
                     *peaks,
                     f"{row['rest_pressure_pa'] / 1000:.3g}",
                     f"{row['peak_pressure_pa'] / 1000:.3g}",
@@ -173,16 +178,16 @@ class Design:
             "on", "in all", "along x", "down", *(f"{window} ms" for window in WINDOWS),
             "at rest", "10 ms",
         )  # fmt: skip
-        groups = (
-            ("", 1), (f"at rest, kN{self.per}", 3), (f"peaks, kN{self.per}", 3), ("pressure, kPa", 2)
-        )  # fmt: skip
+        kn = f"kN{self.per}"
+        groups = (("", 1), (f"at rest, {kn}", 3), (f"peaks, {kn}", 3), ("pressure, kPa", 2))
         return HtmlTable(head, rows, "l" + "r" * (len(head) - 1), groups)
 
     def _forces_picture(self) -> Picture:
         from snowshed.plot.forces_figure import forces_figure
+        from snowshed.results.obstacle_forces import on_obstacles
 
         return Picture.drawn(
-            forces_figure(self.results.forces, self.scene), f"forces-{self.name}",
+            forces_figure(on_obstacles(self.forces), self.scene), f"forces-{self.name}",
             "Forces over time", "All rows are in forces.csv.",
         )  # fmt: skip
 
@@ -235,24 +240,38 @@ class Design:
         head = ("event", *(f"{percent(share)} beyond, m" for share in SHARES), "farthest, m")
         return HtmlTable(head, rows, "r" * len(head))
 
-    def _rule_grid(self, inputs: RuleInputs) -> Optional[HtmlTable]:
+    def _rules(self, inputs: RuleInputs) -> Optional[dict[str, Any]]:
+        """Return the table of rules, and where each of them ends."""
         panel = self.scene.get("panel")
         if not panel:
             return None
-        rows = [_rule_row(rule) for rule in rules(panel["length"], panel["tilt"], inputs)]
-        head = ("load", "value", "clause", "formula and inputs", "where it ends", "read in")
-        return HtmlTable(head, rows, "lrllll")
+        evaluated = rules(panel["length"], panel["tilt"], inputs)
+        rows = [
+            (rule.name, _value(rule), rule.clause, rule.formula, rule.inputs) for rule in evaluated
+        ]
+        head = ("load", "value", "clause", "formula", "inputs")
+        limits = [f"{rule.clause}: {rule.limits} Read in {rule.source}." for rule in evaluated]
+        return {"table": HtmlTable(head, rows, "lllll"), "limits": limits}
 
 
-def _rule_row(rule: Rule) -> tuple[str, ...]:
-    value = (
-        f"{rule.value:.2f} {rule.unit}"
-        if rule.value is not None
-        else (f"needs {', '.join(rule.missing)}")
-    )
-    return (
-        rule.name, value, rule.clause, f"{rule.formula}; {rule.inputs}", rule.limits, rule.source
-    )  # fmt: skip
+def _names(results: Sequence[Results]) -> list[str]:
+    """Return the names of designs: the titles of their scenes, or their folders, if they differ."""
+    titles = [str(run.scene.data.get("title") or "") for run in results]
+    folders = [run.folder.parent if run.folder.name == "run" else run.folder for run in results]
+    for names in (
+        titles,
+        [folder.name for folder in folders],
+        [str(run.folder) for run in results],
+    ):
+        if all(names) and len(set(names)) == len(names):
+            return names
+    return [f"design {number}" for number in range(1, len(results) + 1)]
+
+
+def _value(rule: Rule) -> str:
+    if rule.value is None:
+        return f"needs {', '.join(rule.missing)}"
+    return f"{rule.value:.2f} {rule.unit}"
 
 
 def _comparison(designs: Sequence[Design]) -> HtmlTable:

@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Optional
+from typing import TYPE_CHECKING, Optional
 
 import click
 
 from snowshed._core import InputError
-from snowshed.cli.options.common import PATH, quiet_option, resume_flag
+from snowshed.cli.options.common import PATH, dry_run_option, quiet_option, resume_flag
+from snowshed.cli.output.dry_run import print_cost
 from snowshed.cli.output.terminal import plain_table, say, wide_console
+
+if TYPE_CHECKING:
+    from snowshed.scene.scene import ResolvedScene
+
+OBJECT_TABLE = "object_loads.csv"
 
 
 @click.command()
@@ -29,7 +36,11 @@ from snowshed.cli.output.terminal import plain_table, say, wide_console
 @click.option("--creep-factor", type=float, help="Creep factor K of the Swiss guideline.")
 @click.option("--glide-factor", type=float, help="Glide factor N of the Swiss guideline.")
 @click.option("--efficiency", type=float, help="Efficiency factor of a narrow post.")
+@click.option("--objects", type=PATH, help="Slides: polygons of masts, walls and buildings.")
+@click.option("--layer", help="Slides: layer of the GeoPackage of objects.")
+@click.option("--drag", type=float, help="Slides: drag coefficient of the objects.")
 @resume_flag("Resume interrupted runs of scene files.")
+@dry_run_option("Print the cost of the scene files and exit.")
 @quiet_option
 def loads(
     sources: tuple[Path, ...],
@@ -40,21 +51,37 @@ def loads(
     creep_factor: Optional[float],
     glide_factor: Optional[float],
     efficiency: Optional[float],
+    objects: Optional[Path],
+    layer: Optional[str],
+    drag: Optional[float],
     resume: bool,
+    dry_run: bool,
     quiet: bool,
 ) -> None:
     """Find the loads of the snow on structures: a page with tables, pictures and rules.
 
     A SOURCE is a scene file, which is run with its forces recorded, or the results folder of a run
-    or a season with forces. Several sources are compared.
+    or a season with forces. Several sources are compared. For a slide, or slides of --range, give
+    its folder and --objects: the table object_loads.csv has the load on each of them.
 
     \b
     Examples:
       snowshed loads results --snow-load 3.5
       snowshed loads low-roof.json fence.json -o loads
+      snowshed loads slide --objects masts.gpkg --drag 1.5
     """  # noqa: D301 - click wants the control character
+    if objects is not None:
+        _object_loads(sources, objects, layer, drag, folder, quiet=quiet)
+        return
+    if layer is not None or drag is not None:
+        raise InputError("--layer, --drag: only with --objects")
+    if dry_run:
+        for source in sources:
+            if source.is_file():
+                print_cost(_with_forces(source))
+        return
     from snowshed.analysis.loads.report import write_loads
-    from snowshed.analysis.loads.rules import RuleInputs
+    from snowshed.analysis.loads.standards import RuleInputs
     from snowshed.results.view import shown_results
 
     inputs = RuleInputs(snow_load, snow_depth, snow_density, creep_factor, glide_factor, efficiency)
@@ -70,17 +97,59 @@ def loads(
         print_loads(page)
 
 
+def _with_forces(scene: Path) -> ResolvedScene:
+    from snowshed.scene.scene import Scene
+
+    return Scene.load(scene).set("output.forces", True).resolve()
+
+
 def _run(scene: Path, folder: Optional[Path], *, resume: bool, quiet: bool) -> Path:
     """Run a scene file with its forces, and return its results folder."""
     from snowshed.cli.run_scene import run_scene
-    from snowshed.scene.scene import Scene
 
     if folder is None:
         raise InputError(f"-o: the scene {scene} needs a folder for its run")
-    resolved = Scene.load(scene).set("output.forces", True).resolve()
+    resolved = _with_forces(scene)
     run_folder = folder / scene.stem
     run_scene(resolved, run_folder, resume=resume and run_folder.is_dir(), quiet=quiet)
     return run_folder
+
+
+def _object_loads(
+    sources: Sequence[Path],
+    file: Path,
+    layer: Optional[str],
+    drag: Optional[float],
+    folder: Optional[Path],
+    *,
+    quiet: bool,
+) -> None:
+    """Write object_loads.csv for a slide or a study of slides, and print it."""
+    from snowshed.analysis.loads.slide_objects import object_loads
+    from snowshed.io.csv_table import write_csv
+    from snowshed.methods.slide.objects import read_objects
+
+    if len(sources) > 1:
+        raise InputError("--objects: give the folder of one slide, or of the slides of --range")
+    if drag is None:
+        raise InputError("--objects: give their drag coefficient, too (--drag)")
+    table = object_loads(sources[0], read_objects(file, layer), drag)
+    out = folder or sources[0]
+    out.mkdir(parents=True, exist_ok=True)
+    write_csv(table, out / OBJECT_TABLE, float_format="%.6g")
+    if quiet:
+        return
+    shown = plain_table("Loads on objects", [str(name).replace("_", "\n", 1) for name in table])
+    for row in table.to_dict("records"):
+        shown.add_row(
+            *(f"{value:.3g}" if isinstance(value, float) else str(value) for value in row.values())
+        )
+    wide_console(120).print(shown)
+    say(
+        "Pressure is drag times density times the square of the largest speed, the force that over "
+        "the width and the largest depth: an upper bound, because both need not come together."
+    )
+    say(f"{OBJECT_TABLE} in {out}")
 
 
 def print_loads(page: Path) -> None:

@@ -21,6 +21,7 @@ from snowshed.scene.scene import ResolvedScene, Scene
 @run_options
 @accuracy_option
 @check_option
+@click.option("--forces", is_flag=True, help="Record the forces on what the snow meets.")
 def run(
     scene: Path,
     folder: Path,
@@ -29,6 +30,7 @@ def run(
     quiet: bool,
     accuracy: Optional[float],
     check: bool,
+    forces: bool,
 ) -> None:
     """Run a scene file.
 
@@ -37,7 +39,7 @@ def run(
       snowshed run scene.json --dry-run
       snowshed run scene.json -o results
     """  # noqa: D301 - click wants the control character
-    resolved = _resolve_file(scene, accuracy, quiet=quiet)
+    resolved = _resolve_file(scene, accuracy, forces=forces, quiet=quiet)
     run_or_cost(resolved, folder, resume=resume, dry_run=dry_run, quiet=quiet, check=check)
 
 
@@ -46,10 +48,15 @@ def run(
 @accuracy_option
 def plan(scene: Path, accuracy: Optional[float]) -> None:
     """Print the features and the cost of a scene file; see ``run --dry-run``."""
-    print_cost(_resolve_file(scene, accuracy, quiet=False))
+    print_cost(_resolve_file(scene, accuracy, forces=False, quiet=False))
 
 
-def _resolve_file(file: Path, accuracy: Optional[float], *, quiet: bool) -> ResolvedScene:
-    if accuracy is None:
+def _resolve_file(
+    file: Path, accuracy: Optional[float], *, forces: bool, quiet: bool
+) -> ResolvedScene:
+    if accuracy is None and not forces:
         return ResolvedScene.load(file)
-    return with_accuracy(Scene.load(file), accuracy, quiet=quiet).resolve()
+    scene = Scene.load(file)
+    if forces:
+        scene.set("output.forces", True)
+    return (scene if accuracy is None else with_accuracy(scene, accuracy, quiet=quiet)).resolve()

@@ -47,10 +47,14 @@ def print_events(results: Results) -> None:
     residual = energy_residual(folder)
     if residual is not None:
         console.print(f"energy balance: residual {residual:.2g} of the largest energy")
-    drawn = ["stack.png", "growth.png"] + ["energy.png"] * (residual is not None)
+    forces = (folder / "forces.png").is_file()
+    drawn = ["stack.png", "growth.png", *["energy.png"] * (residual is not None)]
+    drawn += ["forces.png"] * forces
     pictures = f"{', '.join(drawn[:-1])} and {drawn[-1]}"
     console.print(f"results, {pictures} in {folder}")
     console.print(f"the snow in motion: snowshed view {folder}")
+    if (folder / "loads.csv").is_file():
+        console.print(f"loads on what the snow meets: snowshed loads {folder}")
 
 
 def energy_residual(folder: Path) -> Optional[float]:

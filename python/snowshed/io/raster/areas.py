@@ -61,6 +61,7 @@ def read_areas(
     *,
     option: str = "--layer",
     with_thickness: bool = True,
+    noun: str = "area",
 ) -> list[MapArea]:
     """Return the polygons of a file; parts of a feature become areas of their own.
 
@@ -74,6 +75,8 @@ def read_areas(
         Option that names a layer, for the message if there are several.
     with_thickness
         Whether the thickness of snow is read; else it is None.
+    noun
+        The word before the number in the name of a polygon without a name.
 
     Raises
     ------
@@ -92,7 +95,7 @@ def read_areas(
         )
     fields = thickness_fields(features.fields, str(path)) if with_thickness else []
     _check_shapes(features.shapes, path, shapely)
-    areas = list(_areas(features, fields, path, shapely))
+    areas = list(_areas(features, fields, path, noun))
     if not areas:
         raise InputError(f"{path}: holds no polygon")
     if not features.crs:
@@ -101,13 +104,14 @@ def read_areas(
 
 
 def _areas(
-    layer: PolygonLayer, fields: Sequence[ThicknessField], path: Path, shapely: Any
+    layer: PolygonLayer, fields: Sequence[ThicknessField], path: Path, noun: str
 ) -> Iterator[MapArea]:
     """Return the areas in the order of the features; each part of a feature is one."""
+    shapely: Any = require("shapely", "terrain", "reading polygons")
     named = next((field for field in layer.fields if field.strip().lower() == "name"), "")
     facts = [
         (
-            shortened(str(record.get(named) or f"area {number}"), MAX_NAME),
+            shortened(str(record.get(named) or f"{noun} {number}"), MAX_NAME),
             thickness_of(fields, record, f"{path}, feature {number}"),
         )
         for number, record in enumerate(layer.records, 1)

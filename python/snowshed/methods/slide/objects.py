@@ -1,24 +1,28 @@
 """The load of a slide on objects: masts, walls and buildings, given as polygons on the map.
 
-The pressure on an object is c_d rho u^2 over its width and the depth of the flow, with a drag
-coefficient that the user states. Speed and depth are the largest over time at the nodes of the grid
-in and around the object. They need not occur at the same time, so that the load is an upper bound.
+The pressure on an object is c_d rho u^2 over its width and the depth of the flow. The user states
+the drag coefficient c_d. Speed and depth are the largest over time at the nodes of the grid in and
+around the object. They need not occur at the same time, so that the load is an upper bound.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Optional
+from pathlib import Path
+from typing import Any, Optional
 
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.base.arrays import Floats
+from snowshed.base.arrays import Booleans, Floats
+from snowshed.base.extras import require
+from snowshed.io.raster.areas import read_areas
 from snowshed.methods.slide.frames import Frame
 
 #: Objects receive the snow of nodes up to this distance from them, in cells.
 REACH = 1.0
+MAX_DRAG = 100.0
 
 
 @dataclass(frozen=True)
@@ -29,24 +33,24 @@ class SlideObject:
     ----------
     name
         Its name in tables.
-    corners : (n, 2)
-        The polygon on the map, m.
-    drag
-        Drag coefficient c_d.
+    shape
+        A polygon of shapely on the map, m.
+    crs
+        Coordinate system of its file; empty: that of the terrain is assumed.
+    file
+        Its file.
     """
 
     name: str
-    corners: Floats
-    drag: float = 1.0
-
-    def __post_init__(self) -> None:
-        if not 0.0 < self.drag <= 100.0:
-            raise InputError(f"drag coefficient: {self.drag:g}; allowed: above 0, at most 100")
+    shape: Any
+    crs: str = ""
+    file: str = ""
 
     @property
     def width(self) -> float:
-        """The largest distance between two corners, m: the widest front to the flow."""
-        away = self.corners[:, None, :] - self.corners[None, :, :]
+        """The largest distance between two of its points, m: its widest front to the flow."""
+        corners = np.asarray(self.shape.convex_hull.exterior.coords)
+        away = corners[:, None, :] - corners[None, :, :]
         return float(np.linalg.norm(away, axis=-1).max())
 
 
@@ -62,27 +66,15 @@ class ObjectLoad:
         Depth of the flow, m, normal to the ground.
     force
         Pressure times width and depth, kN.
-    duration
-        Time between the first and the last picture of the film with snow at the object, s; None
-        without a film.
     """
 
     pressure: float
     depth: float
     force: float
-    duration: Optional[float] = None
 
 
-def object_load(
-    target: SlideObject,
-    east: Floats,
-    north: Floats,
-    peak_speed: Floats,
-    peak_depth: Floats,
-    density: float,
-    frames: Sequence[Frame] = (),
-) -> ObjectLoad:
-    """Return the largest load of a slide on an object.
+class ObjectNodes:
+    """The nodes of a grid that belong to an object.
 
     Parameters
     ----------
@@ -92,54 +84,67 @@ def object_load(
         Map coordinates of the nodes along x, m.
     north : (rows,)
         The same along y.
-    peak_speed, peak_depth : (rows, columns)
-        Largest speed (m/s) and thickness (m) over time at the nodes.
-    density
-        Density of the snow, kg/m3.
-    frames
-        Maps of the thickness over time, for the duration.
 
     Raises
     ------
     InputError
-        If no node of the grid is near the object.
+        If no node is near the object.
 
     Examples
     --------
-    >>> wall = SlideObject("wall", np.array([[4.0, 0.0], [4.0, 10.0], [5.0, 10.0], [5.0, 0.0]]), 2.0)
-    >>> axis, still = np.arange(0.0, 11.0), np.full((11, 11), 10.0)
-    >>> load = object_load(wall, axis, axis, still, 0.1 * still, 200.0)
-    >>> load.pressure, round(load.force), round(wall.width, 2)
-    (40.0, 402, 10.05)
+    >>> import shapely
+    >>> wall = SlideObject("wall", shapely.box(4.0, 0.0, 5.0, 10.0))
+    >>> axis, speed = np.arange(0.0, 11.0), np.full((11, 11), 10.0)
+    >>> nodes = ObjectNodes(wall, axis, axis)
+    >>> load = nodes.load(speed, 0.1 * speed, density=200.0, drag=2.0)
+    >>> load.pressure, round(load.force)
+    (40.0, 402)
     """
-    cell = float(east[1] - east[0])
-    near = _near(target.corners, east, north, REACH * cell)
-    if not near.any():
-        raise InputError(f"{target.name}: lies outside the terrain")
-    speed, depth = float(peak_speed[near].max()), float(peak_depth[near].max())
-    pressure = 1e-3 * target.drag * density * speed**2 if depth > 0.0 else 0.0
-    duration: Optional[float] = None
-    if frames:
-        rows, columns = near.shape
-        hit = [
-            frame.time
-            for frame in frames
-            if (frame.window(slice(0, rows), slice(0, columns))[near] > 0.0).any()
-        ]
-        duration = hit[-1] - hit[0] if hit else 0.0
-    return ObjectLoad(pressure, depth, pressure * depth * target.width, duration)
+
+    def __init__(self, target: SlideObject, east: Floats, north: Floats) -> None:
+        shapely: Any = require("shapely", "terrain", "loads on objects")
+        reach = REACH * float(east[1] - east[0])
+        points = shapely.points(*np.meshgrid(east, north))
+        self.target = target
+        self.near: Booleans = np.asarray(shapely.distance(target.shape, points) <= reach)
+        if not self.near.any():
+            raise InputError(f"{target.name}: lies outside the terrain")
+
+    def load(self, speed: Floats, depth: Floats, density: float, drag: float) -> ObjectLoad:
+        """Return the load of flow with these maps of speed (m/s) and depth (m)."""
+        deepest = float(depth[self.near].max())
+        fastest = float(speed[self.near].max()) if deepest > 0.0 else 0.0
+        pressure = 1e-3 * drag * density * fastest**2
+        return ObjectLoad(pressure, deepest, pressure * deepest * self.target.width)
+
+    def duration(self, frames: Sequence[Frame]) -> float:
+        """Return the time from the first to the last map of the flow with snow at the object, s."""
+        rows, columns = (slice(0, size) for size in self.near.shape)
+        times = [frame.time for frame in frames if frame.window(rows, columns)[self.near].any()]
+        return times[-1] - times[0] if times else 0.0
 
 
-def _near(corners: Floats, east: Floats, north: Floats, reach: float) -> np.ndarray:
-    """Return the nodes (rows, columns) in a polygon, or up to a distance from its outline."""
-    x, y = np.meshgrid(east, north)
-    inside = np.zeros(x.shape, dtype=bool)
-    nearest = np.full(x.shape, np.inf)
-    for (x0, y0), (x1, y1) in zip(corners, np.roll(corners, -1, axis=0)):
-        length = (x1 - x0) ** 2 + (y1 - y0) ** 2
-        along = np.clip(((x - x0) * (x1 - x0) + (y - y0) * (y1 - y0)) / max(length, 1e-12), 0, 1)
-        nearest = np.minimum(nearest, np.hypot(x - x0 - along * (x1 - x0), y - y0 - along * (y1 - y0)))
-        if y0 != y1:
-            crosses = ((y0 > y) != (y1 > y)) & (x < x0 + (y - y0) / (y1 - y0) * (x1 - x0))
-            inside ^= crosses
-    return inside | (nearest <= reach)
+def read_objects(file: Path, layer: Optional[str] = None) -> list[SlideObject]:
+    """Return the objects of a file of polygons: GeoPackage, shapefile or GeoJSON.
+
+    Their names are those of the field "name", or "object 1", and so on.
+
+    Raises
+    ------
+    InputError
+        As in `read_areas`.
+    OSError
+        If it cannot be read.
+    """
+    shapely: Any = require("shapely", "terrain", "loads on objects")
+    areas = read_areas(file, layer, with_thickness=False, noun="object")
+    return [
+        SlideObject(area.name, shapely.Polygon(area.outline, area.holes), area.crs, area.file)
+        for area in areas
+    ]
+
+
+def check_drag(drag: float) -> None:
+    """Raise InputError unless a drag coefficient is allowed."""
+    if not 0.0 < drag <= MAX_DRAG:
+        raise InputError(f"drag coefficient: {drag:g}; allowed: above 0, at most {MAX_DRAG:g}")

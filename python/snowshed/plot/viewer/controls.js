@@ -21,6 +21,10 @@ function listen(view) {
     view.measures = el("measured").checked;
     again();
   });
+  el("pressed")?.addEventListener("change", () => {
+    view.pressures = el("pressed").checked;
+    if (view.film) view.dress();
+  });
   for (const id of ["axis", "cut"])
     el(id)?.addEventListener("input", () => {
       view.section = { axis: Number(el("axis").value), part: Number(el("cut").value) / 100 };

@@ -192,10 +192,13 @@ class Painter {
     gl.uniformMatrix4fv(at.matrix, false, view.matrix);
     gl.uniform1f(at.flatness, this.flat ? 1 : 0);
     gl.uniform3fv(at.gridPaint, look.grid);
+    gl.polygonOffset(-1, -1); // pressed faces lie on the faces of solids
     for (const mesh of this.meshes) {
+      if (mesh.event && mesh.event !== look.pressed) continue;
+      (mesh.event ? gl.enable : gl.disable).call(gl, gl.POLYGON_OFFSET_FILL);
       gl.uniformMatrix4fv(at.motion, false, mesh.motion ? mesh.motion(look.time) : IDENTITY);
       gl.uniform4fv(at.section, mesh.cut ? look.section : [0, 0, 0, 1]);
-      gl.uniform4f(at.paint, ...look.paints[mesh.kind], 1);
+      gl.uniform4f(at.paint, ...(mesh.paint ?? look.paints[mesh.kind]), 1);
       gl.uniform1f(at.gridSize, mesh.grid || 0);
       gl.bindVertexArray(mesh.array);
       gl.drawElements(gl.TRIANGLES, mesh.count, gl.UNSIGNED_INT, 0);

@@ -29,15 +29,7 @@ function drawLegend(colouring, bytes) {
   title.textContent = colouring.title;
   legend.append(title);
   if (labels) {
-    const list = document.createElement("ul");
-    labels.forEach((label, k) => {
-      const item = document.createElement("li"), swatch = document.createElement("span");
-      swatch.className = "swatch";
-      swatch.style.background = css(Math.round((255 * k) / Math.max(labels.length - 1, 1)));
-      item.append(swatch, label);
-      list.append(item);
-    });
-    legend.append(list);
+    legend.append(swatches(labels, (k) => css(Math.round((255 * k) / Math.max(labels.length - 1, 1)))));
     return;
   }
   const bar = document.createElement("div"), numbers = document.createElement("div");
@@ -50,6 +42,28 @@ function drawLegend(colouring, bytes) {
     numbers.append(number);
   }
   legend.append(bar, numbers);
+}
+
+/** Returns a list of labels, each with its colour. */
+function swatches(labels, colourOf) {
+  const list = document.createElement("ul");
+  labels.forEach((label, k) => {
+    const item = document.createElement("li"), swatch = document.createElement("span");
+    swatch.className = "swatch";
+    swatch.style.background = colourOf(k);
+    item.append(swatch, label);
+    list.append(item);
+  });
+  return list;
+}
+
+/** Adds the scale of pressures to the legend. */
+function addSwatches({ title, labels, colours }) {
+  const head = document.createElement("p");
+  head.textContent = title;
+  head.className = "next";
+  const css = (k) => `rgb(${colours[k].map((part) => Math.round(255 * part)).join(", ")})`;
+  el("legend").append(head, swatches(labels, css));
 }
 
 function shortNumber(value) {

@@ -13,8 +13,8 @@ class View {
     this.playing = false;
     this.at = 0; // s of the page's own time, in which pauses and all frames count
     this.section = { axis: -1, part: 1 };
-    this.measures = true;
-    for (const mesh of data.meshes) {
+    this.measures = this.pressures = true;
+    for (const mesh of [...data.meshes, ...(data.pressures?.faces ?? [])]) {
       const corners = new Float32Array(bytesOfBase64(mesh.corners).buffer);
       const triangles = new Uint32Array(bytesOfBase64(mesh.triangles).buffer);
       this.painter.addMesh(corners, triangles, { ...mesh, motion: motionOf(mesh.motion) });
@@ -88,6 +88,7 @@ class View {
     const colours = bytesOfBase64(this.colouring.colours[isDark() ? "dark" : "light"]);
     this.painter.setColours(colours);
     drawLegend(this.colouring, colours);
+    if (this.pressures && this.data.pressures) addSwatches(this.data.pressures);
     this.render();
   }
 
@@ -114,7 +115,7 @@ class View {
     const view = this.camera.matrix(el("picture").height);
     this.painter.draw(view, {
       ...look(), part, time, low: this.film.low, size: this.film.size, radius: this.data.radius,
-      range: this.range, step: this.step, section: this.plane(),
+      range: this.range, step: this.step, section: this.plane(), pressed: this.pressures ? frame.event : 0,
     });
     this.tell(frame, index, time);
     drawMeasures(this, view, frame, index);

@@ -114,8 +114,9 @@ struct NodeKernels {
   /// Applies the conditions of obstacles.
   static SNOWSHED_INLINE void constrain(const StepParameters<T>& step, const T* sums, T* velocities,
                                         Contact<T>* contacts, ContactForce<T>* forces,
-                                        int contact_count, const ContactLaw* laws,
-                                        NodeStats& stats, Range& range) {
+                                        int contact_count, const ContactLaw* laws, NodeStats& stats,
+                                        Range& range) {
+    Half total{};
     for (int c = 0; c < contact_count; ++c) {
       const T* sum = sums + contacts[c].node * node_values;
       T* out = velocities + contacts[c].node * node_values;
@@ -126,16 +127,21 @@ struct NodeKernels {
         apply(step, contacts[c], laws[contacts[c].obstacle], sum, node, stats);
         store_velocity(out, node, velocity(sum));
         range.add(node);
-        if (forces) record(forces[c], sum[0] * (node - free));
+        if (forces) record(step, forces[c], sum[0] * (node - free), total);
       } else {
         contacts[c].next_normal_impulse = 0;
-        if (forces) record(forces[c], Half{});
+        if (forces) record(step, forces[c], Half{}, total);
       }
     }
+    for (int d = 0; d < D; ++d) stats.impulse[d] = double(total[d]);
   }
 
-  static void record(ContactForce<T>& force, const Half& impulse) {
-    for (int d = 0; d < D; ++d) force.impulse[d] = impulse[d];
+  static SNOWSHED_INLINE void record(const StepParameters<T>& step, ContactForce<T>& force,
+                                     const Half& impulse, Half& total) {
+    if (step.holds_last)
+      store_half(force.sum, Half(load_half(force.sum) + load_half(force.impulse)));
+    store_half(force.impulse, impulse);
+    total += impulse;
   }
 
   /// Velocity before the step; the fourth value is zero.

@@ -1,4 +1,4 @@
-#include "snowshed/methods/forces/obstacle_forces.hpp"
+#include "snowshed/methods/obstacle_forces.hpp"
 
 #include <algorithm>
 
@@ -26,28 +26,35 @@ ObstacleForces::ObstacleForces(const std::vector<Obstacle>& obstacles, int dimen
     if (known == names_.end()) names_.push_back(name);
   }
   forces_.resize(names_.size());
-  step_.resize(names_.size());
+  step_.assign(names_.size(), Vec3::Zero());
+  interval_.resize(names_.size());
 }
 
-void ObstacleForces::end_step(double time, double dt, const Vec3& gravity) noexcept {
+void ObstacleForces::end_step(double time, double dt) noexcept {
+  for (std::size_t i = 0; i < forces_.size(); ++i) {
+    forces_[i].means.add(step_[i], time, dt);
+    step_[i].setZero();
+  }
+}
+
+void ObstacleForces::end_interval(double duration, const Vec3& gravity) noexcept {
   received_ += gravity;
   for (std::size_t i = 0; i < forces_.size(); ++i) {
-    const Vec3 impulse = step_[i].total();
     ObstacleForce& force = forces_[i];
-    force.impulse += step_[i];
-    force.age = std::min(force.age + dt, recent_time);
-    const double share = std::min(dt / force.age, 1.0);
-    force.recent = (1 - share) * force.recent;
-    force.recent.add(step_[i], share / dt);
-    for (RunningMean& mean : force.means) mean.add(impulse, time, dt);
-    received_ -= impulse;
-    step_[i] = {};
+    force.impulse += interval_[i];
+    received_ -= interval_[i].total();
+    if (duration > 0) {
+      force.age = std::min(force.age + duration, recent_time);
+      const double share = std::min(duration / force.age, 1.0);
+      force.recent = (1 - share) * force.recent;
+      force.recent.add(interval_[i], share / duration);
+    }
+    interval_[i] = {};
   }
 }
 
 void ObstacleForces::begin_event(double time) noexcept {
-  for (ObstacleForce& force : forces_)
-    for (RunningMean& mean : force.means) mean.begin_event(time);
+  for (ObstacleForce& force : forces_) force.means.begin_event(time);
   pressures_.begin_event(time);
 }
 
@@ -79,7 +86,7 @@ void ObstacleForces::visit(Archive& archive, Self& self) {
                    ContactImpulse::for_each_number(force.impulse, number);
                    ContactImpulse::for_each_number(force.recent, number);
                    number(force.age);
-                   for (auto& mean : force.means) RunningMean::for_each_number(mean, number);
+                   RunningMeans::for_each_number(force.means, number);
                  });
   auto &p = self.momentum_, &r = self.received_, &u = self.unbalanced_;
   archive.numbers("forces/balance", self.mass_, p[0], p[1], p[2], r[0], r[1], r[2], u[0], u[1],
@@ -96,8 +103,7 @@ void ObstacleForces::load(const io::BinaryReader& in) {
   const StateReader archive(in);
   visit(archive, *this);
   for (const ObstacleForce& force : forces_)
-    for (const RunningMean& mean : force.means)
-      if (!mean.is_sound()) archive.refuse("the mean of a force is not sound");
+    if (!force.means.is_sound()) archive.refuse("the mean of a force is not sound");
   pressures_.load(in, name_of_.size());
 }
 

@@ -1,4 +1,4 @@
-#include "snowshed/methods/forces/pressure_map.hpp"
+#include "snowshed/methods/pressure_map.hpp"
 
 #include <cmath>
 
@@ -8,8 +8,7 @@ namespace snowshed::methods {
 namespace {
 
 constexpr double half_window = 0.005;  // s
-/// Steps end at a half's end but for rounding.
-constexpr double rounding = 1e-9;  // s
+constexpr double rounding = 1e-9;      // s, between the end of a step and that of a half
 
 /// A face is seen along z if the normal's z component is at least this, otherwise along x or y.
 /// Common slopes (0, 30, 45, 60 and 90 degrees) are far from it, so that rounding does not change

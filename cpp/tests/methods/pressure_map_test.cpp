@@ -1,5 +1,5 @@
 // Patches of faces: their areas and corners, and the pressures on them.
-#include "snowshed/methods/forces/pressure_map.hpp"
+#include "snowshed/methods/pressure_map.hpp"
 
 #include <gtest/gtest.h>
 

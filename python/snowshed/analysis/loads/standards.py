@@ -1,6 +1,6 @@
 """Rules of standards for the loads of snow, as formulas with their clauses, inputs and limits.
 
-None of the standards was at hand in the original. The page of loads says so, and names where each
+None of the standards was available in the original. The page of loads says so, and names where each
 formula was read. A rule whose inputs are not given is not evaluated: no factor is assumed.
 """
 
@@ -26,7 +26,7 @@ class Rule:
     Attributes
     ----------
     name
-        The load, in words.
+        Name of the load.
     clause
         Standard and clause.
     formula
@@ -186,7 +186,7 @@ def _creep(inputs: RuleInputs) -> Rule:
         _missing(**needed),
         "K depends on slope and density (table 6), N on the ground (table 7) of the guideline. "
         "Takes weeks: no simulation here contains it.",
-        "equation 11 was read in the guideline; tables 6 and 7 were not",
+        "the guideline; its tables 6 and 7 were not available",
     )
 
 
@@ -204,7 +204,7 @@ def _post(inputs: RuleInputs) -> Rule:
         _missing(efficiency=efficiency, **wall),
         "eta_F is above 1: a post holds snow beside it, too. The paper relates it to depth over "
         "width and to the glide.",
-        "the abstract of the paper; its equation for eta_F was not at hand",
+        "the abstract of the paper; its equation for eta_F was not available",
     )
 
 

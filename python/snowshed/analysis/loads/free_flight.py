@@ -91,7 +91,7 @@ def landing(
     --------
     >>> flight = landing(4.0, 60.0, 0.2, height=2.0)
     >>> round(flight.distance, 2), round(flight.speed, 1)
-    (1.03, 10.0)
+    (0.98, 10.0)
     """
     if not (slide >= 0.0 and height >= 0.0):
         raise InputError("a length or a height below 0 is not allowed")

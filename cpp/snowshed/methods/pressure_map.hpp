@@ -83,10 +83,10 @@ class PressureMap {
   void place(Patch&) const;
 
   int dimension_;
-  double edge_;                    // m
-  double half_began_ = 0;          // s
-  double half_before_ = 0;         // s, length of the half before
-  std::vector<Patch> patches_;     // in the order in which snow touched them
+  double edge_;                 // m
+  double half_began_ = 0;       // s
+  double half_before_ = 0;      // s, length of the half before
+  std::vector<Patch> patches_;  // in the order in which snow touched them
   std::map<std::array<std::int32_t, 5>, std::int32_t> index_;
 };
 

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "snowshed/methods/forces/contact_impulse.hpp"
-#include "snowshed/methods/forces/pressure_map.hpp"
-#include "snowshed/methods/forces/running_mean.hpp"
+#include "snowshed/methods/contact_impulse.hpp"
+#include "snowshed/methods/pressure_map.hpp"
+#include "snowshed/methods/running_means.hpp"
 
 namespace snowshed::methods {
 
@@ -21,7 +21,7 @@ struct ObstacleForce {
   ContactImpulse impulse;  // since the method was made
   ContactImpulse recent;   // N, mean force over the last moments
   double age = 0;          // s, time over which it is a mean
-  std::array<RunningMean, 3> means{RunningMean(0.001), RunningMean(0.01), RunningMean(0.1)};
+  RunningMeans means;
 };
 
 /// Pressed area (m2; m per metre of width in 2D) and largest pressure of a patch (Pa).
@@ -53,7 +53,7 @@ struct RestingForces {
 
 /// Mass and momentum of all snow.
 struct Momentum {
-  double mass = 0;              // kg
+  double mass = 0;               // kg
   Vec3 momentum = Vec3::Zero();  // kg m/s
 };
 
@@ -74,12 +74,18 @@ class ObstacleForces {
   /// The impulse (N s) that the snow received and that neither gravity nor obstacles explain.
   const Vec3& unbalanced() const { return unbalanced_; }
 
-  /// Adds an impulse on an obstacle in the present step.
+  /// Adds the impulse on an obstacle in the present step, for the running means.
+  void add_step(std::size_t name, const Vec3& impulse) noexcept { step_[name] += impulse; }
+  /// Ends a step of dt seconds.
+  void end_step(double time, double dt) noexcept;
+
+  /// Adds an impulse on an obstacle in the present interval, of one step or of several.
   void add(std::size_t name, const ContactImpulse& impulse, double factor = 1) noexcept {
-    step_[name].add(impulse, factor);
+    interval_[name].add(impulse, factor);
   }
-  /// Ends a step of dt seconds. `gravity` is the impulse that the snow received by gravity, N s.
-  void end_step(double time, double dt, const Vec3& gravity) noexcept;
+  /// Ends an interval of `duration` seconds. `gravity` is the impulse that the snow received by
+  /// gravity in it, N s.
+  void end_interval(double duration, const Vec3& gravity) noexcept;
 
   void begin_event(double time) noexcept;
 
@@ -108,12 +114,13 @@ class ObstacleForces {
   std::vector<std::string> names_;
   std::vector<std::size_t> name_of_;
   std::vector<ObstacleForce> forces_;
-  std::vector<ContactImpulse> step_;  // of the present step
+  std::vector<Vec3> step_;                // N s, in the present step
+  std::vector<ContactImpulse> interval_;  // in the present interval
   PressureMap pressures_;
-  double mass_ = 0;                    // kg, of all snow
-  Vec3 momentum_ = Vec3::Zero();       // kg m/s, at the beginning of the balance
-  Vec3 received_ = Vec3::Zero();       // N s, by gravity and obstacles since then
-  Vec3 unbalanced_ = Vec3::Zero();     // N s
+  double mass_ = 0;                 // kg, of all snow
+  Vec3 momentum_ = Vec3::Zero();    // kg m/s, at the beginning of the balance
+  Vec3 received_ = Vec3::Zero();    // N s, by gravity and obstacles since then
+  Vec3 unbalanced_ = Vec3::Zero();  // N s
 };
 
 /// A method that can record the forces on its obstacles.

@@ -1,0 +1,73 @@
+"""``snowshed loads``: of scenes, of results, of slides, and what it refuses."""
+
+import json
+
+import pandas as pd
+import pytest
+from conftest import tiny_scene
+
+from snowshed.cli.main import main
+
+
+def snowshed(*arguments: object) -> int:
+    return main([str(argument) for argument in arguments])
+
+
+def test_a_scene_is_run_with_its_forces(tmp_path, capsys):
+    tiny_scene(**{"events.count": 1}).resolve().save(tmp_path / "small.json")
+    assert snowshed("loads", tmp_path / "small.json", "-o", tmp_path / "out",
+                    "--snow-load", 3) == 0  # fmt: skip
+    shown = capsys.readouterr().out
+    assert "Largest loads" in shown and "loads.html" in shown
+    table = pd.read_csv(tmp_path / "out/largest_loads.csv")
+    assert table.obstacle.tolist() == ["ground", "panel"] and (table.peak_10ms_n > 0).all()
+    assert snowshed("loads", tmp_path / "out/small", "-q") == 0
+    assert (tmp_path / "out/small/loads.html").is_file()
+
+
+def test_runs_record_forces_on_request(tmp_path, capsys):
+    tiny_scene(**{"events.count": 1}).resolve().save(tmp_path / "small.json")
+    assert snowshed("run", tmp_path / "small.json", "-o", tmp_path / "run", "--forces") == 0
+    assert (tmp_path / "run/loads.csv").is_file() and (tmp_path / "run/forces.png").is_file()
+    assert f"loads on what the snow meets: snowshed loads {tmp_path / 'run'}" in " ".join(
+        capsys.readouterr().out.split()
+    )
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("small.json",), "-o: the scene"),
+        (("run", "other"), "-o: several sources"),
+        (("run", "--drag", "2"), "--layer, --drag: only with --objects"),
+        (("run", "--objects", "a.geojson"), "give their drag coefficient"),
+        (("run", "--snow-load", "-3", "-o", "out"), "snow_load: -3 is not allowed"),
+    ],
+)
+def test_wrong_calls_are_refused(tmp_path, monkeypatch, capsys, arguments, message):
+    monkeypatch.chdir(tmp_path)
+    tiny_scene(**{"events.count": 1}).resolve().save(tmp_path / "small.json")
+    for name in ("run", "other"):
+        (tmp_path / name).mkdir()
+    assert snowshed("loads", *arguments) == 2
+    assert message in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_objects_in_the_way_of_a_slide_have_their_loads(tmp_path, capsys):
+    pytest.importorskip("shapely")
+    assert snowshed("slide", "--example", "--max-time", 2, "-o", tmp_path / "slide", "-q") == 0
+    summary = json.loads((tmp_path / "slide/slide.json").read_text())
+    everywhere = [[0, 0], [1e6, 0], [1e6, 1e7], [0, 1e7], [0, 0]]
+    feature = {"type": "Feature", "properties": {"name": "everything"},
+               "geometry": {"type": "Polygon", "coordinates": [everywhere]}}  # fmt: skip
+    (tmp_path / "objects.geojson").write_text(json.dumps(
+        {"type": "FeatureCollection", "features": [feature],
+         "crs": {"type": "name", "properties": {"name": "EPSG:31287"}}}
+    ))  # fmt: skip
+    assert snowshed("loads", tmp_path / "slide", "--objects", tmp_path / "objects.geojson",
+                    "--drag", 1.5) == 0  # fmt: skip
+    table = pd.read_csv(tmp_path / "slide/object_loads.csv")
+    assert table.object.tolist() == ["everything"]
+    assert table.pressure_kpa[0] == pytest.approx(1.5 * summary["peak_pressure_kpa"], rel=1e-3)
+    assert "upper bound" in " ".join(capsys.readouterr().out.split())

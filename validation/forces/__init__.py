@@ -1,0 +1,1 @@
+"""Forces of snow and water on obstacles."""
