@@ -8,7 +8,11 @@ import pytest
 from snowshed import InputError
 
 shapely = pytest.importorskip("shapely")
+pytest.importorskip("pyogrio")
 
+from helpers.polygon_files import write  # noqa: E402
+
+from snowshed.io.raster.areas import read_areas  # noqa: E402
 from snowshed.methods.slide.objects import (  # noqa: E402
     ObjectNodes,
     SlideObject,
@@ -65,4 +69,41 @@ def test_objects_of_a_file_need_metres_and_straight_outlines(tmp_path):
         read_objects(file)
     file.write_text(geojson("urn:ogc:def:crs:EPSG::31287", square[0], square[2], *square[1::2]))
     with pytest.raises(InputError, match="crossings"):
+        read_objects(file)
+
+
+@pytest.mark.parametrize("ending", ["gpkg", "shp", "geojson"])
+def test_lines_are_walls(tmp_path, ending):
+    wall = shapely.LineString([(2.0, 4.0), (8.0, 4.0), (10.0, 4.0)])
+    fences = shapely.MultiLineString([[(0, 0), (0, 3)], [(5, 0), (5, 4)]])
+    single = write(tmp_path / f"wall.{ending}", [wall], "EPSG:25833", "LineString", name=["dam"])
+    (dam,) = read_objects(single)
+    assert (dam.name, dam.width, dam.shape.length) == ("dam", 8.0, 8.0)
+    several = write(tmp_path / f"two.{ending}", [fences], "EPSG:25833", "MultiLineString")
+    assert [part.width for part in read_objects(several)] == [3.0, 4.0]
+    with pytest.raises(InputError, match=r"polygon"):
+        read_areas(single)
+
+
+def test_lines_and_polygons_may_share_a_file(tmp_path):
+    square = {"type": "Polygon", "coordinates": [[[0, 0], [2, 0], [2, 2], [0, 2], [0, 0]]]}
+    line = {"type": "LineString", "coordinates": [[5, 5], [5, 9]]}
+    other = {"type": "LineString", "coordinates": [[7, 5], [7, 6]]}
+    crs = {"type": "name", "properties": {"name": "EPSG:25833"}}
+    features = [
+        {"type": "Feature", "properties": {"name": name}, "geometry": shape}
+        for name, shape in (("wall", line), ("house", square), ("fence", other))
+    ]
+    file = tmp_path / "objects.geojson"
+    file.write_text(json.dumps({"type": "FeatureCollection", "features": features, "crs": crs}))
+    assert {target.name: target.shape.length for target in read_objects(file)} == {
+        "wall": 4.0,
+        "house": 8.0,
+        "fence": 1.0,
+    }
+
+
+def test_a_point_is_no_object(tmp_path):
+    file = write(tmp_path / "points.geojson", [shapely.Point(1, 1)], "EPSG:25833", "Point")
+    with pytest.raises(InputError, match="not a line or a polygon but a Point"):
         read_objects(file)

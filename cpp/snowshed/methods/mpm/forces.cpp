@@ -225,7 +225,7 @@ void State<T, D>::collect_forces(const Model<T, D>& model,
       sum_impulse(f);
       const bool empty = is_empty(f);
       if (empty && f.age == T(0)) continue;
-      if (slept && f.age > T(0)) {  // it goes on with its mean, which stays
+      if (slept && f.age > T(0)) {  // its mean force stays
         record.pressures().push(f.patch, duration * mean_push<T, D>(contact[k], f));
         record.add(record.name_of(contact[k].obstacle), mean_force<T, D>(block, contact[k], f, dx),
                    duration);

@@ -36,7 +36,9 @@ OBJECT_TABLE = "object_loads.csv"
 @click.option("--creep-factor", type=float, help="Creep factor K of the Swiss guideline.")
 @click.option("--glide-factor", type=float, help="Glide factor N of the Swiss guideline.")
 @click.option("--efficiency", type=float, help="Efficiency factor of a narrow post.")
-@click.option("--objects", type=PATH, help="Slides: polygons of masts, walls and buildings.")
+@click.option(
+    "--objects", type=PATH, help="Slides: lines or polygons of masts, walls and buildings."
+)
 @click.option("--layer", help="Slides: layer of the GeoPackage of objects.")
 @click.option("--drag", type=float, help="Slides: drag coefficient of the objects.")
 @resume_flag("Resume interrupted runs of scene files.")

@@ -20,7 +20,9 @@ from snowshed.io.polygons.shapefile import SHAPEFILE, read_shapefile
 FORMATS = "allowed: GeoPackage, ESRI Shapefile (its .shp), GeoJSON"
 
 
-def read_layer(path: Path, layer: Optional[str], option: str) -> PolygonLayer:
+def read_layer(
+    path: Path, layer: Optional[str], option: str, *, lines: bool = False
+) -> PolygonLayer:
     """Return the polygons of a file.
 
     Parameters
@@ -31,6 +33,8 @@ def read_layer(path: Path, layer: Optional[str], option: str) -> PolygonLayer:
         Name of the layer to read; None: the only one.
     option
         Option that names a layer, for the message if there are several.
+    lines
+        Whether lines are read, too.
 
     Raises
     ------
@@ -46,11 +50,11 @@ def read_layer(path: Path, layer: Optional[str], option: str) -> PolygonLayer:
     with path.open("rb") as file:
         begin = file.read(1024)
     if begin.startswith(SQLITE):
-        return read_geopackage(path, layer, option)
+        return read_geopackage(path, layer, option, lines=lines)
     if layer is not None and layer != path.stem:
         raise InputError(f"{path}: has one layer, {quoted(path.stem)}; {option} {quoted(layer)}")
     if begin.startswith(SHAPEFILE):
-        return read_shapefile(path)
+        return read_shapefile(path, lines=lines)
     if begin.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"{"):
-        return read_geojson(path)
+        return read_geojson(path, lines=lines)
     raise InputError(f"{path}: not a file of polygons; {FORMATS}")

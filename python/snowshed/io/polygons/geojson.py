@@ -42,13 +42,13 @@ REMEDY = (
 )
 
 
-def read_geojson(path: Path) -> PolygonLayer:
+def read_geojson(path: Path, *, lines: bool = False) -> PolygonLayer:
     """Return the polygons of a file; see `snowshed.io.polygons.read_layer`."""
     content = _content(path)
     features = _features(content, path)
     if len(features) > MAX_POLYGONS:
         raise InputError(f"{path}: more than {MAX_POLYGONS} polygons")
-    outlines = _Outlines(path)
+    outlines = _Outlines(path, lines=lines)
     records = []
     fields: dict[str, None] = {}
     for number, feature in enumerate(features, 1):
@@ -99,15 +99,16 @@ def _features(content: Mapping[str, Any], path: Path) -> list[Mapping[str, Any]]
 
 
 class _Outlines:
-    """Corners of the rings of all polygons, which are made together."""
+    """Corners of the rings of all polygons, and of all lines, which are made together."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, *, lines: bool) -> None:
         self.path = path
+        self.lines = lines
         self.x: list[float] = []
         self.y: list[float] = []
-        self.ring_sizes: list[int] = []
-        self.polygon_rings: list[int] = []  # number of rings of each polygon
-        self.feature_parts: list[int] = []  # polygons of each feature; -1 without a geometry
+        self.ring_sizes: list[int] = []  # and sizes of lines
+        self.part_rings: list[int] = []  # number of rings of each polygon; 0 of a line
+        self.feature_parts: list[int] = []  # parts of each feature; -1 without a geometry
 
     def add(self, geometry: object, where: str) -> None:
         """Collect the polygon, or polygons, of a feature."""
@@ -118,23 +119,27 @@ class _Outlines:
         if kind not in GEOMETRIES or not isinstance(geometry, dict):
             raise InputError(f"{where}: not a GeoJSON geometry")
         coordinates = geometry.get("coordinates")
-        if kind not in ("Polygon", "MultiPolygon"):
-            raise InputError(f"{where}: not a polygon but a {kind}")
-        parts = [coordinates] if kind == "Polygon" else coordinates
+        is_line = kind in ("LineString", "MultiLineString")
+        if kind not in ("Polygon", "MultiPolygon") and not (is_line and self.lines):
+            raise InputError(
+                f"{where}: not a {'line or a polygon' if self.lines else 'polygon'} but a {kind}"
+            )
+        parts = [coordinates] if kind in ("Polygon", "LineString") else coordinates
         if not isinstance(parts, list):
             raise InputError(f"{where}: its coordinates are not a list")
         parts = [part for part in parts if part != []]
         for part in parts:
             if not isinstance(part, list):
                 raise InputError(f"{where}: its coordinates are not a list of rings")
-            for ring in part:
-                self._add_ring(ring, where)
-            self.polygon_rings.append(len(part))
+            for ring in [part] if is_line else part:
+                self._add_ring(ring, where, least=2 if is_line else 3)
+            self.part_rings.append(0 if is_line else len(part))
         self.feature_parts.append(len(parts))
 
-    def _add_ring(self, ring: object, where: str) -> None:
-        if not isinstance(ring, list) or len(ring) < 3 or set(map(type, ring)) != {list}:
-            raise InputError(f"{where}: a ring is not a list of at least three corners")
+    def _add_ring(self, ring: object, where: str, least: int) -> None:
+        if not isinstance(ring, list) or len(ring) < least or set(map(type, ring)) != {list}:
+            noun, count = ("ring", "three") if least == 3 else ("line", "two")
+            raise InputError(f"{where}: a {noun} is not a list of at least {count} corners")
         if len(self.x) + len(ring) > MAX_CORNERS:
             raise InputError(f"{self.path}: more than {MAX_CORNERS} corners; simplify the outlines")
         if min(map(len, ring)) < 2 or not set(map(type, chain.from_iterable(ring))) <= NUMBERS:
@@ -156,19 +161,37 @@ class _Outlines:
     def shapes(self, corners: Floats) -> list[Any]:
         """Return the geometry of every feature; None for a feature without one."""
         shapely: Any = require("shapely", "terrain", "reading polygons")
+        owners = _numbers([max(rings, 1) for rings in self.part_rings])  # of rings and lines
+        is_line = np.array(self.part_rings, dtype=int) == 0
+        along = is_line[owners][_numbers(self.ring_sizes)]
+        path_of = _numbers(self.ring_sizes)
+        parts = np.empty(len(self.part_rings), dtype=object)
         try:
-            rings = shapely.linearrings(corners, indices=_numbers(self.ring_sizes))
-            polygons = shapely.polygons(rings, indices=_numbers(self.polygon_rings))
+            parts[is_line] = shapely.linestrings(corners[along], indices=_ranks(path_of[along]))
+            rings = shapely.linearrings(corners[~along], indices=_ranks(path_of[~along]))
+            parts[~is_line] = shapely.polygons(rings, indices=_ranks(owners[~is_line[owners]]))
         except (ValueError, shapely.errors.ShapelyError) as error:
             raise InputError(f"{self.path}: not a polygon: {error}") from None
         groups, first = [], 0
-        for parts in self.feature_parts:
-            own = polygons[first : first + max(parts, 0)]
-            first += max(parts, 0)
-            groups.append(
-                None if parts < 0 else own[0] if parts == 1 else shapely.MultiPolygon(own)
-            )
+        for count in self.feature_parts:
+            own = parts[first : first + max(count, 0)].tolist()
+            first += max(count, 0)
+            groups.append(None if count < 0 else own[0] if count == 1 else _collected(own))
         return groups
+
+
+def _collected(parts: Sequence[Any]) -> Any:
+    """Return several lines, or several polygons or none, as one geometry."""
+    shapely: Any = require("shapely", "terrain", "reading polygons")
+    if parts and parts[0].geom_type == "LineString":
+        return shapely.MultiLineString(parts)
+    return shapely.MultiPolygon(parts)
+
+
+def _ranks(numbers: Integers) -> Integers:
+    """Return ascending numbers with repeats, without gaps: 3, 3, 7 become 0, 0, 1."""
+    ranks: Integers = np.unique(numbers, return_inverse=True)[1]
+    return ranks
 
 
 def _numbers(counts: Sequence[int]) -> Integers:

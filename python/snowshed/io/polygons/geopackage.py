@@ -42,6 +42,7 @@ SURFACES = (
     *("POLYGON", "MULTIPOLYGON", "GEOMETRY", "GEOMETRYCOLLECTION", "SURFACE"),
     *("CURVEPOLYGON", "MULTISURFACE"),
 )
+LINES = ("LINESTRING", "MULTILINESTRING", "CURVE", "MULTICURVE")
 #: Allowed actions of statements; all others are denied.
 ACTIONS = (sqlite3.SQLITE_SELECT, sqlite3.SQLITE_READ, sqlite3.SQLITE_PRAGMA)
 FUNCTIONS = ("length", "typeof", "lower", "substr")
@@ -49,11 +50,13 @@ FUNCTIONS = ("length", "typeof", "lower", "substr")
 ENVELOPES = {0: 8, 1: 40, 2: 56, 3: 56, 4: 72}
 
 
-def read_geopackage(path: Path, layer: Optional[str], option: str) -> PolygonLayer:
+def read_geopackage(
+    path: Path, layer: Optional[str], option: str, *, lines: bool = False
+) -> PolygonLayer:
     """Return the polygons of a layer; see `snowshed.io.polygons.read_layer`."""
     try:
         with _open_read_only(path) as connection:
-            return _Package(path, connection).read(layer, option)
+            return _Package(path, connection, lines=lines).read(layer, option)
     except (sqlite3.Error, UnicodeError, OverflowError) as error:
         why = "reading it takes too long" if "interrupt" in str(error) else str(error)
         raise InputError(f"{path}: not a GeoPackage that can be read: {why}") from None
@@ -118,8 +121,9 @@ def _restrict(connection: sqlite3.Connection) -> None:
 class _Package:
     """A GeoPackage that is open."""
 
-    def __init__(self, path: Path, connection: sqlite3.Connection) -> None:
+    def __init__(self, path: Path, connection: sqlite3.Connection, *, lines: bool) -> None:
         self.path = path
+        self.lines = lines
         self.connection = connection
 
     def read(self, layer: Optional[str], option: str) -> PolygonLayer:
@@ -164,19 +168,21 @@ class _Package:
                     f"{self.path}: has no layer {quoted(layer)}; it has {names or 'none'}"
                 )
             return str(matching[0][0]), str(matching[0][1]), matching[0][3]
-        of_polygons = [row for row in every if str(row[2]).upper() in SURFACES]
-        if not of_polygons:
-            raise InputError(f"{self.path}: holds no layer of polygons")
-        if len(of_polygons) > 1:
+        types = SURFACES + LINES if self.lines else SURFACES
+        noun = "lines or polygons" if self.lines else "polygons"
+        readable = [row for row in every if str(row[2]).upper() in types]
+        if not readable:
+            raise InputError(f"{self.path}: holds no layer of {noun}")
+        if len(readable) > 1:
             raise InputError(
                 f"{self.path}: has {len(every)} layers: {names}; choose one ({option} NAME)"
             )
         if len(every) > 1:
             issue_note(
-                f"{self.path}: layer {quoted(str(of_polygons[0][0]))} is read, the only one that "
-                f"may hold polygons; the layers are {names}"
+                f"{self.path}: layer {quoted(str(readable[0][0]))} is read, the only one that "
+                f"may hold {noun}; the layers are {names}"
             )
-        return str(of_polygons[0][0]), str(of_polygons[0][1]), of_polygons[0][3]
+        return str(readable[0][0]), str(readable[0][1]), readable[0][3]
 
     def _fields(self, table: str) -> list[str]:
         """Return the stored columns of a table."""
@@ -197,7 +203,7 @@ class _Package:
             where = f"{self.path}, feature {number}"
             wkb = _wkb(row[0], where)
             if wkb is not None:
-                corners += count_corners(wkb, where)
+                corners += count_corners(wkb, where, lines=self.lines)
             if corners > MAX_CORNERS:
                 raise InputError(
                     f"{self.path}: more than {MAX_CORNERS} corners; simplify the outlines"

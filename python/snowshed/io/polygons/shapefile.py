@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,16 +22,17 @@ from snowshed.io.polygons.layer import PolygonLayer, is_wanted
 SHAPEFILE = b"\x00\x00\x27\x0a" + bytes(20)
 #: Kinds of shapes: plane, with z, with measures.
 OF_POLYGONS = (5, 15, 25)
+OF_LINES = (3, 13, 23)
 KINDS = {1: "points", 3: "lines", 8: "points", 11: "points", 13: "lines", 18: "points"}
 HEAD = 100  # bytes of the head of a .shp and of its .shx
 
 
-def read_shapefile(path: Path) -> PolygonLayer:
+def read_shapefile(path: Path, *, lines: bool = False) -> PolygonLayer:
     """Return the polygons of a file; see `snowshed.io.polygons.read_layer`."""
     pyogrio: Any = require("pyogrio", "terrain", "reading shapefiles")
     shapely: Any = require("shapely", "terrain", "reading polygons")
     companions = _companions(path)
-    _check_sizes(path, companions)
+    _check_sizes(path, companions, OF_POLYGONS + OF_LINES if lines else OF_POLYGONS)
     if ".prj" in companions:
         read_system(companions[".prj"])
     file = path.absolute()
@@ -82,13 +84,13 @@ def _literally(name: str) -> str:
     return "".join(f"[{c}]" if c in "*?[" else c for c in name)
 
 
-def _check_sizes(path: Path, companions: dict[str, Path]) -> None:
-    """Refuse files without polygons, or with too many, before GDAL reads them."""
+def _check_sizes(path: Path, companions: dict[str, Path], kinds: Sequence[int]) -> None:
+    """Refuse files without these kinds of shapes, or with too many, before GDAL reads them."""
     content = np.memmap(path, dtype=np.uint8, mode="r")
     if len(content) < HEAD:
         raise InputError(f"{path}: not a file of polygons: truncated")
     kind = int(content[32:36].view("<i4")[0])
-    if int(content[28:32].view("<i4")[0]) != 1000 or kind not in OF_POLYGONS:
+    if int(content[28:32].view("<i4")[0]) != 1000 or kind not in kinds:
         raise InputError(f"{path}: not a file of polygons: {KINDS.get(kind, 'other shapes')}")
     index = companions[".shx"]
     count = (index.stat().st_size - HEAD) // 8
@@ -103,8 +105,8 @@ def _check_sizes(path: Path, companions: dict[str, Path]) -> None:
     offsets = begins[complete, None] + np.arange(44, 52)
     rings, corners = content[offsets].view("<i4").astype(np.int64).T if len(offsets) else ([0], [0])
     shapes = content[begins[complete, None] + np.arange(8, 12)].view("<i4").ravel()
-    polygons = np.isin(shapes, OF_POLYGONS)
-    if np.sum(np.asarray(corners)[polygons]) > MAX_CORNERS:
+    wanted = np.isin(shapes, kinds)
+    if np.sum(np.asarray(corners)[wanted]) > MAX_CORNERS:
         raise InputError(f"{path}: more than {MAX_CORNERS} corners; simplify the outlines")
-    if np.any(np.asarray(rings)[polygons] > MAX_RINGS):
+    if np.any(np.asarray(rings)[wanted] > MAX_RINGS):
         raise InputError(f"{path}: a polygon of more than {MAX_RINGS} rings; simplify it")

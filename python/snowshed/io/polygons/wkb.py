@@ -9,13 +9,24 @@ import struct
 
 from snowshed._core import InputError
 
-POLYGON, MULTIPOLYGON = 3, 6
+LINE, POLYGON, MULTILINE, MULTIPOLYGON = 2, 3, 5, 6
+#: Geometries with parts, and the geometry of each part.
+PARTS = {MULTILINE: LINE, MULTIPOLYGON: POLYGON}
 #: Curves: CircularString, CompoundCurve, CurvePolygon, MultiCurve, MultiSurface.
 CURVED_TYPES = (8, 9, 10, 11, 12)
 
 
-def count_corners(wkb: bytes, where: str) -> int:
+def count_corners(wkb: bytes, where: str, *, lines: bool = False) -> int:
     r"""Return the number of corners of a polygon or of several polygons.
+
+    Parameters
+    ----------
+    wkb
+        The geometry.
+    where
+        Its place in messages.
+    lines
+        Whether lines are allowed, too.
 
     Raises
     ------
@@ -28,22 +39,23 @@ def count_corners(wkb: bytes, where: str) -> int:
     >>> count_corners(b"\x01" + struct.pack("<II", 3, 1) + ring, "here")
     3
     """
+    other = f"{where}: not a {'line or a polygon' if lines else 'polygon'}"
     try:
         kind, offset, byte_order, _ = _head(wkb, 0)
         if kind in CURVED_TYPES:
             raise InputError(
                 f"{where}: has curved edges; draw it with straight ones (QGIS: Segmentize)"
             )
-        if kind == POLYGON:
-            return _rings(wkb, 0)[0]
-        if kind != MULTIPOLYGON:
-            raise InputError(f"{where}: not a polygon")
+        if kind not in (POLYGON, MULTIPOLYGON, *((LINE, MULTILINE) if lines else ())):
+            raise InputError(other)
+        if kind not in PARTS:
+            return _corners_of_part(wkb, 0)[0]
         (parts,) = struct.unpack_from(f"{byte_order}I", wkb, offset)
         offset, corners = offset + 4, 0
         for _ in range(parts):
-            if _head(wkb, offset)[0] != POLYGON:
-                raise InputError(f"{where}: not a polygon")
-            count, offset = _rings(wkb, offset)
+            if _head(wkb, offset)[0] != PARTS[kind]:
+                raise InputError(other)
+            count, offset = _corners_of_part(wkb, offset)
             corners += count
     except struct.error:
         raise InputError(f"{where}: its geometry is damaged") from None
@@ -61,11 +73,13 @@ def _head(wkb: bytes, offset: int) -> tuple[int, int, str, int]:
     return base % 1000, offset, byte_order, numbers
 
 
-def _rings(wkb: bytes, offset: int) -> tuple[int, int]:
-    """Return the number of corners of a polygon, and the offset after it."""
-    _, offset, byte_order, numbers = _head(wkb, offset)
-    (rings,) = struct.unpack_from(f"{byte_order}I", wkb, offset)
-    offset, corners = offset + 4, 0
+def _corners_of_part(wkb: bytes, offset: int) -> tuple[int, int]:
+    """Return the number of corners of a line or a polygon, and the offset after it."""
+    kind, offset, byte_order, numbers = _head(wkb, offset)
+    rings, corners = 1, 0
+    if kind == POLYGON:
+        (rings,) = struct.unpack_from(f"{byte_order}I", wkb, offset)
+        offset += 4
     for _ in range(rings):
         (count,) = struct.unpack_from(f"{byte_order}I", wkb, offset)
         offset += 4 + count * numbers * 8

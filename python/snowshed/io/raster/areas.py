@@ -61,7 +61,6 @@ def read_areas(
     *,
     option: str = "--layer",
     with_thickness: bool = True,
-    noun: str = "area",
 ) -> list[MapArea]:
     """Return the polygons of a file; parts of a feature become areas of their own.
 
@@ -75,8 +74,6 @@ def read_areas(
         Option that names a layer, for the message if there are several.
     with_thickness
         Whether the thickness of snow is read; else it is None.
-    noun
-        The word before the number in the name of a polygon without a name.
 
     Raises
     ------
@@ -87,31 +84,50 @@ def read_areas(
         If there is no such file.
     """
     path = Path(path)
-    shapely: Any = require("shapely", "terrain", "reading polygons")
-    features = read_layer(path, layer, option)
+    features = read_map_layer(path, layer, option=option)
+    fields = thickness_fields(features.fields, str(path)) if with_thickness else []
+    areas = list(_areas(features, fields, path))
+    if not areas:
+        raise InputError(f"{path}: holds no polygon")
+    return areas
+
+
+def read_map_layer(
+    path: Path, layer: Optional[str] = None, *, option: str = "--layer", lines: bool = False
+) -> PolygonLayer:
+    """Return the polygons of a file on a projected map, as they are in the file.
+
+    Parameters
+    ----------
+    path, layer, option
+        As in `read_areas`.
+    lines
+        Whether lines are read, too.
+
+    Raises
+    ------
+    InputError
+        As in `read_areas`.
+    OSError
+        If there is no such file.
+    """
+    features = read_layer(path, layer, option, lines=lines)
     if is_in_degrees(features.crs):
         raise InputError(
             f"{path}: its coordinates are in degrees ({features.crs}); project it to metres"
         )
-    fields = thickness_fields(features.fields, str(path)) if with_thickness else []
-    _check_shapes(features.shapes, path, shapely)
-    areas = list(_areas(features, fields, path, noun))
-    if not areas:
-        raise InputError(f"{path}: holds no polygon")
+    _check_shapes(features.shapes, path, lines=lines)
     if not features.crs:
         issue_note(f"{path}: has no coordinate system; that of the terrain is assumed")
-    return areas
+    return features
 
 
-def _areas(
-    layer: PolygonLayer, fields: Sequence[ThicknessField], path: Path, noun: str
-) -> Iterator[MapArea]:
+def _areas(layer: PolygonLayer, fields: Sequence[ThicknessField], path: Path) -> Iterator[MapArea]:
     """Return the areas in the order of the features; each part of a feature is one."""
     shapely: Any = require("shapely", "terrain", "reading polygons")
-    named = next((field for field in layer.fields if field.strip().lower() == "name"), "")
     facts = [
         (
-            shortened(str(record.get(named) or f"{noun} {number}"), MAX_NAME),
+            name_of(layer, number - 1, "area"),
             thickness_of(fields, record, f"{path}, feature {number}"),
         )
         for number, record in enumerate(layer.records, 1)
@@ -123,6 +139,12 @@ def _areas(
             name, thickness = facts[owner]
             outline, *holes = rings[part]
             yield MapArea(name, outline, tuple(holes), thickness, layer.crs, str(path))
+
+
+def name_of(layer: PolygonLayer, index: int, noun: str) -> str:
+    """Return the name of a feature: that of the field "name", or a noun with its number."""
+    named = next((field for field in layer.fields if field.strip().lower() == "name"), "")
+    return shortened(str(layer.records[index].get(named) or f"{noun} {index + 1}"), MAX_NAME)
 
 
 def _rings(polygons: Any, shapely: Any) -> list[list[Ring]]:
@@ -145,13 +167,18 @@ def _rings(polygons: Any, shapely: Any) -> list[list[Ring]]:
     return holes
 
 
-def _check_shapes(shapes: Sequence[Any], path: Path, shapely: Any) -> None:
-    """Refuse invalid polygons, and polygons that cross themselves."""
+def _check_shapes(shapes: Sequence[Any], path: Path, *, lines: bool) -> None:
+    """Refuse invalid shapes, and polygons that cross themselves."""
+    shapely: Any = require("shapely", "terrain", "reading polygons")
+    kinds_of = shapely.GeometryType
+    allowed = [kinds_of.POLYGON, kinds_of.MULTIPOLYGON]
+    if lines:
+        allowed += [kinds_of.LINESTRING, kinds_of.MULTILINESTRING]
     kinds, valid = shapely.get_type_id(shapes), shapely.is_valid(shapes)
     for number, (kind, is_valid) in enumerate(zip(kinds, valid), 1):
         where = f"{path}, feature {number}"
-        if kind not in (shapely.GeometryType.POLYGON, shapely.GeometryType.MULTIPOLYGON):
-            raise InputError(f"{where}: not a polygon")
+        if kind not in allowed:
+            raise InputError(f"{where}: not a {'line or a polygon' if lines else 'polygon'}")
         if not is_valid:
             reason = shapely.is_valid_reason(shapes[number - 1])
             raise InputError(f"{where}: no valid outline: {reason}; draw it without crossings")

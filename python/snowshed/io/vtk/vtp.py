@@ -56,8 +56,9 @@ def read_particles(path: Union[str, os.PathLike[str]]) -> dict[str, NDArray[Any]
     OSError
         If it cannot be read.
     """
+    content = read_regular(Path(path))
     try:
-        piece, data = _piece(path)
+        piece, data = _piece(content)
         count = int(piece.attrib["NumberOfPoints"])
         arrays = [*piece.iterfind("Points/DataArray"), *piece.iterfind("PointData/DataArray")]
         return {array.attrib["Name"]: _values(array, data, count) for array in arrays}
@@ -82,8 +83,9 @@ def read_cells(
     InputError
         If the file is not one that snowshed wrote, or is damaged.
     """
+    content = read_regular(Path(path))
     try:
-        piece, data = _piece(path)
+        piece, data = _piece(content)
         (points,) = piece.iterfind("Points/DataArray")
         cells = int(piece.attrib["NumberOfLines"]) + int(piece.attrib["NumberOfPolys"])
         return _values(points, data, int(piece.attrib["NumberOfPoints"])), {
@@ -94,9 +96,8 @@ def read_cells(
         raise InputError(f"{path}: not faces that snowshed wrote: {error}") from None
 
 
-def _piece(path: Union[str, os.PathLike[str]]) -> tuple[ElementTree.Element, bytes]:
+def _piece(content: bytes) -> tuple[ElementTree.Element, bytes]:
     """Return the description of a file's piece and its raw data."""
-    content = read_regular(Path(path))
     _check_sum(content)
     head, separator, data = content.partition(APPENDED_HEAD)
     if not separator:

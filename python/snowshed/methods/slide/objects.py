@@ -1,4 +1,4 @@
-"""The load of a slide on objects: masts, walls and buildings, given as polygons on the map.
+"""The load of a slide on objects: masts, walls and buildings, as lines or polygons on the map.
 
 The pressure on an object is c_d rho u^2 over its width and the depth of the flow. The user states
 the drag coefficient c_d. Speed and depth are the largest over time at the nodes of the grid in and
@@ -17,7 +17,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.base.arrays import Booleans, Floats
 from snowshed.base.extras import require
-from snowshed.io.raster.areas import read_areas
+from snowshed.io.raster.areas import name_of, read_map_layer
 from snowshed.methods.slide.frames import Frame
 
 #: Objects receive the snow of nodes up to this distance from them, in cells.
@@ -34,7 +34,7 @@ class SlideObject:
     name
         Its name in tables.
     shape
-        A polygon of shapely on the map, m.
+        A line or polygon of shapely on the map, m.
     crs
         Coordinate system of its file; empty: that of the terrain is assumed.
     file
@@ -49,7 +49,8 @@ class SlideObject:
     @property
     def width(self) -> float:
         """The largest distance between two of its points, m: its widest front to the flow."""
-        corners = np.asarray(self.shape.convex_hull.exterior.coords)
+        shapely: Any = require("shapely", "terrain", "loads on objects")
+        corners = shapely.get_coordinates(self.shape.convex_hull)
         away = corners[:, None, :] - corners[None, :, :]
         return float(np.linalg.norm(away, axis=-1).max())
 
@@ -125,23 +126,30 @@ class ObjectNodes:
 
 
 def read_objects(file: Path, layer: Optional[str] = None) -> list[SlideObject]:
-    """Return the objects of a file of polygons: GeoPackage, shapefile or GeoJSON.
+    """Return the objects of a file of lines or polygons: GeoPackage, shapefile or GeoJSON.
 
-    Their names are those of the field "name", or "object 1", and so on.
+    Their names are those of the field "name", or "object 1", and so on. Each part of a feature is
+    an object.
 
     Raises
     ------
     InputError
-        As in `read_areas`.
+        If the file is damaged, holds neither lines nor polygons, or is not in metres.
     OSError
         If it cannot be read.
     """
     shapely: Any = require("shapely", "terrain", "loads on objects")
-    areas = read_areas(file, layer, with_thickness=False, noun="object")
-    return [
-        SlideObject(area.name, shapely.Polygon(area.outline, area.holes), area.crs, area.file)
-        for area in areas
+    features = read_map_layer(file, layer, lines=True)
+    parts, owners = shapely.get_parts(features.shapes, return_index=True)
+    names = [name_of(features, number, "object") for number in range(len(features.shapes))]
+    objects = [
+        SlideObject(names[owner], part, features.crs, str(file))
+        for part, owner in zip(parts, owners.tolist())
+        if not part.is_empty
     ]
+    if not objects:
+        raise InputError(f"{file}: holds no line or polygon")
+    return objects
 
 
 def check_drag(drag: float) -> None:
