@@ -1,12 +1,10 @@
 """Forces of a run: datasets with units, the same files by both programs, damage."""
 
-import subprocess
-
 import numpy as np
 import pytest
 from conftest import tiny_scene
 from helpers.interrupted_runs import interrupt_at
-from helpers.paths import ROOT
+from helpers.processes import snowshed_run
 
 from snowshed import InputError, Interrupted, Results, Simulation, run_events
 from snowshed.results.obstacle_forces import read_pressures
@@ -55,6 +53,9 @@ def test_pressures_at_rest_carry_the_normal_force(run_folder):
         normal = float((faces["rest_pressure"] * faces["area"])[of_name].sum())
         last = results.loads[(results.loads.event == 2) & (results.loads.obstacle == name)]
         assert normal == pytest.approx(float(last.rest_normal_n.iloc[0]), rel=1e-3, abs=1e-3)
+    heights = faces["corners"][..., 2]
+    assert np.allclose(heights[faces["obstacle"] == "ground"], 0.0, atol=1e-3)
+    assert (heights[faces["obstacle"] == "panel"] > 0.1).all()
     assert (faces["peak_pressure"] >= 0).all() and faces["peak_pressure"].max() > 0
     assert len(read_pressures(run_folder, 1)["area"]) <= len(faces["area"])
 
@@ -62,8 +63,8 @@ def test_pressures_at_rest_carry_the_normal_force(run_folder):
 def test_snowshed_run_writes_the_same_files(run_folder, tmp_path):
     scene = tmp_path / "scene.json"
     scene_with_forces().resolve().save(scene)
-    program = ROOT / ".venv/bin/snowshed-run"
-    subprocess.run([program, scene, "-o", tmp_path / "run", "-q"], check=True)
+    done = snowshed_run(scene, "-o", tmp_path / "run", "-q")
+    assert done.returncode == 0, done.stderr
     for name in FILES:
         assert (tmp_path / "run" / name).read_bytes() == (run_folder / name).read_bytes(), name
 
