@@ -42,13 +42,18 @@ def test_runs_record_forces_on_request(tmp_path, capsys):
         (("run", "--drag", "2"), "--layer, --drag: only with --objects"),
         (("run", "--objects", "a.geojson"), "give their drag coefficient"),
         (("run", "--snow-load", "-3", "-o", "out"), "snow_load: -3 is not allowed"),
+        (("run", "--snow-load", "3", "--snow-depth", "0.01"), "at most that of ice"),
+        (("nothere", "-o", "out"), "nothere: no such scene file or results folder"),
+        (("small.json", "copy/small.json", "-o", "out"), "two scenes are called small"),
+        (("run", "--objects", "a.geojson", "--dry-run"), "--objects: only with"),
     ],
 )
 def test_wrong_calls_are_refused(tmp_path, monkeypatch, capsys, arguments, message):
     monkeypatch.chdir(tmp_path)
     tiny_scene(**{"events.count": 1}).resolve().save(tmp_path / "small.json")
-    for name in ("run", "other"):
+    for name in ("run", "other", "copy"):
         (tmp_path / name).mkdir()
+    (tmp_path / "copy/small.json").write_text((tmp_path / "small.json").read_text())
     assert snowshed("loads", *arguments) == 2
     assert message in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
@@ -70,4 +75,5 @@ def test_objects_in_the_way_of_a_slide_have_their_loads(tmp_path, capsys):
     table = pd.read_csv(tmp_path / "slide/object_loads.csv")
     assert table.object.tolist() == ["everything"]
     assert table.pressure_kpa[0] == pytest.approx(1.5 * summary["peak_pressure_kpa"], rel=1e-3)
-    assert "upper bound" in " ".join(capsys.readouterr().out.split())
+    shown = " ".join(capsys.readouterr().out.split())
+    assert "upper bound" in shown and "still moving at the time limit" in shown

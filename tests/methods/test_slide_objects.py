@@ -81,6 +81,7 @@ def test_lines_are_walls(tmp_path, ending):
     assert (dam.name, dam.width, dam.shape.length) == ("dam", 8.0, 8.0)
     several = write(tmp_path / f"two.{ending}", [fences], "EPSG:25833", "MultiLineString")
     assert [part.width for part in read_objects(several)] == [3.0, 4.0]
+    assert read_objects(several)[1].name == "object 1, part 2"
     with pytest.raises(InputError, match=r"polygon"):
         read_areas(single)
 

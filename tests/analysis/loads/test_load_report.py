@@ -8,7 +8,8 @@ from helpers.pages import Page
 
 from snowshed import InputError, Results, run_events
 from snowshed.analysis.loads import RuleInputs, structure_loads, write_loads
-from snowshed.scene import Obstacle, Shape
+from snowshed.analysis.loads.slope import SnowSlope
+from snowshed.scene import Obstacle, Shape, gable_roof, panel_table
 
 
 def scene_with_post(**values):
@@ -57,12 +58,27 @@ def test_largest_loads_are_over_all_events():
     rows = [
         {"event": event, "obstacle": "wall", "at_rest": 1, "rest_fx_n": fx, "rest_fy_n": 0.0,
          "rest_fz_n": -4.0, "rest_pressure_pa": fx, "peak_pressure_pa": 7.0,
-         "peak_1ms_n": 9.0, "peak_10ms_n": 8.0 - event, "peak_100ms_n": 5.0}
+         "peak_1ms_n": 9.0, "peak_10ms_n": 8.0 - event, "peak_100ms_n": 5.0,
+         "peak_10ms_time_s": event, **{f"peak_10ms_f{axis}_n": 0.0 for axis in "xyz"}}
         for event, fx in ((1, 1.0), (2, 3.0))
     ]  # fmt: skip
     (row,) = structure_loads(pd.DataFrame(rows)).to_dict("records")
     assert (row["rest_n"], row["rest_event"]) == (5.0, 2)
-    assert (row["peak_10ms_n"], row["peak_10ms_event"]) == (7.0, 1)
+    assert (row["peak_10ms_n"], row["peak_10ms_event"], row["peak_10ms_time_s"]) == (7.0, 1, 1.0)
+
+
+def test_modules_of_a_table_are_one_slope_and_a_gable_has_two():
+    table = panel_table(2, 0.1, module_length=1, height=0.8, tilt=40, snow=0.25, dx=0.05)
+    gable = gable_roof(eaves=2.5, length=3, tilt=40, snow=0.25, dx=0.05)
+    assert SnowSlope.of(table.resolve()).length == pytest.approx(2.1, rel=0.02)
+    roof = SnowSlope.of(gable.resolve())
+    weight = 210 * 9.81 * 0.25 / np.cos(np.radians(40))
+    assert (roof.length, roof.load) == (3.0, pytest.approx(weight, rel=0.02))
+
+
+def test_snow_of_the_rules_is_compared_with_the_simulated_snow(loaded, tmp_path):
+    page = Page(write_loads([Results(loaded)], tmp_path, RuleInputs(snow_load=3.0)).read_text())
+    assert "this is other snow" in " ".join(page.text)
 
 
 def test_momentum_of_the_run_is_explained(loaded):

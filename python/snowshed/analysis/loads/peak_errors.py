@@ -78,7 +78,8 @@ def peak_error_sentence(scene: Mapping[str, Any]) -> str:
     changes = {column: max(of_case[column] for of_case in dependence.values()) for column in LOADS}
     listed = ", ".join(f"{name} by {percent(changes[key], 2)}" for key, name in LOADS.items())
     return (
-        f"Loads depend on the grid. In recorded slide-offs (scheme {scheme}, a factor of four in "
-        f"cells, onto ground, a lower roof and a fence) they changed by at most: {listed}. Largest "
-        "pressures are means over patches of four cells, at least 5 cm, and grow as patches shrink."
+        "Loads depend on the grid. In recorded slide-offs onto the ground, a lower roof and a "
+        f"fence (scheme {scheme}), cells four times as large changed the load on a part by at "
+        f"most: {listed}. The sum over all parts at rest is exact. Largest pressures are means over "
+        "patches of four cells, at least 5 cm, and grow as patches shrink."
     )

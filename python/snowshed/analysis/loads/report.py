@@ -11,6 +11,7 @@ import numpy as np
 from snowshed.analysis.loads.free_flight import landing
 from snowshed.analysis.loads.peak_errors import peak_error_sentence
 from snowshed.analysis.loads.reach import SHARES, distance_passed_by
+from snowshed.analysis.loads.slope import SnowSlope
 from snowshed.analysis.loads.standards import Rule, RuleInputs, rules
 from snowshed.analysis.loads.structures import WINDOWS, structure_loads
 from snowshed.base.formatting import percent
@@ -30,6 +31,8 @@ PAGE, TABLE = "loads.html", "largest_loads.csv"
 CARRIERS = ("ground", "panel", "domain")
 #: The balance of momentum may leave this share of the largest impulse without a word.
 MAX_UNBALANCED = 0.02
+#: Snow loads that differ by less are those of the same snow.
+SAME_SNOW = 0.1
 
 
 def write_loads(
@@ -75,19 +78,31 @@ def write_loads(
         warnings=list(dict.fromkeys(text for design in designs for text in design.warnings)),
         comparison=_comparison(designs) if several else None,
         designs=[design.section(inputs or RuleInputs(), named=several) for design in designs],
-        assumptions=ASSUMPTIONS,
+        assumptions=[
+            text for text in ASSUMPTIONS if text != IN_2D or any(design.per for design in designs)
+        ],
         table=TABLE,
     )
     write_text(folder / PAGE, page)
     return folder / PAGE
 
 
+IN_2D = (
+    "In 2D every part is as wide as the scene: a post is a wall. Give the panel a width for posts."
+)
 ASSUMPTIONS = (
     "Forces act from the snow on the obstacle. x points in the slide direction, z upwards.",
+    "A load is that of the snow that touches a part. A post also carries the panel above it: add "
+    "the load on the panel.",
+    "At rest means after the event. The snow that lies on a slope before it slides is not in the "
+    "table; its weight stands above the rules.",
+    "Snow lies without stress when an event begins. In the first hundredths of a second, the part "
+    "on which it lies has a peak of up to twice its weight, which is no load of sliding snow.",
     "A peak is the largest mean over the named time. A structure answers to it by its own period: "
     "a beam of 20 Hz hardly notices 1 ms.",
     "The snow is the snow of the scene. Wet or icy snow, and blocks of ice, hit harder.",
     "Obstacles are rigid and stand still. A beam that yields receives a smaller peak.",
+    IN_2D,
     "Creep and settling over weeks are not simulated. Settling snow pulls down a lower edge that "
     "it buries; no rule for this was found that could be read in its source, so none is given.",
 )
@@ -101,6 +116,7 @@ class Design:
         self.loads: pd.DataFrame = results.loads
         self.largest = structure_loads(self.loads)
         self.per = "/m" if self.scene["dimension"] == 2 else ""
+        self.slope = SnowSlope.of(results.scene) if self.scene.get("panel") else None
 
     @property
     def forces(self) -> xarray.Dataset:
@@ -162,24 +178,27 @@ class Design:
     def _load_grid(self) -> HtmlTable:
         rows = []
         for row in self.largest.to_dict("records"):
-            peaks = [f"{row[f'peak_{window}ms_n'] / 1000:.3g}" for window in WINDOWS]
+            peaks = [_kilo(row[f"peak_{window}ms_n"]) for window in WINDOWS]
             rows.append(
                 (
                     row["obstacle"],
-                    f"{row['rest_n'] / 1000:.3g}",
-                    f"{row['rest_fx_n'] / 1000:.3g}",
-                    f"{0.0 - row['rest_fz_n'] / 1000:.3g}",
+                    *(_kilo(row[f"rest_{name}"]) for name in ("n", "fx_n")),
+                    _kilo(-row["rest_fz_n"]),
                     *peaks,
-                    f"{row['rest_pressure_pa'] / 1000:.3g}",
-                    f"{row['peak_pressure_pa'] / 1000:.3g}",
+                    _kilo(row["peak_10ms_fx_n"]),
+                    _kilo(-row["peak_10ms_fz_n"]),
+                    f"{row['peak_10ms_time_s']:.2f}",
+                    _kilo(row["rest_pressure_pa"]),
+                    _kilo(row["peak_pressure_pa"]),
                 )
             )
         head = (
             "on", "in all", "along x", "down", *(f"{window} ms" for window in WINDOWS),
-            "at rest", "10 ms",
+            "along x", "down", "at, s", "at rest", "10 ms",
         )  # fmt: skip
         kn = f"kN{self.per}"
-        groups = (("", 1), (f"at rest, {kn}", 3), (f"peaks, {kn}", 3), ("pressure, kPa", 2))
+        groups = (("", 1), (f"at rest, {kn}", 3), (f"peaks, {kn}", 3),
+                  (f"the peak of 10 ms, {kn}", 3), ("pressure, kPa", 2))  # fmt: skip
         return HtmlTable(head, rows, "l" + "r" * (len(head) - 1), groups)
 
     def _forces_picture(self) -> Picture:
@@ -205,12 +224,12 @@ class Design:
     def _landing_grid(self) -> Optional[HtmlTable]:
         """Return the free flight of the first, the middle and the last snow of the slab."""
         panel = self.scene.get("panel")
-        if not panel:
+        if not panel or self.slope is None:
             return None
         rows = []
         for part, label in ((0.0, "at the edge"), (0.5, "halfway up"), (1.0, "at the upper end")):
             flight = landing(
-                part * panel["length"], panel["tilt"], panel["friction"],
+                part * self.slope.length, panel["tilt"], panel["friction"],
                 panel["height"], self.scene["gravity"], ground_tilt(self.scene),
             )  # fmt: skip
             rows.append(
@@ -222,17 +241,24 @@ class Design:
                     f"{flight.angle:.0f}",
                 )
             )
-        head = ("snow that lay", "speed at the edge, m/s", "lands at, m", "at, m/s", "degrees down")
+        head = (
+            "snow that lay", "speed at the edge, m/s", "lands from the edge, m",
+            "speed of landing, m/s", "degrees down",
+        )  # fmt: skip
         return HtmlTable(head, rows, "lrrrr")
 
     def _reach_grid(self) -> Optional[HtmlTable]:
         """Return the distances from the edge beyond which shares of each event's snow rest."""
-        if not self.scene.get("panel"):
+        if self.slope is None:
             return None
         edge, rows = panel_edge(self.scene), []
+        tilt = np.radians(self.scene["panel"]["tilt"])
         particles = self.results.particles()
+        behind = particles.position.to_numpy()[:, 0] < edge.x - self.slope.length * np.cos(tilt)
         for event in np.unique(particles.event.to_numpy()):
-            of_event = particles.event.to_numpy() == event
+            of_event = (particles.event.to_numpy() == event) & ~behind
+            if not of_event.any():
+                continue
             distances = particles.position.to_numpy()[of_event, 0] - edge.x
             masses = particles.mass.to_numpy()[of_event]
             far = [distance_passed_by(share, distances, masses) for share in SHARES]
@@ -243,15 +269,32 @@ class Design:
     def _rules(self, inputs: RuleInputs) -> Optional[dict[str, Any]]:
         """Return the table of rules, and where each of them ends."""
         panel = self.scene.get("panel")
-        if not panel:
+        if not panel or self.slope is None:
             return None
-        evaluated = rules(panel["length"], panel["tilt"], inputs)
+        evaluated = rules(self.slope.length, panel["tilt"], inputs)
         rows = [
             (rule.name, _value(rule), rule.clause, rule.formula, rule.inputs) for rule in evaluated
         ]
         head = ("load", "value", "clause", "formula", "inputs")
         limits = [f"{rule.clause}: {rule.limits} Read in {rule.source}." for rule in evaluated]
-        return {"table": HtmlTable(head, rows, "lllll"), "limits": limits}
+        return {
+            "table": HtmlTable(head, rows, "lllll"),
+            "limits": limits,
+            "snow": self._snow_sentence(self.slope, inputs.snow_load),
+        }
+
+    def _snow_sentence(self, slope: SnowSlope, snow_load: Optional[float]) -> str:
+        """Compare the simulated snow on the slope with that of the rules."""
+        text = (
+            f"The simulated snow of the first event lies on a slope of {slope.length:.2f} m and "
+            f"weighs {slope.load / 1000:.2f} kN/m² on plan."
+        )
+        if snow_load is None:
+            return text
+        same = abs(slope.load / (1000.0 * snow_load) - 1.0) < SAME_SNOW
+        return f"{text} The rules use {snow_load:g} kN/m²" + (
+            "." if same else ": this is other snow, so do not compare their loads with the table."
+        )
 
 
 def _names(results: Sequence[Results]) -> list[str]:
@@ -266,6 +309,11 @@ def _names(results: Sequence[Results]) -> list[str]:
         if all(names) and len(set(names)) == len(names):
             return names
     return [f"design {number}" for number in range(1, len(results) + 1)]
+
+
+def _kilo(value: float) -> str:
+    """Return a value in thousands; one below half a unit is 0."""
+    return f"{value / 1000:.3g}" if abs(value) >= 0.5 else "0"
 
 
 def _value(rule: Rule) -> str:
@@ -289,4 +337,4 @@ def _comparison(designs: Sequence[Design]) -> HtmlTable:
 
 
 def _both(row: Mapping[str, Any]) -> str:
-    return f"{row['peak_10ms_n'] / 1000:.3g} (10 ms), {row['rest_n'] / 1000:.3g} (rest)"
+    return f"{_kilo(row['peak_10ms_n'])} (10 ms), {_kilo(row['rest_n'])} (rest)"

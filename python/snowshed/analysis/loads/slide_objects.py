@@ -44,7 +44,8 @@ def object_loads(folder: Path, objects: Sequence[SlideObject], drag: float) -> p
     pandas.DataFrame
         A row for each object. Of one slide: ``pressure_kpa``, ``depth_m``, ``force_kn`` and, with a
         film, ``duration_s``. Of many slides: the 50th and the 95th percentile of these over the
-        slides, and the probability that the object is reached, with its 95 % interval.
+        slides, and the probability that the object is reached, with its 95 % interval. The notes of
+        a single slide are in ``attrs["notes"]``.
 
     Raises
     ------
@@ -84,7 +85,9 @@ def _loads_of_one(folder: Path, objects: Sequence[SlideObject], drag: float) -> 
             "force_kn": load.force,
         }
         rows.append(row | ({"duration_s": nodes.duration(frames)} if frames else {}))
-    return pd.DataFrame(rows)
+    table = pd.DataFrame(rows)
+    table.attrs["notes"] = list(getattr(results.summary, "notes", ()))
+    return table
 
 
 def _check_systems(crs: str, objects: Sequence[SlideObject]) -> None:

@@ -17,6 +17,7 @@ from snowshed._core import InputError
 SPREAD = 4.572
 #: Weight density of snow in the rule for overhangs, kN/m3.
 OVERHANG_WEIGHT = 3.0
+ICE = 917.0  # density, kg/m3
 
 
 @dataclass(frozen=True)
@@ -83,6 +84,13 @@ class RuleInputs:
         for name, value in vars(self).items():
             if value is not None and not (math.isfinite(value) and 0.0 < value <= 1e4):
                 raise InputError(f"{name}: {value:g} is not allowed; above 0 and at most 10000")
+        if self.snow_load is not None and self.snow_depth is not None:
+            density = 1000.0 * self.snow_load / 9.81 / self.snow_depth
+            if density > ICE:
+                raise InputError(
+                    f"snow_load, snow_depth: {self.snow_load:g} kN/m2 in {self.snow_depth:g} m is "
+                    f"a density of {density:.0f} kg/m3; at most that of ice, {ICE:g}"
+                )
 
 
 def rules(slope_length: float, tilt: float, inputs: RuleInputs) -> list[Rule]:
@@ -124,7 +132,9 @@ def _sliding(run: float, load: Optional[float]) -> Rule:
         value,
         "kN per m of edge",
         _missing(snow_load=load),
-        "Adds to the snow that lies on the lower roof. Not the impact of the fall.",
+        "Adds to the snow that lies on the lower roof. Not the impact of the fall. The clause is "
+        "known to reduce the load on a lower roof narrower than 15 ft in proportion: not done "
+        "here.",
         "a public summary of the clause",
     )
 
@@ -136,7 +146,7 @@ def _overhang(load: Optional[float], depth: Optional[float]) -> Rule:
     return Rule(
         "snow that overhangs the edge",
         "EN 1991-1-3, 6.3",
-        "k s^2 / gamma, k = 3 / d <= d gamma, gamma = 3 kN/m3",
+        "k s² / γ, k = 3 / d, at most d γ, γ = 3 kN/m³",
         f"{_given('s', load, 'kN/m2')}, {_given('d', depth, 'm')}",
         value,
         "kN per m of edge",
@@ -152,8 +162,8 @@ def _guards(run: float, tilt: float, load: Optional[float]) -> Rule:
     return Rule(
         "force on a snow guard at the edge, without friction",
         "EN 1991-1-3, 6.4",
-        "s b sin(alpha)",
-        f"{_given('s', load, 'kN/m2')}, b = {run:.2f} m, alpha = {tilt:g} degrees",
+        "s b sin α",
+        f"{_given('s', load, 'kN/m2')}, b = {run:.2f} m, α = {tilt:g}°",
         value,
         "kN per m of guard",
         _missing(snow_load=load),
@@ -172,10 +182,10 @@ def _creep(inputs: RuleInputs) -> Rule:
     return Rule(
         "creep and glide of the snow cover against a long wall",
         "Swiss guideline on defence structures (2007), equation 11",
-        "rho g H^2 / 2 K N",
+        "ρ g H² / 2 K N",
         ", ".join(
             (
-                _given("rho", inputs.snow_density, "kg/m3"),
+                _given("ρ", inputs.snow_density, "kg/m3"),
                 _given("H", inputs.snow_depth, "m"),
                 _given("K", inputs.creep_factor, ""),
                 _given("N", inputs.glide_factor, ""),
@@ -197,14 +207,14 @@ def _post(inputs: RuleInputs) -> Rule:
     return Rule(
         "creep and glide of the snow cover against a narrow post",
         "Margreth (2007, doi:10.1016/j.coldregions.2006.08.020)",
-        "S'_N eta_F",
-        f"{_given('eta_F', efficiency, '')}, S'_N as in the row above",
+        "S'_N η_F",
+        f"{_given('η_F', efficiency, '')}, S'_N as in the row above",
         value,
         "kN per m of the post's width",
         _missing(efficiency=efficiency, **wall),
-        "eta_F is above 1: a post holds snow beside it, too. The paper relates it to depth over "
+        "η_F is above 1: a post holds snow beside it, too. The paper relates it to depth over "
         "width and to the glide.",
-        "the abstract of the paper; its equation for eta_F was not available",
+        "the abstract of the paper; its equation for η_F was not available",
     )
 
 

@@ -12,6 +12,8 @@ if TYPE_CHECKING:
 
 #: Windows of the peaks, ms, as in the columns of loads.csv.
 WINDOWS = (1, 10, 100)
+#: The window whose peak has a direction and a time in tables, ms.
+DIRECTED = 10
 
 
 def structure_loads(loads: pd.DataFrame) -> pd.DataFrame:
@@ -26,14 +28,16 @@ def structure_loads(loads: pd.DataFrame) -> pd.DataFrame:
     -------
     pandas.DataFrame
         A row for each obstacle: the largest force at rest, with its direction, the event after
-        which it acts, and its pressure; the largest peaks with their events; the largest pressure.
+        which it acts, and its pressure; the largest peaks with their events; direction and time
+        of the largest peak of 10 ms; the largest pressure.
 
     Examples
     --------
     >>> import pandas as pd
     >>> row = {"event": 1, "obstacle": "post", "at_rest": 1, "peak_pressure_pa": 900.0,
     ...        "rest_fx_n": 3.0, "rest_fy_n": 0.0, "rest_fz_n": -4.0, "rest_pressure_pa": 10.0,
-    ...        **{f"peak_{w}ms_n": 50.0 for w in WINDOWS}}
+    ...        **{f"peak_{w}ms_n": 50.0 for w in WINDOWS}, "peak_10ms_time_s": 0.4,
+    ...        **{f"peak_10ms_f{axis}_n": 0.0 for axis in "xyz"}}
     >>> table = structure_loads(pd.DataFrame([row, {**row, "event": 2, "rest_fz_n": -8.0}]))
     >>> table[["obstacle", "rest_n", "rest_event"]].values.tolist()
     [['post', 8.54400374531753, 2]]
@@ -60,6 +64,10 @@ def _largest(loads: pd.DataFrame) -> Mapping[str, Any]:
     for window in WINDOWS:
         peaks = loads[f"peak_{window}ms_n"].to_numpy(float)
         largest[f"peak_{window}ms_n"] = float(peaks.max())
-        largest[f"peak_{window}ms_event"] = int(loads["event"].iloc[int(np.argmax(peaks))])
+        row = loads.iloc[int(np.argmax(peaks))]
+        largest[f"peak_{window}ms_event"] = int(row["event"])
+        if window == DIRECTED:
+            for name in (*(f"f{axis}_n" for axis in "xyz"), "time_s"):
+                largest[f"peak_{window}ms_{name}"] = float(row[f"peak_{window}ms_{name}"])
     largest["peak_pressure_pa"] = float(loads["peak_pressure_pa"].max())
     return largest

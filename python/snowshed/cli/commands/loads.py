@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
@@ -72,29 +72,42 @@ def loads(
       snowshed loads low-roof.json fence.json -o loads
       snowshed loads slide --objects masts.gpkg --drag 1.5
     """  # noqa: D301 - click wants the control character
+    inputs = (snow_load, snow_depth, snow_density, creep_factor, glide_factor, efficiency)
+    for source in sources:
+        if not source.exists():
+            raise InputError(f"{source}: no such scene file or results folder")
     if objects is not None:
+        if resume or dry_run or any(value is not None for value in inputs):
+            raise InputError("--objects: only with --layer, --drag and -o")
         _object_loads(sources, objects, layer, drag, folder, quiet=quiet)
         return
     if layer is not None or drag is not None:
         raise InputError("--layer, --drag: only with --objects")
+    scenes = {source: _with_forces(source) for source in sources if source.is_file()}
+    _check_folders(scenes, folder, several=len(sources) > 1, dry_run=dry_run)
     if dry_run:
-        for source in sources:
-            if source.is_file():
-                print_cost(_with_forces(source))
+        for source, resolved in scenes.items():
+            say(f"{source}:")
+            print_cost(resolved)
         return
     from snowshed.analysis.loads.report import write_loads
     from snowshed.analysis.loads.standards import RuleInputs
     from snowshed.results.view import shown_results
 
-    inputs = RuleInputs(snow_load, snow_depth, snow_density, creep_factor, glide_factor, efficiency)
+    rule_inputs = RuleInputs(*inputs)
+    done = [shown_results(source) for source in sources if source not in scenes]
+    for run in done:
+        if run.scene.data.get("terrain"):
+            raise InputError(f"{run.folder}: a slide: give its objects (--objects, --drag)")
+        _ = run.loads  # before other scenes run
     folders = [
-        source if source.is_dir() else _run(source, folder, resume=resume, quiet=quiet)
+        _run(scenes[source], Path(str(folder)) / source.stem, resume=resume, quiet=quiet)
+        if source in scenes
+        else source
         for source in sources
     ]
-    if folder is None and len(folders) > 1:
-        raise InputError("-o: several sources need a folder for their page")
     results = [shown_results(each) for each in folders]
-    page = write_loads(results, folder or folders[0], inputs)
+    page = write_loads(results, folder or folders[0], rule_inputs)
     if not quiet:
         print_loads(page)
 
@@ -105,16 +118,27 @@ def _with_forces(scene: Path) -> ResolvedScene:
     return Scene.load(scene).set("output.forces", True).resolve()
 
 
-def _run(scene: Path, folder: Optional[Path], *, resume: bool, quiet: bool) -> Path:
-    """Run a scene file with its forces, and return its results folder."""
+def _check_folders(
+    scenes: Mapping[Path, ResolvedScene], folder: Optional[Path], *, several: bool, dry_run: bool
+) -> None:
+    """Refuse scenes without folders of their own, before any of them runs."""
+    if folder is None and not dry_run:
+        for scene in scenes:
+            raise InputError(f"-o: the scene {scene} needs a folder for its run")
+        if several:
+            raise InputError("-o: several sources need a folder for their page")
+    stems = [scene.stem for scene in scenes]
+    for stem in stems:
+        if stems.count(stem) > 1:
+            raise InputError(f"two scenes are called {stem}: their runs need different names")
+
+
+def _run(scene: ResolvedScene, folder: Path, *, resume: bool, quiet: bool) -> Path:
+    """Run a scene with its forces, and return its results folder."""
     from snowshed.cli.run_scene import run_scene
 
-    if folder is None:
-        raise InputError(f"-o: the scene {scene} needs a folder for its run")
-    resolved = _with_forces(scene)
-    run_folder = folder / scene.stem
-    run_scene(resolved, run_folder, resume=resume and run_folder.is_dir(), quiet=quiet)
-    return run_folder
+    run_scene(scene, folder, resume=resume and folder.is_dir(), quiet=quiet)
+    return folder
 
 
 def _object_loads(
@@ -141,17 +165,33 @@ def _object_loads(
     write_csv(table, out / OBJECT_TABLE, float_format="%.6g")
     if quiet:
         return
-    shown = plain_table("Loads on objects", [str(name).replace("_", "\n", 1) for name in table])
+    shown = plain_table("Loads on objects", [_heading(str(name)) for name in table])
     for row in table.to_dict("records"):
         shown.add_row(
             *(f"{value:.3g}" if isinstance(value, float) else str(value) for value in row.values())
         )
     wide_console(120).print(shown)
+    for note in table.attrs.get("notes", ()):
+        say(note)
     say(
         "Pressure is drag times density times the square of the largest speed, the force that over "
-        "the width and the largest depth: an upper bound, because both need not come together."
+        "the width and the largest depth: an upper bound, because both need not come together, and "
+        "because the width is the largest one, wherever the flow comes from."
     )
     say(f"{OBJECT_TABLE} in {out}")
+
+
+def _heading(column: str) -> str:
+    r"""Return a column's name and its unit as the head of a table.
+
+    Examples
+    --------
+    >>> _heading("pressure_kpa_p95").split("\n"), _heading("reached_low").split("\n")
+    (['pressure', 'kPa', '95 %'], ['reached', '95 % from'])
+    """
+    words = {"kpa": "kPa", "kn": "kN", "p50": "50 %", "p95": "95 %", "low": "95 % from",
+             "high": "95 % to"}  # fmt: skip
+    return "\n".join(words.get(word, word) for word in column.split("_"))
 
 
 def print_loads(page: Path) -> None:
@@ -167,7 +207,7 @@ def print_loads(page: Path) -> None:
     )
     names = ("rest_n", "peak_1ms_n", "peak_10ms_n", "peak_100ms_n", "peak_pressure_pa")
     for row in table.to_dict("records"):
-        cells = [f"{row[name] / 1000:.3g}" for name in names]
+        cells = [f"{row[name] / 1000:.3g}" if row[name] >= 0.5 else "0" for name in names]
         design = (str(row["design"]),) if has_designs else ()
         shown.add_row(*design, str(row["obstacle"]), *cells)
     wide_console(120).print(shown)

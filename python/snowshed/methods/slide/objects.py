@@ -142,9 +142,16 @@ def read_objects(file: Path, layer: Optional[str] = None) -> list[SlideObject]:
     features = read_map_layer(file, layer, lines=True)
     parts, owners = shapely.get_parts(features.shapes, return_index=True)
     names = [name_of(features, number, "object") for number in range(len(features.shapes))]
+    counts = np.bincount(owners, minlength=len(names))
+    ranks = np.arange(len(owners)) - np.searchsorted(owners, owners) + 1
     objects = [
-        SlideObject(names[owner], part, features.crs, str(file))
-        for part, owner in zip(parts, owners.tolist())
+        SlideObject(
+            names[owner] if counts[owner] == 1 else f"{names[owner]}, part {rank}",
+            part,
+            features.crs,
+            str(file),
+        )
+        for part, owner, rank in zip(parts, owners.tolist(), ranks.tolist())
         if not part.is_empty
     ]
     if not objects:
