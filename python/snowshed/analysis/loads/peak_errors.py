@@ -80,6 +80,6 @@ def peak_error_sentence(scene: Mapping[str, Any]) -> str:
     return (
         "Loads depend on the grid. In recorded slide-offs onto the ground, a lower roof and a "
         f"fence (scheme {scheme}), cells four times as large changed the load on a part by at "
-        f"most: {listed}. The sum over all parts at rest is exact. Largest pressures are means over "
-        "patches of four cells, at least 5 cm, and grow as patches shrink."
+        f"most: {listed}. The sum over all parts at rest is exact. Largest pressures are means "
+        "over patches of four cells, at least 5 cm, and grow as patches shrink."
     )
