@@ -132,8 +132,8 @@ def runs(tmp_path_factory):
     """A run of every method, by its name."""
     folder = tmp_path_factory.mktemp("runs")
     scenes = {
-        "mpm": tiny_scene(**{"events.count": 1}),
-        "mps": tiny_mps(**{"events": {"count": 1, "max_time": 0.05}}),
+        "mpm": tiny_scene(**{"events.count": 1, "output.forces": True}),
+        "mps": tiny_mps(**{"events": {"count": 1, "max_time": 0.05}, "output.forces": True}),
         "slide": example_slide(folder).set("events.max_time", 0.5),
         "grains": grains_scene(write_labels(folder), VOXEL, [PRESSED]),
     }
