@@ -163,8 +163,8 @@ class _Outlines:
         shapely: Any = require("shapely", "terrain", "reading polygons")
         owners = _numbers([max(rings, 1) for rings in self.part_rings])  # of rings and lines
         is_line = np.array(self.part_rings, dtype=int) == 0
-        along = is_line[owners][_numbers(self.ring_sizes)]
         path_of = _numbers(self.ring_sizes)
+        along = is_line[owners][path_of]
         parts = np.empty(len(self.part_rings), dtype=object)
         try:
             parts[is_line] = shapely.linestrings(corners[along], indices=_ranks(path_of[along]))

@@ -125,26 +125,28 @@ def read_map_layer(
 def _areas(layer: PolygonLayer, fields: Sequence[ThicknessField], path: Path) -> Iterator[MapArea]:
     """Return the areas in the order of the features; each part of a feature is one."""
     shapely: Any = require("shapely", "terrain", "reading polygons")
-    facts = [
-        (
-            name_of(layer, number - 1, "area"),
-            thickness_of(fields, record, f"{path}, feature {number}"),
-        )
+    names = names_of(layer, "area")
+    thicknesses = [
+        thickness_of(fields, record, f"{path}, feature {number}")
         for number, record in enumerate(layer.records, 1)
     ]
     parts, owners = shapely.get_parts(layer.shapes, return_index=True)
     rings = _rings(parts, shapely)
     for part, owner in enumerate(owners.tolist()):
         if rings[part]:
-            name, thickness = facts[owner]
             outline, *holes = rings[part]
-            yield MapArea(name, outline, tuple(holes), thickness, layer.crs, str(path))
+            yield MapArea(
+                names[owner], outline, tuple(holes), thicknesses[owner], layer.crs, str(path)
+            )
 
 
-def name_of(layer: PolygonLayer, index: int, noun: str) -> str:
-    """Return the name of a feature: that of the field "name", or a noun with its number."""
+def names_of(layer: PolygonLayer, noun: str) -> list[str]:
+    """Return the names of all features: those of the field "name", or a noun with a number."""
     named = next((field for field in layer.fields if field.strip().lower() == "name"), "")
-    return shortened(str(layer.records[index].get(named) or f"{noun} {index + 1}"), MAX_NAME)
+    return [
+        shortened(str(record.get(named) or f"{noun} {number}"), MAX_NAME)
+        for number, record in enumerate(layer.records, 1)
+    ]
 
 
 def _rings(polygons: Any, shapely: Any) -> list[list[Ring]]:

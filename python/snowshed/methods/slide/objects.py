@@ -17,7 +17,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.base.arrays import Booleans, Floats
 from snowshed.base.extras import require
-from snowshed.io.raster.areas import name_of, read_map_layer
+from snowshed.io.raster.areas import names_of, read_map_layer
 from snowshed.methods.slide.frames import Frame
 
 #: Objects receive the snow of nodes up to this distance from them, in cells.
@@ -141,7 +141,7 @@ def read_objects(file: Path, layer: Optional[str] = None) -> list[SlideObject]:
     shapely: Any = require("shapely", "terrain", "loads on objects")
     features = read_map_layer(file, layer, lines=True)
     parts, owners = shapely.get_parts(features.shapes, return_index=True)
-    names = [name_of(features, number, "object") for number in range(len(features.shapes))]
+    names = names_of(features, "object")
     counts = np.bincount(owners, minlength=len(names))
     ranks = np.arange(len(owners)) - np.searchsorted(owners, owners) + 1
     objects = [
