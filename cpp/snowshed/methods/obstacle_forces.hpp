@@ -74,7 +74,7 @@ class ObstacleForces {
   /// The impulse (N s) that the snow received and that neither gravity nor obstacles explain.
   const Vec3& unbalanced() const { return unbalanced_; }
 
-  /// Adds the impulse on an obstacle in the present step, for the running means.
+  /// Adds the impulse of the present step on an obstacle to its running means.
   void add_step(std::size_t name, const Vec3& impulse) noexcept { step_[name] += impulse; }
   /// Ends a step of dt seconds.
   void end_step(double time, double dt) noexcept;

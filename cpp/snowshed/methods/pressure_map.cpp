@@ -24,6 +24,16 @@ int axis_of(const Vec3& normal) {
 /// The two other axes.
 constexpr int others[3][2] = {{1, 2}, {0, 2}, {0, 1}};
 
+template <class Archive, class Patches>
+void visit_patches(Archive& archive, Patches& patches) {
+  archive.columns(patches, column("forces/patch", &Patch::key),
+                  column("forces/point", &Patch::point), column("forces/normal", &Patch::normal),
+                  column("forces/pushed", &Patch::pushed),
+                  column("forces/pushed_before", &Patch::pushed_before),
+                  column("forces/sampled", &Patch::sampled), column("forces/peak", &Patch::peak),
+                  column("forces/peak_time", &Patch::peak_time));
+}
+
 }  // namespace
 
 std::int32_t PressureMap::patch_at(int obstacle, const Vec3& point, const Vec3& normal) {
@@ -104,23 +114,13 @@ void PressureMap::end_half(double time) noexcept {
 void PressureMap::save(io::BinaryWriter& out) const {
   StateWriter archive(out);
   archive.numbers("forces/half", half_began_, half_before_);
-  archive.columns(patches_, column("forces/patch", &Patch::key),
-                  column("forces/point", &Patch::point), column("forces/normal", &Patch::normal),
-                  column("forces/pushed", &Patch::pushed),
-                  column("forces/pushed_before", &Patch::pushed_before),
-                  column("forces/sampled", &Patch::sampled), column("forces/peak", &Patch::peak),
-                  column("forces/peak_time", &Patch::peak_time));
+  visit_patches(archive, patches_);
 }
 
 void PressureMap::load(const io::BinaryReader& in, std::size_t obstacles) {
   const StateReader archive(in);
   archive.numbers("forces/half", half_began_, half_before_);
-  archive.columns(patches_, column("forces/patch", &Patch::key),
-                  column("forces/point", &Patch::point), column("forces/normal", &Patch::normal),
-                  column("forces/pushed", &Patch::pushed),
-                  column("forces/pushed_before", &Patch::pushed_before),
-                  column("forces/sampled", &Patch::sampled), column("forces/peak", &Patch::peak),
-                  column("forces/peak_time", &Patch::peak_time));
+  visit_patches(archive, patches_);
   index_.clear();
   for (std::size_t i = 0; i < patches_.size(); ++i) {
     Patch& patch = patches_[i];

@@ -1,4 +1,4 @@
-"""Pressures of the snow on faces, in colour, for the moving view."""
+"""Peak pressures of the snow on faces, as colours in the moving view."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Optional, TypedDict
+from typing import TYPE_CHECKING, Any, Optional, TypedDict, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,8 @@ from snowshed.io.run_files import check_run_file
 if TYPE_CHECKING:
     import pandas as pd
     import xarray
+
+DataT = TypeVar("DataT", "xarray.Dataset", "xarray.DataArray")
 
 FORCES, LOADS = "forces.csv", "loads.csv"
 #: The row of forces.csv for the change of momentum that no obstacle and not gravity explains.
@@ -70,7 +72,7 @@ class FacePressures(TypedDict):
     peak_time: Floats
 
 
-def on_obstacles(forces: xarray.Dataset) -> xarray.Dataset:
+def on_obstacles(forces: DataT) -> DataT:
     """Return the forces on obstacles, without the change of momentum that is unexplained."""
     return forces.sel(obstacle=forces.obstacle != UNBALANCED)
 

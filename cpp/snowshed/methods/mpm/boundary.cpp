@@ -233,7 +233,7 @@ std::vector<typename Contacts<T, D>::StoredForce> Contacts<T, D>::stored_forces(
     for (std::size_t i = first_[b]; i < first_[b + 1]; ++i) {
       ContactForce<T> f = forces_[i];
       sum_impulse(f);
-      if (f.age == T(0) && f.sum[0] == T(0) && f.sum[1] == T(0) && f.sum[2] == T(0)) continue;
+      if (f.age == T(0) && is_empty(f)) continue;
       stored.push_back({blocks_[b],
                         contacts_[i].node,
                         contacts_[i].obstacle,

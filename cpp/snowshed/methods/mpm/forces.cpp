@@ -1,8 +1,8 @@
 // The record of the forces on obstacles.
 //
 // Each node's contact gives the snow an impulse, m (v - v_free), in each step; the obstacle
-// receives the opposite. Sleeping snow takes part in no step. Its contacts go on with their mean
-// forces, and what these lack to hold the snow in place follows from the balance of momentum.
+// receives the opposite. Sleeping snow takes part in no step. Its contacts keep their mean forces.
+// The balance of momentum gives the part that these lack to hold the snow in place.
 #include <map>
 #include <numeric>
 #include <utility>
@@ -199,11 +199,6 @@ void collect(ObstacleForces& record, const BlockCoord<D>& block, const Contact<T
   record.add(record.name_of(c.obstacle), impulse);
   if (force.patch >= 0) record.pressures().push(force.patch, impulse.push);
   std::fill_n(force.sum, 4, T(0));
-}
-
-template <class T>
-bool is_empty(const ContactForce<T>& force) {
-  return force.sum[0] == T(0) && force.sum[1] == T(0) && force.sum[2] == T(0);
 }
 
 template <class T, int D>

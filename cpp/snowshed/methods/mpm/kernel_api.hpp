@@ -204,6 +204,12 @@ struct ContactForce {
   std::int32_t patch = -1;  // index into the pressure map
 };
 
+/// Whether a contact has no impulse since the last collection.
+template <class T>
+bool is_empty(const ContactForce<T>& force) {
+  return force.sum[0] == T(0) && force.sum[1] == T(0) && force.sum[2] == T(0);
+}
+
 /// Adds the impulse of the step that was just taken to the sum of a contact.
 template <class T>
 SNOWSHED_INLINE void sum_impulse(ContactForce<T>& force) {

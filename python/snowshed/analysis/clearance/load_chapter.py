@@ -11,7 +11,7 @@ import numpy as np
 from snowshed.analysis.clearance.answer import ClearanceResult
 from snowshed.analysis.loads.free_flight import landing
 from snowshed.analysis.loads.peak_errors import peak_error_sentence
-from snowshed.analysis.loads.structures import WINDOWS, structure_loads
+from snowshed.analysis.loads.structures import WINDOWS, kilo, structure_loads
 from snowshed.base.formatting import percent
 from snowshed.plot.html_page import HtmlTable
 from snowshed.results.season_folder import SeasonFolder
@@ -92,8 +92,8 @@ class WorstLoads:
         rows = [
             (
                 str(row["obstacle"]),
-                f"{row['rest_n'] / 1000:.3g}",
-                *(f"{row[f'peak_{window}ms_n'] / 1000:.3g}" for window in WINDOWS),
+                kilo(row["rest_n"]),
+                *(kilo(row[f"peak_{window}ms_n"]) for window in WINDOWS),
             )
             for row in structure_loads(self.loads).to_dict("records")
         ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional, cast
 
@@ -13,7 +14,7 @@ from snowshed.analysis.loads.peak_errors import peak_error_sentence
 from snowshed.analysis.loads.reach import SHARES, distance_passed_by
 from snowshed.analysis.loads.slope import SnowSlope
 from snowshed.analysis.loads.standards import Rule, RuleInputs, rules
-from snowshed.analysis.loads.structures import WINDOWS, structure_loads
+from snowshed.analysis.loads.structures import WINDOWS, kilo, structure_loads
 from snowshed.base.formatting import percent
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
@@ -118,7 +119,7 @@ class Design:
         self.per = "/m" if self.scene["dimension"] == 2 else ""
         self.slope = SnowSlope.of(results.scene) if self.scene.get("panel") else None
 
-    @property
+    @cached_property
     def forces(self) -> xarray.Dataset:
         """The forces over time."""
         return cast("xarray.Dataset", self.results.forces)
@@ -150,15 +151,12 @@ class Design:
         return sentences
 
     def _unbalanced_share(self) -> float:
-        from snowshed.results.obstacle_forces import UNBALANCED
+        from snowshed.results.obstacle_forces import UNBALANCED, on_obstacles
 
-        forces = self.forces
-        impulse = (forces.force * forces.duration).sum("time")
-        sizes = np.linalg.norm(impulse.to_numpy(), axis=-1)
-        names = impulse.obstacle.to_numpy().tolist()
-        at = names.index(UNBALANCED)
-        most = max((size for place, size in enumerate(sizes) if place != at), default=0.0)
-        return float(sizes[at] / most) if most > 0.0 else 0.0
+        impulses = (self.forces.force * self.forces.duration).sum("time")
+        sizes = (impulses**2).sum("component") ** 0.5
+        largest = float(on_obstacles(sizes).max())
+        return float(sizes.sel(obstacle=UNBALANCED)) / largest if largest > 0.0 else 0.0
 
     def section(self, inputs: RuleInputs, *, named: bool) -> dict[str, Any]:
         """Return the section of the page."""
@@ -173,23 +171,23 @@ class Design:
         }
 
     def _kn(self, newtons: float) -> str:
-        return f"{newtons / 1000:.3g} kN{self.per}"
+        return f"{kilo(newtons)} kN{self.per}"
 
     def _load_grid(self) -> HtmlTable:
         rows = []
         for row in self.largest.to_dict("records"):
-            peaks = [_kilo(row[f"peak_{window}ms_n"]) for window in WINDOWS]
+            peaks = [kilo(row[f"peak_{window}ms_n"]) for window in WINDOWS]
             rows.append(
                 (
                     row["obstacle"],
-                    *(_kilo(row[f"rest_{name}"]) for name in ("n", "fx_n")),
-                    _kilo(-row["rest_fz_n"]),
+                    *(kilo(row[f"rest_{name}"]) for name in ("n", "fx_n")),
+                    kilo(-row["rest_fz_n"]),
                     *peaks,
-                    _kilo(row["peak_10ms_fx_n"]),
-                    _kilo(-row["peak_10ms_fz_n"]),
+                    kilo(row["peak_10ms_fx_n"]),
+                    kilo(-row["peak_10ms_fz_n"]),
                     f"{row['peak_10ms_time_s']:.2f}",
-                    _kilo(row["rest_pressure_pa"]),
-                    _kilo(row["peak_pressure_pa"]),
+                    kilo(row["rest_pressure_pa"]),
+                    kilo(row["peak_pressure_pa"]),
                 )
             )
         head = (
@@ -311,11 +309,6 @@ def _names(results: Sequence[Results]) -> list[str]:
     return [f"design {number}" for number in range(1, len(results) + 1)]
 
 
-def _kilo(value: float) -> str:
-    """Return a value in thousands; one below half a unit is 0."""
-    return f"{value / 1000:.3g}" if abs(value) >= 0.5 else "0"
-
-
 def _value(rule: Rule) -> str:
     if rule.value is None:
         return f"needs {', '.join(rule.missing)}"
@@ -337,4 +330,4 @@ def _comparison(designs: Sequence[Design]) -> HtmlTable:
 
 
 def _both(row: Mapping[str, Any]) -> str:
-    return f"{_kilo(row['peak_10ms_n'])} (10 ms), {_kilo(row['rest_n'])} (rest)"
+    return f"{kilo(row['peak_10ms_n'])} (10 ms), {kilo(row['rest_n'])} (rest)"

@@ -16,6 +16,17 @@ WINDOWS = (1, 10, 100)
 DIRECTED = 10
 
 
+def kilo(value: float) -> str:
+    """Return a load in thousands for a table; less than half a unit is 0.
+
+    Examples
+    --------
+    >>> kilo(-1234.5), kilo(8e-17)
+    ('-1.23', '0')
+    """
+    return f"{value / 1000:.3g}" if abs(value) >= 0.5 else "0"
+
+
 def structure_loads(loads: pd.DataFrame) -> pd.DataFrame:
     """Return the largest loads on each obstacle over all events.
 

@@ -27,7 +27,7 @@ OBJECT_TABLE = "object_loads.csv"
     help="Folder of the page, and of the runs of scene files.  [default: the results folder]",
 )
 @click.option(
-    "--snow-load", type=float, help="Snow load on the roof or panel, for the rules [kN/m2]."
+    "--snow-load", type=float, help="Snow load on the roof or panel [kN/m2]; the rules use it."
 )
 @click.option(
     "--snow-depth", type=float, help="Depth of the snow cover, for overhangs and creep [m]."
@@ -123,8 +123,8 @@ def _check_folders(
 ) -> None:
     """Refuse scenes without folders of their own, before any of them runs."""
     if folder is None and not dry_run:
-        for scene in scenes:
-            raise InputError(f"-o: the scene {scene} needs a folder for its run")
+        if scenes:
+            raise InputError(f"-o: the scene {next(iter(scenes))} needs a folder for its run")
         if several:
             raise InputError("-o: several sources need a folder for their page")
     stems = [scene.stem for scene in scenes]
@@ -197,6 +197,7 @@ def _heading(column: str) -> str:
 def print_loads(page: Path) -> None:
     """Print the largest loads, from the table beside the page."""
     from snowshed.analysis.loads.report import TABLE
+    from snowshed.analysis.loads.structures import kilo
     from snowshed.io.csv_table import read_csv
 
     table = read_csv(page.parent / TABLE)
@@ -207,7 +208,7 @@ def print_loads(page: Path) -> None:
     )
     names = ("rest_n", "peak_1ms_n", "peak_10ms_n", "peak_100ms_n", "peak_pressure_pa")
     for row in table.to_dict("records"):
-        cells = [f"{row[name] / 1000:.3g}" if row[name] >= 0.5 else "0" for name in names]
+        cells = [kilo(row[name]) for name in names]
         design = (str(row["design"]),) if has_designs else ()
         shown.add_row(*design, str(row["obstacle"]), *cells)
     wide_console(120).print(shown)
