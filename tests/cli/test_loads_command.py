@@ -59,21 +59,36 @@ def test_wrong_calls_are_refused(tmp_path, monkeypatch, capsys, arguments, messa
     assert not (tmp_path / "out").exists()
 
 
-def test_objects_in_the_way_of_a_slide_have_their_loads(tmp_path, capsys):
+@pytest.fixture()
+def everywhere(tmp_path):
+    """A file with one object that covers every terrain."""
     pytest.importorskip("shapely")
-    assert snowshed("slide", "--example", "--max-time", 2, "-o", tmp_path / "slide", "-q") == 0
-    summary = json.loads((tmp_path / "slide/slide.json").read_text())
-    everywhere = [[0, 0], [1e6, 0], [1e6, 1e7], [0, 1e7], [0, 0]]
+    corners = [[0, 0], [1e6, 0], [1e6, 1e7], [0, 1e7], [0, 0]]
     feature = {"type": "Feature", "properties": {"name": "everything"},
-               "geometry": {"type": "Polygon", "coordinates": [everywhere]}}  # fmt: skip
-    (tmp_path / "objects.geojson").write_text(json.dumps(
+               "geometry": {"type": "Polygon", "coordinates": [corners]}}  # fmt: skip
+    file = tmp_path / "objects.geojson"
+    file.write_text(json.dumps(
         {"type": "FeatureCollection", "features": [feature],
          "crs": {"type": "name", "properties": {"name": "EPSG:31287"}}}
     ))  # fmt: skip
-    assert snowshed("loads", tmp_path / "slide", "--objects", tmp_path / "objects.geojson",
-                    "--drag", 1.5) == 0  # fmt: skip
+    return file
+
+
+def test_objects_in_the_way_of_a_slide_have_their_loads(tmp_path, capsys, everywhere):
+    assert snowshed("slide", "--example", "--max-time", 2, "-o", tmp_path / "slide", "-q") == 0
+    summary = json.loads((tmp_path / "slide/slide.json").read_text())
+    assert snowshed("loads", tmp_path / "slide", "--objects", everywhere, "--drag", 1.5) == 0
     table = pd.read_csv(tmp_path / "slide/object_loads.csv")
     assert table.object.tolist() == ["everything"]
     assert table.pressure_kpa[0] == pytest.approx(1.5 * summary["peak_pressure_kpa"], rel=1e-3)
     shown = " ".join(capsys.readouterr().out.split())
     assert "upper bound" in shown and "still moving at the time limit" in shown
+
+
+def test_unfinished_slides_of_many_are_counted_beside_the_loads(tmp_path, capsys, everywhere):
+    assert snowshed("slide", "--example", "--max-time", 1, "--range", "mu=0.3:0.5", "--runs", 2,
+                    "--jobs", 1, "-o", tmp_path / "maps", "-q") == 0  # fmt: skip
+    assert snowshed("loads", tmp_path / "maps", "--objects", everywhere, "--drag", 1.5) == 0
+    assert pd.read_csv(tmp_path / "maps/object_loads.csv").slides[0] == 2
+    shown = " ".join(capsys.readouterr().out.split())
+    assert "In 2 of 2 runs the slide had not come to rest at the time limit." in shown

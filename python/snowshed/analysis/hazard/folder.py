@@ -29,6 +29,7 @@ from snowshed.analysis.hazard.maps import (
     HazardMaps,
     hazard_facts,
     hazard_maps,
+    moving_notes,
     uncertainty,
 )
 from snowshed.base.arrays import Floats
@@ -152,17 +153,13 @@ def _notes(maps: HazardMaps, scene: Mapping[str, Any], table: pd.DataFrame) -> l
         "bonds_broken": 0.0,
     }
     notes = validity_notes(areas, scene[SETTINGS_KEY], figures)
-    counts = {
-        "more than a tenth of the bonds broke: they did not move as a unit": (
-            table["bonds_broken"] > MAX_BROKEN_SHARE * table["bonds_made"]
-        ),
-        "the slide had not come to rest at the time limit": table["ended"] == "time_limit",
-    }
-    return notes + [
-        f"In {slides.sum()} of {maps.runs} runs {what}."
-        for what, slides in counts.items()
-        if slides.any()
-    ]
+    broken = int((table["bonds_broken"] > MAX_BROKEN_SHARE * table["bonds_made"]).sum())
+    if broken:
+        notes.append(
+            f"In {broken} of {maps.runs} runs more than a tenth of the bonds broke: they did not "
+            "move as a unit."
+        )
+    return [*notes, *moving_notes(table, maps.runs)]
 
 
 def _write(file: Path, maps: HazardMaps, values: Any) -> None:

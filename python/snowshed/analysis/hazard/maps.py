@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Optional
+from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 
@@ -17,6 +17,9 @@ from snowshed.methods.slide.maps import PeakMaps
 from snowshed.scene.scene import ResolvedScene
 from snowshed.scene.terrain_grid import slide_terrain
 from snowshed.study.store import Store
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 #: Mapped quantities, with their units and AvaFrame's names of the rasters.
 QUANTITIES: Mapping[str, tuple[str, str]] = {
@@ -234,6 +237,22 @@ def stored_maps(store: Store, hash_: str) -> PeakMaps:
         except InputError as error:
             raise store.damaged(f"run {hash_}: {error}") from None
     raise InputError(f"{store.folder}: run {hash_} kept no maps; compute it with --keep-particles")
+
+
+def moving_notes(table: pd.DataFrame, runs: int) -> list[str]:
+    """Return a note on the slides that were still moving at the time limit, if there are any.
+
+    Parameters
+    ----------
+    table
+        The table of the study, as from `read_table`.
+    runs
+        Number of computed slides.
+    """
+    moving = int((table["ended"] == "time_limit").sum())
+    if not moving:
+        return []
+    return [f"In {moving} of {runs} runs the slide had not come to rest at the time limit."]
 
 
 def _check(reached: float, pressures: Sequence[float], percentiles: Sequence[int]) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.analysis.hazard.maps import stored_maps, wilson_interval
+from snowshed.analysis.hazard.maps import moving_notes, stored_maps, wilson_interval
 from snowshed.io.film import FILM, Film
 from snowshed.io.raster.raster import Raster
 from snowshed.methods.slide.frames import slide_frames
@@ -19,6 +19,7 @@ from snowshed.scene.builders.terrain_checks import common_system
 from snowshed.scene.scene import ResolvedScene
 from snowshed.scene.terrain_grid import slide_terrain
 from snowshed.study.store import Store
+from snowshed.study.table import read_table
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -45,7 +46,7 @@ def object_loads(folder: Path, objects: Sequence[SlideObject], drag: float) -> p
         A row for each object. Of one slide: ``pressure_kpa``, ``depth_m``, ``force_kn`` and, with a
         film, ``duration_s``. Of many slides: the 50th and the 95th percentile of these over the
         slides, and the probability that the object is reached, with its 95 % interval. The notes of
-        a single slide are in ``attrs["notes"]``.
+        the slides are in ``attrs["notes"]``.
 
     Raises
     ------
@@ -131,4 +132,6 @@ def _loads_of_many(folder: Path, objects: Sequence[SlideObject], drag: float) ->
             for percentile in PERCENTILES:
                 row[f"{name}_p{percentile}"] = float(np.percentile(values, percentile))
         rows.append(row)
-    return pd.DataFrame(rows)
+    table = pd.DataFrame(rows)
+    table.attrs["notes"] = moving_notes(read_table(folder / RUNS), len(done))
+    return table

@@ -330,6 +330,8 @@ def print_season(result: SeasonResult, folder: Path, scene: ResolvedScene) -> No
         console.print(f"error of the grid: {bias}")
     if result.simulated:
         console.print(f"the snow in motion: snowshed view {folder}")
+    if result.simulated and scene.data["output"]["forces"]:
+        console.print(f"the loads of the snow: snowshed loads {folder}")
 
 
 def _rows(result: SeasonResult) -> tuple[list[dict[str, Any]], int]:
