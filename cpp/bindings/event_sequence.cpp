@@ -132,6 +132,12 @@ void bind_event_sequence(py::module_& m) {
             run::ExternalRecord(s).describe_machine(std::move(facts));
           },
           "facts"_a)
+      .def(
+          "set_ageing",
+          [](run::EventSequence& s, const std::string& settings) {
+            run::ExternalRecord(s).set_ageing(settings);
+          },
+          "settings"_a)
       .def_property(
           "tables", [](const run::EventSequence& s) { return s.record().tables; },
           [](run::EventSequence& s, run::RunRecord::Tables tables) {

@@ -3,6 +3,7 @@
 
 #include "bindings.hpp"
 #include "method_bindings.hpp"
+#include "snowshed/core/build_id.hpp"
 #include "snowshed/core/version.hpp"
 
 namespace py = pybind11;
@@ -10,6 +11,8 @@ namespace py = pybind11;
 PYBIND11_MODULE(_core, m) {
   m.doc() = "The compiled core of snowshed.";
   m.attr("version") = SNOWSHED_VERSION;
+  m.attr("build_id") = snowshed::build_id();
+  m.attr("build_commit") = snowshed::build_commit();
   snowshed::register_errors(m);
   snowshed::bind_scene(m);
   snowshed::bind_simulation(m);

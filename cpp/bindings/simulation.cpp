@@ -211,6 +211,7 @@ void bind_run(SimulationClass& c) {
         s.step(count);
       },
       "count"_a = 1);
+  c.changes("at_rest", [](run::Simulation& s) { return s.at_rest(); });
   c.changes("add_snow", &add_snow, "positions"_a, "mass"_a, "velocity"_a, "material_id"_a);
   c.changes(
       "add_velocity",

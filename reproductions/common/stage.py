@@ -126,7 +126,7 @@ class StudyStage:
                 text = f"{name}: {progress.done}/{progress.count} simulations"
                 report((number + progress.fraction) / len(names), text)
 
-            resume(self.runs, name, jobs=jobs, progress=report_runs)
+            resume(self.runs, name, jobs=jobs, same_version=True, progress=report_runs)
 
     def failure(self) -> str:
         """Return a text with the number of failed simulations; empty if none failed."""
@@ -146,8 +146,9 @@ class StudyStage:
             with Store.create(self.runs) as store:
                 for study in studies:
                     store.register(
-                        study.name, study.axes, study.runs(), keep_particles=self._keep_particles
-                    )
+                        study.name, study.axes, study.runs(), keep_particles=self._keep_particles,
+                        same_version=True,
+                    )  # fmt: skip
             self._names = [study.name for study in studies]
         return self._names
 

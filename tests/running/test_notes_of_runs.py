@@ -31,7 +31,7 @@ def notes_of(folder):
 
 def test_run_events_warns_and_records_notes(tmp_path):
     with pytest.warns(SnowshedNote), record_notes() as notes:
-        run_events(tiny_scene(**{"panel.friction": 3.0}), tmp_path / "run", pictures=False)
+        run_events(tiny_scene(**{"panel.friction": 2.0}), tmp_path / "run", pictures=False)
     assert notes == notes_of(tmp_path / "run")
     assert [note.split(":")[0] for note in notes] == [
         "the slab is 20 mm thick, less than two cells of 20 mm",

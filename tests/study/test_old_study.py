@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 import study_helpers
 
-from snowshed import _core
+from snowshed import SnowshedNote, _core
+from snowshed.base.build import build_id
 from snowshed.study import Study
 from snowshed.study.database import FILE
 from snowshed.study.table import read_table
@@ -31,9 +32,18 @@ def store(tmp_path, monkeypatch):
 def test_an_old_study_is_not_computed_again(store, scripted_workers):
     study = Study.load(OLD / "study.toml")
     assert study.scene.numerics.courant_factor == 0.9
-    table = study.run(store)
+    table = study.run(store, same_version=True)
     assert scripted_workers.tasks == []
     assert table["height_m"].tolist() == [0.318458004]
+    assert table["build"].tolist() == [""]  # unknown
+
+
+def test_by_default_an_old_study_is_computed_again_and_says_so(store, scripted_workers):
+    study = Study.load(OLD / "study.toml")
+    with pytest.warns(SnowshedNote, match="^1 run of .*: computed by another build of snowshed"):
+        table = study.run(store)
+    assert len(scripted_workers.tasks) == 1
+    assert set(table["build"]) == {build_id()}
 
 
 @pytest.mark.parametrize("writable", [True, False])

@@ -83,7 +83,7 @@ def test_maps_do_not_depend_on_the_bands_of_the_terrain(computed_folder, monkeyp
 def test_a_study_without_maps_is_refused(study, tmp_path):
     small = Study.product(study.scene.set("events.max_time", 0.1), {"numerics.friction": [0.3]})
     small.compute(tmp_path / "runs", jobs=1, threads=1)
-    with pytest.raises(InputError, match=r"kept no maps.*--keep-particles"):
+    with pytest.raises(InputError, match=r"kept no maps.*`keep_particles=True`"):
         hazard_maps(tmp_path / "runs")
 
 

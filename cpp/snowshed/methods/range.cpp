@@ -6,6 +6,11 @@
 
 namespace snowshed::methods {
 
+bool Range::is_usual(double value) const {
+  const double magnitude = std::abs(value);
+  return magnitude == 0.0 || (usual_min <= magnitude && magnitude <= usual_max);
+}
+
 bool Range::contains(double value) const {
   if (!std::isfinite(value)) return false;
   return (open_min ? value > min : value >= min) && (open_max ? value < max : value <= max);

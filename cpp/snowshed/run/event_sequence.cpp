@@ -4,6 +4,7 @@
 #include <exception>
 #include <utility>
 
+#include "snowshed/core/build_id.hpp"
 #include "snowshed/methods/capabilities.hpp"
 
 namespace fs = std::filesystem;
@@ -15,8 +16,10 @@ EventSequence EventSequence::create(const scene::Scene& scene, const fs::path& b
   ResultsFolder::require_empty(folder);
   auto sim = std::make_unique<Simulation>(scene, base_dir);
   sim->begin_event(stop);  // seeding may fail, and then nothing must be left behind
+  RunRecord record;
+  record.mark_inputs(sim->scene(), base_dir);
   ResultsFolder results = ResultsFolder::create(folder, sim->scene());
-  return {std::move(sim), std::move(results), {}};
+  return {std::move(sim), std::move(results), std::move(record)};
 }
 
 EventSequence EventSequence::resume(const scene::Scene& scene, const fs::path& base_dir,
@@ -26,6 +29,7 @@ EventSequence EventSequence::resume(const scene::Scene& scene, const fs::path& b
   auto sim = fs::exists(results.checkpoint()) ? results.load_checkpoint(scene)
                                               : std::make_unique<Simulation>(scene, base_dir);
   record.keep_through(sim->event() - int(sim->event_running()));
+  record.mark_inputs(sim->scene(), base_dir);
   if (scene.output.film && fs::exists(results.film())) sim->record_film(results.film());
   return {std::move(sim), std::move(results), std::move(record)};
 }
@@ -86,10 +90,16 @@ void EventSequence::begin_event(EventObserver& observer) {
 }
 
 void EventSequence::report_notes(EventObserver& observer) {
-  for (; reported_notes_ < sim_->notes().size(); ++reported_notes_) {
-    const std::string& note = sim_->notes()[reported_notes_];
-    if (record_.add_note(note)) observer.noted(note);
-  }
+  if (const std::string earlier = std::exchange(record_.build, build_id());
+      !earlier.empty() && earlier != build_id())
+    note(observer, "the run was begun by the build " + earlier + " of snowshed, and resumed by " +
+                       build_id());
+  for (; reported_notes_ < sim_->notes().size(); ++reported_notes_)
+    note(observer, sim_->notes()[reported_notes_]);
+}
+
+void EventSequence::note(EventObserver& observer, const std::string& text) {
+  if (record_.add_note(text)) observer.noted(text);
 }
 
 /// Returns how the event ended; paused if the observer stopped it.

@@ -76,6 +76,7 @@ class EventSequence {
   bool is_done() const;
   void begin_event(EventObserver&);
   void report_notes(EventObserver&);
+  void note(EventObserver&, const std::string& text);
   RunEnd run_event(EventObserver&, double report_interval);
   void end_event(EventObserver&, RunEnd);
   void checkpoint(EventObserver&, RunStatus);

@@ -12,6 +12,10 @@ void ExternalRecord::describe_machine(std::map<std::string, std::string> facts) 
   sequence_.record_.machine = std::move(facts);
 }
 
+void ExternalRecord::set_ageing(const std::string& settings) {
+  sequence_.record_.ageing = settings;
+}
+
 void ExternalRecord::set_finished_work(std::int64_t steps, double wall) {
   sequence_.set_finished_work(steps, wall);
 }

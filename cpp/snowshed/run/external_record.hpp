@@ -22,6 +22,8 @@ class ExternalRecord {
   void add_note(const std::string& note);
   /// Sets further facts about the machine, by key.
   void describe_machine(std::map<std::string, std::string> facts);
+  /// Sets the settings with which the stack ages between events, as a JSON object.
+  void set_ageing(const std::string& settings);
   /// Sets the number of steps and the wall time (s) of all finished events. Runs of the version
   /// before need this, because their run.json does not list these events.
   void set_finished_work(std::int64_t steps, double wall);

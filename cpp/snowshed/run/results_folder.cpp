@@ -66,7 +66,7 @@ void ResultsFolder::require_empty(const fs::path& folder) {
     return std::all_of(begin(entries), end(entries), io::is_leftover);
   });
   if (!empty)
-    throw InputError(folder.string(), "not empty; choose a new folder, or resume with --resume");
+    throw InputError(folder.string(), "not empty; choose a new folder, or resume the run in it");
 }
 
 ResultsFolder ResultsFolder::create(fs::path folder, const scene::Scene& scene) {

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
+#include <fstream>
 #include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "snowshed/core/build_id.hpp"
 #include "snowshed/core/kernel_variant.hpp"
 #include "snowshed/core/memory.hpp"
 #include "snowshed/core/message_format.hpp"
@@ -17,6 +20,7 @@
 #include "snowshed/methods/capabilities.hpp"
 #include "snowshed/scene/json_text.hpp"
 #include "snowshed/scene/json_value.hpp"
+#include "snowshed/scene/scene_json.hpp"
 
 namespace snowshed::run {
 namespace {
@@ -94,17 +98,50 @@ RunRecord::Tables table_checksums(const json& j) {
   return tables;
 }
 
-RunRecord::Files file_marks(const json& j) {
-  if (!j.is_object()) throw scene::wrong_type("/files", j, "an object");
+RunRecord::Files file_marks(const json& j, const std::string& where) {
+  if (!j.is_object()) throw scene::wrong_type(where, j, "an object");
   RunRecord::Files marks;
   for (const auto& [name, mark] : j.items()) {
-    const std::string path = pointer("/files", name);
+    const std::string path = pointer(where, name);
     const double bytes =
         scene::to_number(require(mark, "bytes", path), path + "/bytes", "a number");
     marks[name] = {std::uint64_t(std::clamp(bytes, 0.0, 1e15)),
                    scene::to_text(require(mark, "checksum", path), path + "/checksum")};
   }
   return marks;
+}
+
+ordered_json to_json(const RunRecord::Files& files) {
+  ordered_json j = ordered_json::object();
+  for (const auto& [name, mark] : files)
+    j[name] = {{"bytes", mark.bytes}, {"checksum", mark.checksum}};
+  return j;
+}
+
+/// Reads a file in blocks, because the files of a scene may be large.
+FileMark mark_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  io::Crc32 sum;
+  FileMark mark;
+  char block[1 << 16];
+  while (stream) {
+    stream.read(block, sizeof block);
+    sum.update(block, std::size_t(stream.gcount()));
+    mark.bytes += std::uint64_t(stream.gcount());
+  }
+  if (!stream.eof()) throw InputError(file.string(), "cannot be read");
+  mark.checksum = io::hexadecimal(sum.value());
+  return mark;
+}
+
+/// The time now in UTC, "2026-11-27T20:35:14Z".
+std::string utc_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  gmtime_r(&now, &parts);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return text;
 }
 
 std::vector<std::string> note_list(const json& j) {
@@ -156,7 +193,10 @@ RunRecord RunRecord::read(const std::filesystem::path& file,
     throw InputError("text", "its checksum is missing");
   record.wall = scene::to_number(require(j, "wall_s", "/"), "/wall_s", "a number");
   if (j.contains("tables")) record.tables = table_checksums(j["tables"]);
-  if (j.contains("files")) record.files = file_marks(j["files"]);
+  if (j.contains("files")) record.files = file_marks(j["files"], "/files");
+  if (j.contains("inputs")) record.inputs = file_marks(j["inputs"], "/inputs");
+  if (j.contains("ageing")) record.ageing = j["ageing"].dump();
+  if (j.contains("build")) record.build = scene::to_text(j["build"], "/build");
   if (j.contains("notes")) record.notes = note_list(j["notes"]);
   if (!j.contains("finished_events")) return record;  // written by an earlier version
   const json& events = j["finished_events"];
@@ -173,7 +213,9 @@ void RunRecord::write(const std::filesystem::path& file, const Simulation& sim, 
                       const std::string& error) const {
   const methods::Method& method = sim.method();
   const methods::StepCounters& c = method.counters();
-  ordered_json j{{"version", SNOWSHED_VERSION}, {"kernels", kernel_variant_name()}};
+  ordered_json j{{"version", SNOWSHED_VERSION}, {"build", build_id()},
+                 {"commit", build_commit()},    {"compiler", compiler_name()},
+                 {"date", utc_now()},           {"kernels", kernel_variant_name()}};
   for (const auto& [key, fact] : machine) j[key] = fact;
   j["threads"] = sim.threads();
   j["scalar"] = sim.scene().numerics->scalar();
@@ -196,22 +238,25 @@ void RunRecord::write(const std::filesystem::path& file, const Simulation& sim, 
   j["finished_events"] = ordered_json::array();
   for (const EventRecord& record : finished_events) j["finished_events"].push_back(to_json(record));
   if (!tables.empty()) j["tables"] = tables;
-  j["files"] = ordered_json::object();
-  for (const auto& [name, mark] : files)
-    j["files"][name] = {{"bytes", mark.bytes}, {"checksum", mark.checksum}};
+  j["files"] = to_json(files);
+  j["inputs"] = to_json(inputs);
   if (!scene.empty()) j["scene_checksum"] = scene;
   if (const auto film = sim.film_mark())
     j["film"] = {{"frames", film->frames}, {"checksum", io::hexadecimal(film->checksum)}};
   j["status"] = name_of(status);
   if (!error.empty()) j["error"] = error;
+  if (!ageing.empty()) j["ageing"] = ordered_json::parse(ageing);
+  j["scene"] = ordered_json::parse(scene::write_scene(sim.scene()));
   io::write_atomic(file, scene::sealed_text(j));
 }
 
+void RunRecord::mark_inputs(const scene::Scene& scene, const std::filesystem::path& base_dir) {
+  for (const std::string& file : scene::input_files(scene))
+    if (!inputs.count(file)) inputs[file] = mark_of(base_dir / file);
+}
+
 void RunRecord::mark_file(const std::filesystem::path& folder, const std::string& name) {
-  const std::string bytes = io::read_bytes(folder / name);
-  io::Crc32 sum;
-  sum.update(bytes.data(), bytes.size());
-  files[name] = {bytes.size(), io::hexadecimal(sum.value())};
+  files[name] = mark_of(folder / name);
 }
 
 void RunRecord::check_files(const std::filesystem::path& folder) const {

@@ -65,6 +65,9 @@ class RunRecord {
   void write(const std::filesystem::path& file, const Simulation&, RunStatus,
              const std::string& error = "") const;
 
+  /// Records length and checksum of each file that the scene names, unless they are known.
+  void mark_inputs(const scene::Scene& scene, const std::filesystem::path& base_dir);
+
   /// Records length and checksum of a file in the folder.
   void mark_file(const std::filesystem::path& folder, const std::string& name);
 
@@ -83,8 +86,11 @@ class RunRecord {
   // Tables and other files that another program keeps in the folder, see ExternalRecord.
   Tables tables;
   Files files;
-  std::string scene;  // the checksum of scene.json, see scene_checksum
-  double wall = 0;    // s, of the run so far
+  std::string ageing;  // settings of the ageing of the stack between events, as JSON; empty: none
+  Files inputs;        // the files that the scene names, by their paths
+  std::string scene;   // the checksum of scene.json, see scene_checksum
+  std::string build;   // the build that wrote the record before, see build_id; empty if unknown
+  double wall = 0;     // s, of the run so far
 };
 
 }  // namespace snowshed::run

@@ -105,6 +105,7 @@ std::optional<Reseeding> Simulation::begin_event(const StopRequest& stop) {
   running_ = true;
   event_start_ = method_->time();
   rest_.start_event(event_start_);
+  rests_ = false;
   if (curve_) curve_->record(*method_);
   if (forces_) forces_->begin_event(*method_, event_);
   return reseeding;
@@ -271,8 +272,7 @@ void Simulation::record() {
 /// reached it.
 std::optional<RunEnd> Simulation::event_end() {
   constexpr double rounding = 1e-6;  // share of a step
-  const std::optional<bool> method_rests = method_->at_rest();
-  const bool rests = method_rests ? *method_rests : rest_.due(method_->time()) && is_at_rest();
+  const bool rests = at_rest();
   if (event_time() <= 0) return std::nullopt;  // snow cannot have been at rest for zero seconds
   if (rests) return RunEnd::rest;
   if (event_time() >= scene_.events.max_time - rounding * method_->time_step())
@@ -280,7 +280,13 @@ std::optional<RunEnd> Simulation::event_end() {
   return std::nullopt;
 }
 
-bool Simulation::is_at_rest() {
+bool Simulation::at_rest() {
+  if (const std::optional<bool> method_rests = method_->at_rest()) return *method_rests;
+  if (rest_.due(method_->time())) rests_ = detect_rest();
+  return rests_;
+}
+
+bool Simulation::detect_rest() {
   const methods::MotionSummary m = method_->motion(scene_.events.rest_speed);
   const double brought = event_mass_ > 0 ? event_mass_ : m.mass;
   const double speed = m.rms_speed * std::sqrt(m.mass / std::max(brought, 1e-300));
@@ -311,7 +317,10 @@ Simulation::Pressures Simulation::pressures() const {
 
 void Simulation::step(int count) {
   if (!running_) throw SimulationError("no event is running; begin_event first");
-  for (int i = 0; i < count; ++i) advance();
+  for (int i = 0; i < count; ++i) {
+    at_rest();  // rest is a matter of time, so that each step counts
+    advance();
+  }
 }
 
 RunReport Simulation::report(double rms_speed) const {

@@ -141,6 +141,8 @@ class Simulation {
   /// sentence each.
   const std::vector<std::string>& notes() const { return notes_; }
   bool event_running() const { return running_; }
+  /// Whether the snow has come to rest, as `run` decides it.
+  bool at_rest();
   double event_time() const { return method_->time() - event_start_; }
   int threads() const;
 
@@ -186,7 +188,7 @@ class Simulation {
                    const StopRequest& stop);
   void advance();
   void record();
-  bool is_at_rest();
+  bool detect_rest();
   std::optional<RunEnd> event_end();
   std::unique_ptr<methods::Method> empty_method() const;
   static std::unique_ptr<Simulation> from_archive(const io::BinaryReader&, const scene::Scene&,
@@ -213,6 +215,7 @@ class Simulation {
   std::unique_ptr<EnergyHistory> energies_;  // for methods without a curve, if output.energy is set
   std::unique_ptr<ForceHistory> forces_;     // if output.forces is set
   RestDetector rest_;
+  bool rests_ = false;  // as detected last
   std::vector<std::string> notes_;
   int event_ = 0;
   bool running_ = false;

@@ -52,17 +52,18 @@ template <class V>
 void describe(V& v, material::Snow& s) {
   v.choice("model", s.model, "Law: cohesive Modified Cam-Clay, or elastic without yielding");
   const double before = s.density;
-  v.number("density", s.density, "kg/m3", methods::positive.up_to(1000.0),
+  v.number("density", s.density, "kg/m3", methods::positive.up_to(1000.0).usual(20, 917),
            "Initial bulk density; sets E and p0 unless given");
   if (s.density != before) s.scale_from_density(before);
-  v.number("youngs_modulus", s.youngs_modulus, "Pa", methods::allowed::pressure,
+  v.number("youngs_modulus", s.youngs_modulus, "Pa", methods::allowed::pressure.usual(1e4, 1e10),
            "Young's modulus E");
   v.number("poissons_ratio", s.poissons_ratio, "", methods::non_negative.below(0.5),
            "Poisson's ratio nu");
-  v.number("critical_state_slope", s.critical_state_slope, "", methods::allowed::coefficient,
+  v.number("critical_state_slope", s.critical_state_slope, "",
+           methods::allowed::coefficient.usual(0.05, 3),
            "Slope M of the critical state line (internal friction)");
   v.number("preconsolidation_pressure", s.preconsolidation_pressure, "Pa",
-           methods::allowed::pressure, "Initial preconsolidation pressure p0");
+           methods::allowed::pressure.usual(50, 1e7), "Initial preconsolidation pressure p0");
   v.number("cohesion", s.cohesion, "", methods::fraction,
            "Cohesion beta: tensile strength over p0");
   v.number("hardening_factor", s.hardening_factor, "", methods::positive.up_to(1e3),
@@ -156,7 +157,7 @@ void describe(V& v, scene::ObstacleSpec& o) {
   v.text("name", o.name, "Name in messages and results");
   v.object("shape", o.shape, methods::Need::required, "The solid");
   v.choice("condition", o.condition, condition_doc);
-  v.number("friction", o.friction, "", methods::allowed::coefficient,
+  v.number("friction", o.friction, "", methods::allowed::coefficient.usual(0.01, 2),
            "Coulomb coefficient; unused when sticky");
   v.optional("motion", o.motion, "Prescribed rigid motion; fixed without it");
 }
@@ -176,23 +177,24 @@ void describe(V& v, scene::Panel& p) {
   v.alias("height", "lower_edge_height");  // the words of pvlib
   v.alias("length", "slant_height");
   v.alias("tilt", "surface_tilt");
-  v.number("height", p.height, "m", methods::allowed::size_or_zero.required(),
+  v.number("height", p.height, "m", methods::allowed::size_or_zero.required().usual(0.01, 50),
            "Vertical distance of the lower edge above the ground");
-  v.number("length", p.length, "m", methods::allowed::size.required(), "Length along the slope");
-  v.number("width", p.width, "m", methods::allowed::size.required_in_3d(),
+  v.number("length", p.length, "m", methods::allowed::size.required().usual(0.05, 200),
+           "Length along the slope");
+  v.number("width", p.width, "m", methods::allowed::size.required_in_3d().usual(0.05, 2000),
            "Width across the slope; ignored in 2D");
-  v.number("tilt", p.tilt, "degrees", methods::non_negative.up_to(90.0),
+  v.number("tilt", p.tilt, "degrees", methods::non_negative.up_to(90.0).usual(3, 90),
            "Tilt from the horizontal");
-  v.number("thickness", p.thickness, "m", methods::allowed::size_or_zero,
+  v.number("thickness", p.thickness, "m", methods::allowed::size_or_zero.usual(1e-4, 5),
            "Thickness, below the sliding face");
   v.choice("condition", p.condition, condition_doc);
-  v.number("friction", p.friction, "", methods::allowed::coefficient,
+  v.number("friction", p.friction, "", methods::allowed::coefficient.usual(0.01, 2),
            "Coulomb coefficient; unused when sticky");
 }
 
 template <class V>
 void describe(V& v, scene::Layer& l) {
-  v.number("thickness", l.thickness, "m", methods::allowed::size.required(),
+  v.number("thickness", l.thickness, "m", methods::allowed::size.required().usual(1e-3, 5),
            "Thickness, normal to the panel");
   v.optional("snow", l.snow,
              "Snow of its own; values that are left out are those of the scene's snow");
@@ -202,7 +204,7 @@ void describe(V& v, scene::Layer& l) {
 
 template <class V>
 void describe(V& v, scene::Slab& s) {
-  v.number("thickness", s.thickness, "m", methods::allowed::size_or_zero,
+  v.number("thickness", s.thickness, "m", methods::allowed::size_or_zero.usual(1e-3, 5),
            "Thickness, normal to the panel; 0: that of the layers");
   v.number("length", s.length, "m", methods::allowed::size_or_zero,
            "Length; 0: as long as the panel");
@@ -215,10 +217,10 @@ void describe(V& v, scene::Slab& s) {
 template <class V>
 void describe(V& v, scene::Ground& g) {
   v.number("tilt", g.tilt, "degrees",
-           methods::Range{-60.0, 60.0, true, true, methods::Need::optional},
+           methods::Range{-60.0, 60.0, true, true, methods::Need::optional}.usual(2, 60),
            "Tilt; positive falls in the slide direction");
   v.choice("condition", g.condition, condition_doc);
-  v.number("friction", g.friction, "", methods::allowed::coefficient,
+  v.number("friction", g.friction, "", methods::allowed::coefficient.usual(0.01, 2),
            "Coulomb coefficient; unused when sticky");
 }
 
@@ -233,7 +235,7 @@ void describe(V& v, methods::AreaSpec& a) {
   v.outline("outline", a.outline, "Corners, in the terrain's coordinates");
   v.list("holes", a.holes, methods::between(0, 1000),
          "Parts within the outline that do not belong to it");
-  v.number("thickness", a.thickness, "m", methods::positive.up_to(100.0).required(),
+  v.number("thickness", a.thickness, "m", methods::positive.up_to(100.0).required().usual(0.02, 10),
            "Thickness of the snow, normal to the ground");
 }
 
@@ -276,8 +278,8 @@ void describe(V& v, methods::SampleSpec& s) {
   v.file("file", s.file,
          "Segmented image: an NPY file of integers (nz, ny, nx), 0 air and any other number a "
          "grain; relative to the scene file");
-  v.number("voxel_size", s.voxel_size, "m", methods::between(1e-9, 1.0).required(),
-           "Edge of a voxel");
+  v.number("voxel_size", s.voxel_size, "m",
+           methods::between(1e-9, 1.0).required().usual(1e-6, 1e-3), "Edge of a voxel");
   v.flag("split_labels", s.split_labels,
          "Whether each connected piece of a label is a grain; else all pieces of a label are one "
          "rigid grain");
@@ -300,9 +302,9 @@ void describe(V& v, methods::LoadingStage& s) {
 
 template <class V>
 void describe(V& v, methods::Cone& c) {
-  v.number("radius", c.radius, "m", methods::between(1e-9, 1.0),
+  v.number("radius", c.radius, "m", methods::between(1e-9, 1.0).usual(1e-4, 0.1),
            "Radius of the cone's base and of the shaft");
-  v.number("half_angle", c.half_angle, "degrees", methods::positive.up_to(90.0),
+  v.number("half_angle", c.half_angle, "degrees", methods::positive.up_to(90.0).usual(3, 90),
            "Angle between the axis and the cone's side");
 }
 
@@ -390,7 +392,8 @@ void describe(V& v, Scene& s) {
   // Stands before any vector, because it decides how vectors are written.
   v.integer("dimension", s.dimension, methods::between(2, 3), "2: the plane (x, z); 3: space");
   v.text("title", s.title, "Title of the scene");
-  v.number("gravity", s.gravity, "m/s2", methods::non_negative.up_to(1e3), "Gravity, along -z");
+  v.number("gravity", s.gravity, "m/s2", methods::non_negative.up_to(1e3).usual(1, 30),
+           "Gravity, along -z");
   v.choice("misplaced_snow", s.misplaced_snow,
            "Treatment of a scene that seeds more than 1 % of a body of snow inside an obstacle, "
            "below the ground, outside the domain, or within other snow");

@@ -96,6 +96,14 @@ void complete_snow(nlohmann::json& scene) {
   }
 }
 
+/// Takes the scene out of the record of a run (run.json); any other document stays as it is.
+void take_scene_of_record(nlohmann::json& document) {
+  if (!document.is_object() || document.contains("snowshed")) return;
+  if (!document.contains("scene") || !document["scene"].is_object()) return;
+  nlohmann::json scene = std::move(document["scene"]);
+  document = std::move(scene);
+}
+
 InputError with_file_name(const InputError& error, const std::string& file) {
   if (error.where().rfind(file, 0) == 0) return error;
   const std::string message = error.what();
@@ -108,6 +116,7 @@ Scene parse_scene(const std::string& text, const std::string& name,
                   std::vector<std::string>* notes) {
   Scene scene;
   nlohmann::json json = parse_json(text, name);
+  take_scene_of_record(json);
   const std::vector<std::string> changed = update_version(json);
   if (notes) notes->insert(notes->end(), changed.begin(), changed.end());
   complete_snow(json);
@@ -131,6 +140,15 @@ std::vector<std::string> shape_files(const Scene& scene) {
   std::vector<std::string> files;
   for (const auto& obstacle : scene.obstacles) add_files(obstacle.shape, files);
   for (const auto& body : scene.bodies) add_files(body.shape, files);
+  return files;
+}
+
+std::vector<std::string> input_files(const Scene& scene) {
+  std::vector<std::string> files = shape_files(scene);
+  if (scene.terrain)
+    for (const std::string& file : {scene.terrain->file, scene.terrain->thickness_file})
+      if (!file.empty()) files.push_back(file);
+  if (scene.sample) files.push_back(scene.sample->file);
   return files;
 }
 

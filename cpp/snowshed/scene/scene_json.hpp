@@ -13,6 +13,7 @@ namespace snowshed::scene {
 /// Reads and validates a scene. Missing values of a layer's or a body's snow are those of the
 /// scene's snow. Throws InputError whose `where` is the JSON pointer of the offending value
 /// ("/snow/density", "/" for the scene itself), or "name:line:column" when the text is not JSON.
+/// The record of a run (run.json) stands for the scene in it.
 /// The text need not be trusted: its size, depth and number of values are limited. `notes` (if any)
 /// gets the new names of fields in a scene of an earlier version.
 Scene parse_scene(const std::string& text, const std::string& name = "scene",
@@ -24,6 +25,9 @@ Scene with_absolute_files(const std::filesystem::path& folder, Scene scene);
 /// The mesh and grid files that the shapes of a scene name, as they are written there, without
 /// repetition.
 std::vector<std::string> shape_files(const Scene& scene);
+
+/// All files that a scene names, as they are written there, without repetition.
+std::vector<std::string> input_files(const Scene& scene);
 
 /// `parse_scene` on a file; errors name it. Mesh and grid files given by a relative path are
 /// looked for beside the scene file, so the result does not depend on the working directory.

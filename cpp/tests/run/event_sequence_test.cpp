@@ -7,7 +7,10 @@
 
 #include "io/temporary_folder.hpp"
 #include "run/simulation_testing.hpp"
+#include "snowshed/core/build_id.hpp"
 #include "snowshed/core/errors.hpp"
+#include "snowshed/scene/json_text.hpp"
+#include "snowshed/scene/scene_json.hpp"
 
 namespace snowshed::run {
 namespace {
@@ -198,6 +201,62 @@ TEST_F(EventSequenceTest, LeavesNoFilesIfItCannotBegin) {
   EXPECT_FALSE(std::filesystem::exists(path("a")));
   write_plainly(path("file"), "");
   EXPECT_THROW(EventSequence::create(two_events(), ".", path("file")), InputError);
+}
+
+TEST_F(EventSequenceTest, TheRecordAloneMakesTheSameResults) {
+  EventObserver quiet;
+  EXPECT_TRUE(EventSequence::create(two_events(), ".", path("a")).run(quiet, never));
+  const auto record = nlohmann::json::parse(content(path("a") / "run.json"));
+  EXPECT_EQ(record["build"], build_id());
+  EXPECT_EQ(record["compiler"], compiler_name());
+  const scene::Scene again = scene::load_scene(path("a") / "run.json");
+  EXPECT_TRUE(EventSequence::create(again, ".", path("b")).run(quiet, never));
+  for (const char* file : {"scene.json", "particles/event_001.vtp", "particles/event_002.vtp"})
+    EXPECT_EQ(content(path("a") / file), content(path("b") / file)) << file;
+}
+
+TEST_F(EventSequenceTest, FilesOfTheSceneHaveChecksumsInTheRecord) {
+  std::ofstream(path("solid.stl")) << "solid s\n"
+                                   << "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+                                   << "vertex 0 1 0\nendloop\nendfacet\nendsolid s\n";
+  scene::Scene scene;
+  scene::ObstacleSpec& obstacle = scene.obstacles.emplace_back();
+  obstacle.shape.type = "mesh";
+  obstacle.shape.file = "solid.stl";
+  RunRecord record;
+  record.mark_inputs(scene, path(""));
+  ASSERT_EQ(record.inputs.count("solid.stl"), 1u);
+  EXPECT_EQ(record.inputs["solid.stl"].bytes, std::filesystem::file_size(path("solid.stl")));
+  const std::string before = record.inputs["solid.stl"].checksum;
+  std::ofstream(path("solid.stl"), std::ios::app) << " ";
+  RunRecord later;
+  later.mark_inputs(scene, path(""));
+  EXPECT_NE(later.inputs["solid.stl"].checksum, before);
+}
+
+/// Collects the notes of a run.
+class Listener : public EventObserver {
+ public:
+  explicit Listener(bool stops) : stops_(stops) {}
+  void noted(const std::string& note) override { notes += note + "; "; }
+  bool stop_requested() override { return stops_; }
+  std::string notes;
+
+ private:
+  bool stops_;
+};
+
+TEST_F(EventSequenceTest, AnotherBuildThatResumesIsNoted) {
+  Listener first(true), same(true), other(false);
+  EXPECT_FALSE(EventSequence::create(two_events(), ".", path("a")).run(first, 0));
+  EXPECT_FALSE(EventSequence::resume(two_events(), ".", path("a")).run(same, 0));
+  EXPECT_EQ(same.notes, "");
+  auto record = nlohmann::ordered_json::parse(content(path("a") / "run.json"));
+  record.erase("checksum");
+  record["build"] = "0123456789ab";
+  std::ofstream(path("a") / "run.json") << scene::sealed_text(record);
+  EXPECT_TRUE(EventSequence::resume(two_events(), ".", path("a")).run(other, never));
+  EXPECT_NE(other.notes.find("begun by the build 0123456789ab"), std::string::npos) << other.notes;
 }
 
 }  // namespace

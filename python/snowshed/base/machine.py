@@ -7,6 +7,10 @@ import resource
 import sys
 from pathlib import Path
 
+import numpy as np
+
+from snowshed.base.build import package_digest
+
 
 def cpu_name() -> str:
     """Return the name of the processor; empty if the system does not provide it."""
@@ -25,5 +29,11 @@ def peak_memory_mb() -> float:
 
 
 def machine_facts() -> dict[str, str]:
-    """Return the facts about the machine that run.json holds."""
-    return {"machine": platform.platform(), "cpu": cpu_name()}
+    """Return the facts about the machine, and about this program, that run.json holds."""
+    return {
+        "package": package_digest(),
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "machine": platform.platform(),
+        "cpu": cpu_name(),
+    }

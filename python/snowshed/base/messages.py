@@ -16,6 +16,10 @@ MAX_LENGTH = 60  # characters
 HARMFUL = re.compile(
     "[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]"
 )
+#: An argument of a function in a message, such as `max_thickness=`.
+_ARGUMENT = re.compile(r"`([a-z]\w*)=([^`\s]*)`")
+#: Arguments whose options have another name.
+_OPTIONS = {"same_version": "same-version-is-enough"}
 FORMULA = ("=", "+", "-", "@", "\t", "\r")  # beginnings of cells that spreadsheets compute
 
 
@@ -54,6 +58,27 @@ def suggestion(given: str, allowed: Iterable[str]) -> str:
     by_lower = {word.lower(): word for word in allowed}
     near = difflib.get_close_matches(given.lower(), by_lower, n=1)
     return f"; did you mean {by_lower[near[0]]}?" if near else ""
+
+
+def as_options(text: str) -> str:
+    """Return a message for the command line: arguments of functions become its options.
+
+    Messages name an argument with an equals sign and in backticks, as in Python.
+
+    Examples
+    --------
+    >>> as_options("give `max_thickness=`, or resume it with `resume=True`")
+    'give --max-thickness, or resume it with --resume'
+    >>> as_options("`threshold=0.5` takes all numbers above 0 for ice")
+    '--threshold 0.5 takes all numbers above 0 for ice'
+    """
+    return _ARGUMENT.sub(_option, text)
+
+
+def _option(argument: re.Match[str]) -> str:
+    name, value = argument.groups()
+    option = "--" + _OPTIONS.get(name, name).replace("_", "-")
+    return option if value in ("", "True") else f"{option} {value}"
 
 
 def printable(text: object) -> str:

@@ -14,7 +14,7 @@ from snowshed.io.json_file import read_object
 
 
 def check_empty(
-    folder: PathLike, otherwise: str = "; choose a new folder, or use --resume"
+    folder: PathLike, otherwise: str = "; choose a new folder, or resume the run with `resume=True`"
 ) -> None:
     """Raise InputError unless results may be written to `folder`: it is new, or empty.
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from snowshed._core import InputError
+from snowshed.base.json_values import JsonValue
 from snowshed.io.csv_table import Table
 from snowshed.io.input_file import read_regular
 from snowshed.io.json_file import read_object
@@ -31,6 +32,20 @@ def read_run_record(folder: Path) -> dict[str, Any]:
     """
     path = folder / RECORD
     return read_object(path) if path.is_file() else {}
+
+
+def scene_of_record(document: JsonValue) -> JsonValue:
+    """Return the scene in the record of a run (run.json); any other document is one itself.
+
+    Examples
+    --------
+    >>> scene_of_record({"version": "0.1.0", "scene": {"snowshed": 2}})
+    {'snowshed': 2}
+    """
+    if isinstance(document, dict) and "snowshed" not in document:
+        scene = document.get("scene")
+        return scene if isinstance(scene, dict) else document
+    return document
 
 
 def file_mark(path: Path) -> tuple[int, str]:

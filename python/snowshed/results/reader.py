@@ -27,9 +27,12 @@ from snowshed.methods.summary import Summary
 from snowshed.results.film import film_dataset, run_film
 from snowshed.results.folder import ENERGY, EVENTS, read_events
 from snowshed.results.grid import grid_dataset, stored_grid
+from snowshed.results.html import results_html
 from snowshed.results.method_results import MethodResults
 from snowshed.results.obstacle_forces import FacePressures
 from snowshed.results.particle_dataset import particle_dataset
+from snowshed.results.particle_table import particle_table
+from snowshed.results.provenance import recorded_origin, with_origin
 from snowshed.scene.scene import ResolvedScene
 from snowshed.snow.stack.measure import StackMeasure
 
@@ -114,14 +117,14 @@ class Results(MethodResults):
                 raise method.missing("events", self.folder)
             path = self.folder / EVENTS
             raise MissingResultError(f"{path}: missing; a run that ended an event writes it")
-        return with_units(read_events(self.folder))
+        return with_origin(with_units(read_events(self.folder)), self._origin)
 
     @property
     def outline(self) -> pd.DataFrame:
         """The profile of the stack after each event: event, x and z, m (outline.csv)."""
         table = self._numbers("outline.csv", ("event", "x", "z"), "a run that ended an event")
         table.attrs["units"] = {"x": "m", "z": "m"}
-        return table
+        return with_origin(table, self._origin)
 
     @property
     def energy(self) -> xarray.Dataset:
@@ -134,7 +137,7 @@ class Results(MethodResults):
         dataset: xarray.Dataset = library.Dataset.from_dataframe(table.set_index("event"))
         for name in dataset.data_vars:
             dataset[name].attrs["units"] = unit_of_column(str(name))
-        return dataset
+        return with_origin(dataset, self._origin)
 
     @property
     def energy_history(self) -> pd.DataFrame:
@@ -142,7 +145,7 @@ class Results(MethodResults):
         columns = ("event", "time_s", "added_j")
         table = self._numbers(HISTORY, columns, "a run with output.energy = true")
         table.attrs["units"] = {str(name): unit_of_column(str(name)) for name in table.columns[1:]}
-        return table
+        return with_origin(table, self._origin)
 
     def particles(self, event: Optional[int] = None) -> xarray.Dataset:
         """Return the particles after an event.
@@ -158,7 +161,24 @@ class Results(MethodResults):
             Dimensions ``particle``, with the ids, and ``component``.
         """
         number, file = self._stored_event(event)
-        return particle_dataset(read_particles(file), number, self._duration(number))
+        dataset = particle_dataset(read_particles(file), number, self._duration(number))
+        return with_origin(dataset, self._origin)
+
+    def particle_table(self, event: Optional[int] = None) -> pd.DataFrame:
+        """Return the particles after an event as a table; it needs no xarray.
+
+        Parameters
+        ----------
+        event
+            Its number, from 1; None: the last event.
+
+        Returns
+        -------
+        pandas.DataFrame
+            A row for each particle, by id, with columns such as ``position_x`` and ``density``.
+        """
+        _, file = self._stored_event(event)
+        return with_origin(particle_table(read_particles(file)), self._origin)
 
     def grid(self, event: Optional[int] = None) -> xarray.Dataset:
         """Return mass, velocity and density at the nodes of the grid after an event.
@@ -177,13 +197,15 @@ class Results(MethodResults):
             Dimensions x, (y,) z, the nodes, and component.
         """
         number, file = self._stored_event(event)
-        return grid_dataset(stored_grid(self.scene.data, file), number, self._duration(number))
+        dataset = grid_dataset(stored_grid(self.scene.data, file), number, self._duration(number))
+        return with_origin(dataset, self._origin)
 
     def _stored_event(self, event: Optional[int]) -> tuple[int, Path]:
         """Return the number of an event, the last by default, and the file of its particles."""
         file_by_event = {
-            int(file.stem.rpartition("_")[2]): file
+            int(digits): file
             for file in (self.folder / "particles").glob("event_*.vtp")
+            if (digits := file.stem.rpartition("_")[2]).isdecimal()
         }
         if not file_by_event:
             raise InputError(f"{self.folder / 'particles'}: holds no particles")
@@ -210,7 +232,8 @@ class Results(MethodResults):
             raise InputError(f"{path}: missing; a run with output.snapshot_interval writes it")
         for time, file in read_series(path):
             values = read_particles(file)
-            yield particle_dataset(values, int(values["event"].max(initial=0)), time)
+            dataset = particle_dataset(values, int(values["event"].max(initial=0)), time)
+            yield with_origin(dataset, self._origin)
 
     @property
     def stack(self) -> StackMeasure:
@@ -235,7 +258,7 @@ class Results(MethodResults):
     def result(self, name: str) -> object:
         """Return a result of the scene's method by its name, such as "maps"."""
         value: object = method_of(self.scene.data).read(name, self.folder)
-        return value
+        return with_origin(value, self._origin)
 
     @property
     def film(self) -> Film:
@@ -251,7 +274,11 @@ class Results(MethodResults):
         Dimensions ``frame``, ``particle`` and ``component``; ``time`` counts through all events.
         A position is exact to half a millimetre, and finer where the scene is small.
         """
-        return film_dataset(self.film, every)
+        return with_origin(film_dataset(self.film, every), self._origin)
+
+    @cached_property
+    def _origin(self) -> dict[str, str]:
+        return recorded_origin(self.scene, read_run_record(self.folder))
 
     def _numbers(self, name: str, columns: tuple[str, ...], writer: str) -> pd.DataFrame:
         """Return a table whose numbers are all finite."""
@@ -269,6 +296,19 @@ class Results(MethodResults):
 
     def __repr__(self) -> str:
         return f"Results({str(self.folder)!r})"
+
+    def _repr_html_(self) -> str:
+        """Return the picture and the table of the results for notebooks."""
+        figures = {}
+        if hasattr(self, "summary"):
+            figures = {name: getattr(self.summary, name) for name in type(self.summary).columns()}
+        return results_html(
+            str(self.scene.data.get("title") or ""),
+            self.folder,
+            self.events if hasattr(self, "events") else None,
+            figures,
+            read_run_record(self.folder).get("notes", ()),
+        )
 
 
 def particle_files(folder: Path, *, snapshots: bool) -> list[Path]:

@@ -6,7 +6,12 @@ measures, writes tables and draws; the observer here calls it while the core run
 
 from __future__ import annotations
 
+import os
+import shutil
+import weakref
+from contextlib import nullcontext
 from pathlib import Path
+from tempfile import mkdtemp
 from typing import TYPE_CHECKING, Any, Optional
 
 import snowshed._core as _core
@@ -17,9 +22,11 @@ from snowshed.base.paths import PathLike
 from snowshed.base.progress import Progress, Reporter
 from snowshed.methods.registry import method_of
 from snowshed.results.reader import Results
+from snowshed.results.replacement import replaced_results
 from snowshed.running.ageing.ageing import Ageing
 from snowshed.running.method_run import MethodRun, RunOptions
-from snowshed.running.sequence import open_sequence, run_sequence
+from snowshed.running.recorded_run import recorded_run
+from snowshed.running.sequence import open_sequence, record_note, run_sequence
 from snowshed.scene.scene import SceneLike, resolve_scene
 
 if TYPE_CHECKING:
@@ -28,9 +35,10 @@ if TYPE_CHECKING:
 
 def run(
     scene: SceneLike,
-    folder: PathLike,
+    folder: Optional[PathLike] = None,
     *,
     resume: bool = False,
+    overwrite: bool = False,
     ageing: Optional[Ageing] = None,
     progress: Optional[Reporter] = None,
     pictures: bool = True,
@@ -41,15 +49,20 @@ def run(
     Parameters
     ----------
     scene
-        A scene, its JSON data, or the path of a scene file.
+        A scene, its JSON data, or the path of a scene file or of a run.json, which repeats that
+        run.
     folder
-        The results folder (see ``snowshed.results.folder``); new or empty, unless resuming.
+        The results folder (see ``snowshed.results.folder``); new or empty, unless resuming or
+        overwriting. None: a temporary folder, which is removed with the results.
     resume
         Resume from the checkpoint in `folder`, also one of ``snowshed-run``; the particles are
         those of an uninterrupted run. Events that are missing in the tables are measured from their
         stored particles, in single precision.
+    overwrite
+        Replace the results of an earlier run in `folder`. They stay if the new run cannot begin.
     ageing
-        Ageing of the stack between the events; None: none. It must be the same when resuming.
+        Ageing of the stack between the events; None: none, or that of a run.json. It must be the
+        same when resuming.
     progress
         Called with a `Progress` about twice a second.
     pictures
@@ -84,20 +97,33 @@ def run(
     ...     results.events.event.tolist()
     [1]
     """
-    resolved = resolve_scene(scene)
+    if folder is None:
+        if resume or overwrite:
+            raise _core.InputError("folder: missing; resume and overwrite need it")
+        return _run_in_temporary_folder(
+            scene, ageing=ageing, progress=progress, pictures=pictures, compact=compact
+        )
+    resolved, recorded = resolve_scene(scene), recorded_run(scene)
     method = method_of(resolved.data)
+    if ageing is None and recorded is not None:
+        ageing = recorded.ageing
     if ageing is not None and not method.ages:
         raise _core.InputError(f'ageing: the snow of the method "{method.name}" does not age')
     if ageing is not None and resolved.data["events"]["between"] != "carry":
         raise _core.InputError(
             '/events/between: "reseed" replaces the snow, so that it cannot age; use "carry"'
         )
+    if resume and overwrite:
+        raise _core.InputError("resume, overwrite: give one of the two")
     options = RunOptions(resume, ageing, pictures, compact)
-    sequence = open_sequence(resolved, folder, resume=resume)
+    with replaced_results(folder) if overwrite else nullcontext():
+        sequence = open_sequence(resolved, folder, resume=resume)
     with sequence, deferred_interrupts() as interrupt:
         method_run: MethodRun = method.run_class()(sequence, resolved, Path(folder), options)
         method_run.begin()
         sequence.describe_machine(machine_facts())
+        for note in [] if recorded is None else recorded.differences():
+            record_note(sequence, note)
         try:
             run_sequence(sequence, _Observer(method_run, interrupt, progress), resolved, folder)
         except Interrupted:
@@ -109,11 +135,24 @@ def run(
     return Results.of_run(folder, resolved)
 
 
+def _run_in_temporary_folder(scene: SceneLike, **options: Any) -> Results:
+    """Run a scene in a folder that is removed with its results."""
+    folder = mkdtemp(prefix="snowshed-")
+    try:
+        results = run(scene, Path(folder) / "results", **options)
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
+    weakref.finalize(results, shutil.rmtree, folder, ignore_errors=True)
+    return results
+
+
 def run_events(
     scene: SceneLike,
-    folder: PathLike,
+    folder: Optional[PathLike] = None,
     *,
     resume: bool = False,
+    overwrite: bool = False,
     ageing: Optional[Ageing] = None,
     progress: Optional[Reporter] = None,
     pictures: bool = True,
@@ -149,8 +188,15 @@ def run_events(
         raise _core.InputError(
             f'/method: the snow of "{method.name}" makes no stack; use snowshed.run'
         )
-    options: dict[str, Any] = {"resume": resume, "ageing": ageing, "pictures": pictures}
-    return run(resolved, folder, progress=progress, **options).events
+    return run(
+        scene if isinstance(scene, (str, os.PathLike)) else resolved,
+        folder,
+        resume=resume,
+        overwrite=overwrite,
+        ageing=ageing,
+        progress=progress,
+        pictures=pictures,
+    ).events
 
 
 class _Observer:

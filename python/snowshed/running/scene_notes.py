@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Optional
 
 import snowshed._core as _core
+from snowshed._core import InputError
 from snowshed.methods.registry import method_of, resolution_of
 from snowshed.scene.components import Snow
 from snowshed.snow.relations.strength import TENSILE_STRENGTH
@@ -78,7 +79,10 @@ def _density_notes(snow: Mapping[str, Any]) -> list[str]:
     own = f"the density of {density:g} kg/m3"
     strength = float(snow["preconsolidation_pressure"])
     law = TENSILE_STRENGTH[LAW]
-    expected = usual["preconsolidation_pressure"] * law(density) / law(usual["density"])
+    try:
+        expected = usual["preconsolidation_pressure"] * law(density) / law(usual["density"])
+    except InputError:  # the core notes a density that snow cannot have
+        return []
     if abs(strength / expected - 1.0) < 1e-6:
         return [
             f"stiffness and strength follow from {own} ({LAW}): Young's modulus "

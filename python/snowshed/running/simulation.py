@@ -3,30 +3,19 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Literal, Union, cast
+from collections.abc import Callable, Iterator
+from typing import Literal, NamedTuple, Optional, Union, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 import snowshed._core as _core
 from snowshed._core import InputError, SimulationError
-from snowshed.base.arrays import (
-    Booleans,
-    Floats,
-    Integers,
-    Numbers,
-    finite,
-    points,
-    positive,
-    whole_number,
-)
+from snowshed.base.arrays import finite, points, positive, whole_number
 from snowshed.base.paths import PathLike
 from snowshed.methods.registry import method_of
-from snowshed.results.fields import Fields, Order, checked_order
-from snowshed.results.grid import grid_dataset, scene_grid
-from snowshed.results.method_results import MethodResults
-from snowshed.results.particle_dataset import DATASET, particle_dataset
+from snowshed.results.provenance import present_origin, with_origin
+from snowshed.running.particle_reading import ReadsParticles
 from snowshed.running.sequence import issuing_notes
 from snowshed.scene.components import Snow
 from snowshed.scene.resolved import snows_of
@@ -34,22 +23,39 @@ from snowshed.scene.scene import ResolvedScene, SceneLike, resolve_scene
 from snowshed.snow.stack.measure import StackMeasure
 from snowshed.snow.stack.particles import measure_particles
 
-if TYPE_CHECKING:
-    import xarray
-
 Ended = Literal["rest", "time_limit", "reached"]
 Until = Union[Literal["rest"], float, Callable[["Simulation"], bool]]
+OnStep = Callable[["Simulation"], object]
 
 MAX_STEPS = 64  # steps between two checks for Ctrl-C
 CHECK_INTERVAL = 0.1  # s of wall time between checks while the core runs to rest
 
 
-class Simulation(MethodResults):
+class EventEnd(NamedTuple):
+    """The end of an event.
+
+    Attributes
+    ----------
+    event
+        Number of the event, from 1.
+    ended
+        "rest" or "time_limit".
+    time
+        Duration of the event, s.
+    """
+
+    event: int
+    ended: Ended
+    time: float
+
+
+class Simulation(ReadsParticles):
     """A scene being simulated, in memory.
 
     It advances event by event: `run` seeds the snow of the next event and moves it until it rests;
     `begin_event` and `step` do the same in parts. Methods such as `positions` return the particles
     ordered by id, which never changes; `fields` shows their memory in the order of storage.
+    ``for end in simulation`` runs the remaining events and yields an `EventEnd` for each.
 
     A simulation serves one thread at a time: a call during another thread's call raises
     RuntimeError and changes nothing. Different simulations may run in different threads.
@@ -139,7 +145,9 @@ class Simulation(MethodResults):
         for left in range(whole_number("count", count, lowest=0), 0, -MAX_STEPS):
             self._core.step(min(left, MAX_STEPS))
 
-    def run(self, until: Until = "rest", *, every: int = 16) -> Ended:
+    def run(
+        self, until: Until = "rest", *, every: int = 16, on_step: Optional[OnStep] = None
+    ) -> Ended:
         """Take steps of the present event, or of the next one, until a condition holds.
 
         Parameters
@@ -149,7 +157,9 @@ class Simulation(MethodResults):
             until this time in the event, s; the last step may end after it. A
             function: until it returns True; it gets the simulation and may change it.
         every
-            Number of steps between two calls of the function.
+            Number of steps between two calls of the function `until`.
+        on_step
+            Function that is called with the simulation after each step, and may change it.
 
         Returns
         -------
@@ -172,8 +182,10 @@ class Simulation(MethodResults):
             raise SimulationError(f"all {self.event} events have ended; begin_event adds another")
         if not self.event_running:
             self.begin_event()
+        if on_step is not None:
+            return self._run_stepwise(until, steps, on_step)
         if isinstance(until, str):
-            return cast(Ended, self._core.run(lambda report: True, CHECK_INTERVAL))
+            return self._run_to_end()
         if callable(until):
             return self._run_until(until, steps)
         while self.time < until:
@@ -182,13 +194,45 @@ class Simulation(MethodResults):
             self._core.step(max(1, min(MAX_STEPS, int(left))))
         return "reached"
 
-    def _run_until(self, condition: Callable[[Simulation], bool], every: int) -> Ended:
-        longest = float(self.scene.data["events"]["max_time"])
+    def _run_to_end(self) -> Ended:
+        return cast(Ended, self._core.run(lambda report: True, CHECK_INTERVAL))
+
+    def _run_until(
+        self,
+        condition: Callable[[Simulation], bool],
+        every: int,
+        on_step: Optional[OnStep] = None,
+    ) -> Ended:
+        limit = self._max_time
         while not condition(self):
-            if self.time >= longest:
+            if self.time >= limit:
                 return "time_limit"
-            self.step(every)
+            if on_step is None:
+                self.step(every)
+                continue
+            for _ in range(every):
+                self.step()
+                on_step(self)
         return "reached"
+
+    def _run_stepwise(self, until: Until, every: int, on_step: OnStep) -> Ended:
+        if callable(until):
+            return self._run_until(until, every, on_step)
+        limit = self._max_time if isinstance(until, str) else until
+        while self.time < limit and not (isinstance(until, str) and self.at_rest):
+            self.step()
+            on_step(self)
+        return self._run_to_end() if isinstance(until, str) else "reached"
+
+    @property
+    def _max_time(self) -> float:
+        return float(self.scene.data["events"]["max_time"])
+
+    def __iter__(self) -> Iterator[EventEnd]:
+        """Run the remaining events one after another, and yield the end of each."""
+        while self.event_running or self.events_left:
+            ended = self.run()
+            yield EventEnd(self.event, ended, self.time)
 
     def add_snow(
         self,
@@ -269,105 +313,6 @@ class Simulation(MethodResults):
         per_voxel = self.scene.data.get("seeding", {}).get("particles_per_voxel", 1.0)
         return float(cast(float, snow.density) * voxel / per_voxel)
 
-    @property
-    def fields(self) -> Fields:
-        """The quantities of the particles by name, in the order of storage, without copies."""
-        return Fields(self._core)
-
-    def positions(self, order: Order = "id") -> Floats:
-        """Return the positions (n, 3), m; always a copy, since they are stored cell by cell.
-
-        Parameters
-        ----------
-        order
-            "id": a copy ordered by the particles' ids, in double precision and 64-bit integers.
-            "storage": as `Field.values` of `fields`. All methods that read particles have this
-            parameter.
-        """
-        return cast(Floats, self._read("position", order))
-
-    def velocities(self, order: Order = "id") -> Floats:
-        """Return the velocities (n, 3), m/s; a copy. The fields velocity_x, ... are views."""
-        return cast(Floats, self._read("velocity", order))
-
-    def masses(self, order: Order = "id") -> Floats:
-        """Return the masses (n,), kg (per metre of width in 2D)."""
-        return cast(Floats, self._read("mass", order))
-
-    def densities(self, order: Order = "id") -> Floats:
-        """Return the current densities (n,), kg/m3; computed."""
-        return cast(Floats, self._read("density", order))
-
-    def pressures(self, order: Order = "id") -> Floats:
-        """Return the Kirchhoff pressures (n,), Pa, positive in compression; computed."""
-        return cast(Floats, self._read("pressure", order))
-
-    def plastic_strains(self, order: Order = "id") -> Floats:
-        """Return the volumetric plastic strains (n,), negative in compaction."""
-        return cast(Floats, self._read("volumetric_plastic_strain", order))
-
-    def ids(self, order: Order = "id") -> Integers:
-        """Return the ids (n,) of the particles."""
-        return cast(Integers, self._read("id", order))
-
-    def events(self, order: Order = "id") -> Integers:
-        """Return the events (n,) that released the particles, from 1."""
-        return cast(Integers, self._read("event", order))
-
-    def material_ids(self, order: Order = "id") -> Integers:
-        """Return the index into `snows` of each particle (n,)."""
-        return cast(Integers, self._read("material_id", order))
-
-    def on_panel(self, order: Order = "id") -> Booleans:
-        """Return whether each particle (n,) lies on the panel."""
-        on_panel = self._core.on_panel()
-        if checked_order(order) == "storage":
-            by_id, on_panel = on_panel, np.empty_like(on_panel)
-            on_panel[self._core.order_by_id()] = by_id
-        return on_panel
-
-    def _read(self, name: str, order: Order) -> Numbers:
-        read = self._core.field_by_id if checked_order(order) == "id" else self._core.field
-        return read(name)
-
-    def to_xarray(self) -> xarray.Dataset:
-        """Return the particles as a Dataset, ordered by id; copies.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions ``particle``, with the ids, and ``component``; units in `attrs`.
-
-        Raises
-        ------
-        InputError
-            If xarray (extra ``study``) is not installed.
-        """
-        fields = self.fields
-        values = {name: self._core.field_by_id(name) for name in DATASET if name in fields}
-        return particle_dataset(values, self.event, self.time)
-
-    def grid(self) -> xarray.Dataset:
-        """Return mass, velocity and density at the nodes of the grid, computed from the particles.
-
-        The next step of the material point method would begin with them.
-
-        Returns
-        -------
-        xarray.Dataset
-            Dimensions x, (y,) z, the nodes, m, and component.
-
-        Raises
-        ------
-        InputError
-            If the method has no grid, there are no particles, or xarray (extra ``study``) is not
-            installed.
-        """
-        affine = cast(Floats, self._read("affine", "id")) if "affine" in self.fields else None
-        arrays = self.positions(), self.velocities(), self.masses(), affine
-        fields = scene_grid(self.scene.data, *arrays)
-        return grid_dataset(fields, self.event, self.time)
-
     def measure(self) -> StackMeasure:
         """Measure the stack: the snow that neither the panel nor a structure holds.
 
@@ -395,12 +340,7 @@ class Simulation(MethodResults):
         """Return a result of the scene's method up to now by its name, such as "maps"."""
         data = self.scene.data
         value: object = method_of(data).compute(name, self._core, data)
-        return value
-
-    @property
-    def scene(self) -> ResolvedScene:
-        """The complete scene."""
-        return self._scene
+        return with_origin(value, present_origin(self.scene))
 
     @property
     def snows(self) -> list[Snow]:
@@ -408,19 +348,19 @@ class Simulation(MethodResults):
         return [Snow.from_data(snow) for snow in snows_of(self._core)]
 
     @property
-    def event(self) -> int:
-        """The number of the present event, from 1; 0 before the first."""
-        return self._core.event
-
-    @property
     def event_running(self) -> bool:
         """True until the present event has ended."""
         return self._core.event_running
 
     @property
-    def time(self) -> float:
-        """Time in the present event, s."""
-        return self._core.time_s
+    def events_left(self) -> int:
+        """Number of events that have not begun."""
+        return max(0, self._core.event_count - self.event)
+
+    @property
+    def at_rest(self) -> bool:
+        """True once the snow of the present event rests, as the scene's ``events`` define it."""
+        return self.event > 0 and self._core.at_rest()
 
     @property
     def time_step(self) -> float:

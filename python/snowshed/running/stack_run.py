@@ -11,6 +11,7 @@ length and outline. A stack that is carried over ages (``snowshed.running.ageing
 
 from __future__ import annotations
 
+import json
 import warnings
 from collections.abc import Iterable, Mapping
 from importlib.util import find_spec
@@ -59,6 +60,8 @@ class StackRun(MethodRun):
         self.stack: Optional[StackMeasure] = None
         ageing = self.options.ageing
         ageing_data = None if ageing is None else ageing.data
+        if ageing_data is not None:
+            self.sequence.set_ageing(json.dumps(ageing_data))
         if self.options.resume:
             self._continue_tables(ageing_data)
         elif ageing_data is not None:

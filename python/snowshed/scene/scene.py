@@ -13,7 +13,7 @@ import warnings
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, List, Optional, Union
+from typing import Any, List, Optional, Union, cast
 
 from snowshed._core import InputError
 from snowshed._core import preset as preset_text
@@ -22,6 +22,7 @@ from snowshed.base.paths import PathLike
 from snowshed.base.record import MAX_DEPTH, Record, check_instead, check_once, default
 from snowshed.io.input_file import read_input
 from snowshed.io.json_text import loads
+from snowshed.io.run_files import scene_of_record
 from snowshed.methods.registry import DEFAULT, NAME_KEY, SETTINGS_KEY, method_named
 from snowshed.methods.settings import MethodSettings
 from snowshed.scene.components import (
@@ -157,7 +158,7 @@ class Scene(Record):
 
     @classmethod
     def load(cls, path: PathLike) -> Scene:
-        """Read a scene file; it may be incomplete until it is resolved.
+        """Read a scene file, or the scene in a run.json; it may be incomplete until it is resolved.
 
         The meshes and grids that the file names are found beside it.
 
@@ -174,8 +175,9 @@ class Scene(Record):
         except (ValueError, RecursionError) as error:
             raise InputError(f"{path}: not JSON: {error}") from None
         try:
+            data = scene_of_record(data)
             _refuse_null(data, "")
-            scene = cls.from_data(data)
+            scene = cls.from_data(cast("JsonObject", data))
             scene.to_data()
         except InputError as error:
             raise InputError(f"{path}: {error}") from None

@@ -205,5 +205,5 @@ def _slide_off_notes(events: pd.DataFrame, first_staying_event: Optional[int]) -
     if unfinished:
         yield (
             f"{unfinished} of {len(events)} slide-offs ended before the snow rested; "
-            "allow a longer --max-time"
+            "allow a longer `max_time=`"
         )

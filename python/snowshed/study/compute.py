@@ -14,6 +14,7 @@ from typing import Any, Optional
 
 import snowshed._core as _core
 from snowshed._core import InputError
+from snowshed.base.build import build_id
 from snowshed.base.interrupt import Interrupted
 from snowshed.base.notes import SnowshedNote
 from snowshed.base.progress import Progress, Reporter
@@ -54,11 +55,7 @@ def compute(task: RunTask, report: Optional[FractionReporter] = None) -> RunOutc
 
 
 def _compute(task: RunTask, folder: Path, report: Optional[FractionReporter]) -> RunOutcome:
-    if content_hash(scene_data(task.scene)) != task.hash:
-        reason = (
-            f"run {task.hash} differs from the registered one: a file of its scene has changed, "
-            f"or this is another version of snowshed ({_core.version})"
-        )
+    if reason := _mismatch(task):
         return RunOutcome(task.hash, "unable", error=reason)
     earlier = RunFolder(folder).read_run()
     if earlier.get("status") == "failed":  # the earlier process was killed before its report
@@ -77,6 +74,21 @@ def _compute(task: RunTask, folder: Path, report: Optional[FractionReporter]) ->
     except Exception as error:  # no error of one run may stop the others
         return _outcome(task, folder, f"{_kind(error)}{error}")
     return _outcome(task, folder, None)
+
+
+def _mismatch(task: RunTask) -> str:
+    """Return why this worker cannot compute the registered run; empty if it can."""
+    if content_hash(scene_data(task.scene)) != task.hash:
+        return (
+            f"run {task.hash} differs from the registered one: a file of its scene has changed, "
+            f"or this is another version of snowshed ({_core.version})"
+        )
+    if task.build not in ("", build_id()):
+        return (
+            f"this worker has another build of snowshed ({build_id()}) than the study "
+            f"({task.build}); give all workers the same one"
+        )
+    return ""
 
 
 def _run_or_resume(task: RunTask, folder: Path, report: Optional[Reporter]) -> None:

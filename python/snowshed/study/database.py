@@ -5,8 +5,8 @@ Every change is one transaction with a write-ahead log that is flushed to the di
 =============== ========================================================================
 study           name, and its axes (JSON list of dotted paths)
 study_run       the runs of each study, in order; studies may share runs
-run             content hash, version, complete scene (JSON), status, error, owner, and whether its
-                particles are stored
+run             content hash, version, complete scene (JSON), status, error, owner, whether its
+                particles are stored, and the build that computes it (empty: unknown)
 event           measures after each event of a run: the columns of all methods
 event_timing    wall time of each event, apart, because it differs when a run is repeated
 event_particles packed particles after each event, or maps of slides, of runs that store them
@@ -68,11 +68,17 @@ PARTICLES_TABLE = (
     "CREATE TABLE IF NOT EXISTS event_particles (hash TEXT NOT NULL REFERENCES run,"
     " event INTEGER NOT NULL, data BLOB NOT NULL, PRIMARY KEY (hash, event))"
 )
+#: Columns of the table ``run`` that stores of earlier versions lack.
+ADDED_TO_RUN: Mapping[str, str] = {
+    "keep_particles": "INTEGER NOT NULL DEFAULT 0",
+    "build": "TEXT NOT NULL DEFAULT ''",
+}
 TABLES = (
     "CREATE TABLE study (name TEXT PRIMARY KEY, axes TEXT NOT NULL)",
     "CREATE TABLE run (hash TEXT PRIMARY KEY, version TEXT NOT NULL, scene TEXT NOT NULL,"
     " status TEXT NOT NULL DEFAULT 'pending' CHECK (status IN ('pending', 'done', 'failed')),"
-    " error TEXT, owner TEXT, keep_particles INTEGER NOT NULL DEFAULT 0)",
+    " error TEXT, owner TEXT, keep_particles INTEGER NOT NULL DEFAULT 0,"
+    " build TEXT NOT NULL DEFAULT '')",
     "CREATE INDEX run_owner ON run (owner) WHERE owner IS NOT NULL",
     "CREATE TABLE study_run (study TEXT NOT NULL REFERENCES study, position INTEGER NOT NULL,"
     " hash TEXT NOT NULL REFERENCES run, PRIMARY KEY (study, position)) WITHOUT ROWID",
@@ -172,9 +178,10 @@ def _upgrade(connection: sqlite3.Connection, folder: Path) -> None:
     for name in STORED_TYPES.keys() - present:
         connection.execute(f"ALTER TABLE event ADD COLUMN {name} {STORED_TYPES[name]}")
     connection.execute(PARTICLES_TABLE)
-    if "keep_particles" not in {row[1] for row in connection.execute("PRAGMA table_info(run)")}:
-        column = "keep_particles INTEGER NOT NULL DEFAULT 0"
-        connection.execute(f"ALTER TABLE run ADD COLUMN {column}")
+    present = {row[1] for row in connection.execute("PRAGMA table_info(run)")}
+    for name, kind in ADDED_TO_RUN.items():
+        if name not in present:
+            connection.execute(f"ALTER TABLE run ADD COLUMN {name} {kind}")
     if not has_checksums:
         connection.execute(checksums.TABLE)
         checksums.store_all_checksums(connection)

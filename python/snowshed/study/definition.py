@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
 from snowshed._core import InputError
+from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
 from snowshed.io.atomic import write_text
@@ -19,6 +20,7 @@ from snowshed.study import session, study_file
 from snowshed.study.factors import SEED, Part, axis
 from snowshed.study.scene_hash import RunKey
 from snowshed.study.season_part import SEASON_PATHS, SeasonPart
+from snowshed.study.store import Store
 from snowshed.study.table import read_table
 
 if TYPE_CHECKING:
@@ -196,6 +198,7 @@ class Study:
         scheduler: object = None,
         retry_failed: bool = False,
         keep_particles: bool = False,
+        same_version: bool = False,
         progress: Optional[Reporter] = None,
     ) -> None:
         """Compute the runs that are missing in the store in `folder`.
@@ -220,6 +223,9 @@ class Study:
         keep_particles
             Whether to store the particles after each event, too, for runs that are not computed
             yet, so that `snowshed.study.remeasure` can measure their stacks differently.
+        same_version
+            Whether results of another build of the same version count. Otherwise, a note says how
+            many runs are computed again; the earlier results stay in the store.
         progress
             Called with a `Progress` a few times a second.
 
@@ -243,6 +249,7 @@ class Study:
             scheduler=scheduler,
             retry_failed=retry_failed,
             keep_particles=keep_particles,
+            same_version=same_version,
             progress=progress,
         )
 
@@ -255,19 +262,20 @@ class Study:
         scheduler: object = None,
         retry_failed: bool = False,
         keep_particles: bool = False,
+        same_version: bool = False,
         progress: Optional[Reporter] = None,
     ) -> pd.DataFrame:
         """Compute the runs that are missing in the store in `folder`, and return the study's table.
 
         Parameters
         ----------
-        folder, jobs, threads, scheduler, retry_failed, keep_particles, progress
+        folder, jobs, threads, scheduler, retry_failed, keep_particles, same_version, progress
             As for `compute`, which raises the same errors.
 
         Returns
         -------
         pandas.DataFrame
-            The study's table, as `read_table` returns it; failed runs are rows in it.
+            The study's table, as `read_table` returns it; failed runs are rows in it, and a note.
 
         Examples
         --------
@@ -287,8 +295,10 @@ class Study:
             scheduler=scheduler,
             retry_failed=retry_failed,
             keep_particles=keep_particles,
+            same_version=same_version,
             progress=progress,
         )
+        _issue_failures(folder, self.name)
         return read_table(folder, self.name)
 
     def expected_duration(self, *, jobs: Optional[int] = None) -> tuple[float, int]:
@@ -336,6 +346,16 @@ class Study:
         for factor in part:
             for path, values in factor.columns.items():
                 _try_to_set(scene, path, values[0])
+
+
+def _issue_failures(folder: PathLike, study: str) -> None:
+    """Issue a note on the runs that failed."""
+    with Store.open(folder) as store:
+        runs = store.runs(study)
+    failed = [run for run in runs if run.status == "failed"]
+    if failed:
+        first = f"{failed[0].hash[:12]}: {failed[0].error}"
+        issue_note(f"{len(failed)} of {len(runs)} runs failed: {first}")
 
 
 def _try_to_set(scene: Scene, path: str, value: object) -> None:

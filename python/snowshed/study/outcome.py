@@ -21,6 +21,8 @@ class RunTask:
         Number of threads that the run may use.
     keep_particles
         Whether its outcome holds the particles after each event.
+    build
+        The build of snowshed that must compute it; empty: any.
     """
 
     hash: str
@@ -28,6 +30,7 @@ class RunTask:
     folder: str
     threads: int
     keep_particles: bool = False
+    build: str = ""
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,8 @@ from typing import Optional
 
 import snowshed._core as _core
 from snowshed._core import InputError
+from snowshed.base.build import build_id
+from snowshed.base.formatting import plural
 from snowshed.base.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
@@ -75,6 +77,7 @@ def compute_runs(
     scheduler: object = None,
     retry_failed: bool = False,
     keep_particles: bool = False,
+    same_version: bool = False,
     progress: Optional[Reporter] = None,
 ) -> None:
     """Enter a study's runs into the store in a folder, and compute the missing ones.
@@ -83,12 +86,20 @@ def compute_runs(
     ----------
     study, axes, runs
         Name of the study, paths of the parameters that vary, and runs.
-    folder, jobs, threads, scheduler, retry_failed, keep_particles, progress
+    folder, jobs, threads, scheduler, retry_failed, keep_particles, same_version, progress
         As for `Study.compute`.
     """
     resources = Resources(jobs, threads, scheduler)
     with Store.create(folder) as store:
-        store.register(study, axes, runs, keep_particles=keep_particles)
+        aside = store.register(
+            study, axes, runs, keep_particles=keep_particles, same_version=same_version
+        )
+        if aside:
+            issue_note(
+                f"{plural(aside, 'run')} of {study}: computed by another build of snowshed "
+                f"{_core.version}, and now again; the earlier results stay in the store, and "
+                "`same_version=True` uses them"
+            )
         _compute(store, [study], resources, retry_failed, progress)
 
 
@@ -100,6 +111,7 @@ def resume(
     threads: Optional[int] = None,
     scheduler: object = None,
     retry_failed: bool = False,
+    same_version: bool = False,
     progress: Optional[Reporter] = None,
 ) -> None:
     """Compute the missing runs of a study, or of all studies, in a store.
@@ -112,17 +124,21 @@ def resume(
         Name of the study; None: all.
     jobs, threads, scheduler, retry_failed, progress
         As for `Study.run`.
+    same_version
+        Whether to compute runs that another build of the same version has registered.
 
     Raises
     ------
     InputError
-        If there is no such study, or another version of snowshed has registered its runs.
+        If there is no such study, or another version or build of snowshed has registered its runs.
     StudyError, StudyInterrupted
         As for `Study.run`.
     """
     resources = Resources(jobs, threads, scheduler)
     with Store.open(folder) as store:
         names = store.studies() if study is None and store.studies() else [store.named(study)]
+        for name in names:
+            _adopt(store, name, same_version=same_version)
         _compute(store, names, resources, retry_failed, progress)
 
 
@@ -188,6 +204,23 @@ def _check_version(store: Store, pending: Sequence[StoredRun]) -> None:
                 f"{_core.version}; start the study again with `snowshed study run`, "
                 "which computes all its runs with this version"
             )
+
+
+def _adopt(store: Store, study: str, *, same_version: bool) -> None:
+    """Make this build that of the pending runs of a study."""
+    pending = [run for run in store.runs(study) if run.status == "pending"]
+    _check_version(store, pending)
+    others = {run.build for run in pending} - {build_id()}
+    if not others:
+        return
+    if not same_version:
+        raise InputError(
+            f"{store.folder}: its runs are for another build of snowshed {_core.version}; "
+            "`same_version=True` goes on with this one, and `snowshed study run` computes all runs "
+            "with it"
+        )
+    runs = [RunKey(run.hash, run.scene) for run in store.runs(study)]
+    store.register(study, store.axes(study), runs, same_version=True)
 
 
 def _remove_leftovers(store: Store) -> None:
@@ -267,7 +300,7 @@ class _Session:
                 self.running[run.hash] = run
                 folder = os.fspath(self._folder(run.hash))
                 keep = run.keep_particles
-                self.workers.submit(RunTask(run.hash, run.scene, folder, threads, keep))
+                self.workers.submit(RunTask(run.hash, run.scene, folder, threads, keep, run.build))
             else:
                 self.elsewhere.append(run)
 

@@ -18,6 +18,7 @@ from typing import Any, Optional
 
 import snowshed._core as _core
 from snowshed._core import InputError
+from snowshed.base.build import build_id
 from snowshed.base.paths import PathLike
 from snowshed.io.json_file import check_values, parse_object
 from snowshed.study import checksums
@@ -31,8 +32,9 @@ from snowshed.study.database import (
     translate_errors,
 )
 from snowshed.study.locks import holding
+from snowshed.study.other_builds import set_aside
 from snowshed.study.outcome import RunOutcome
-from snowshed.study.scene_hash import RunKey, is_hash
+from snowshed.study.scene_hash import HASH_DIGITS, RunKey, is_hash
 
 STATUSES = ("pending", "done", "failed")
 WITHOUT_CHECKSUM = (
@@ -52,9 +54,12 @@ class StoredRun:
     status: str
     error: Optional[str]
     owner: Optional[str]
+    build: str
     keep_particles: bool
 
 
+#: Values of columns that a read-only store of an earlier version lacks.
+MISSING = {"build": "''", "keep_particles": "0"}
 #: Keys of a complete scene, which a damaged text may lack.
 WHOLE_SCENE = {"dimension": float, "numerics": dict, "events": dict}
 
@@ -68,7 +73,7 @@ class Store:
     >>> from snowshed import Scene
     >>> run = RunKey.of(Scene.preset("lab-50").resolve())
     >>> with TemporaryDirectory() as folder, Store.create(folder) as store:
-    ...     store.register("lab", [], [run])
+    ...     _ = store.register("lab", [], [run])
     ...     store.claim(run.hash, "me"), store.claim(run.hash, "somebody else")
     (True, False)
     """
@@ -135,21 +140,38 @@ class Store:
         runs: Iterable[RunKey],
         *,
         keep_particles: bool = False,
-    ) -> None:
+        same_version: bool = False,
+    ) -> int:
         """Register a study with its runs; it replaces a study of the same name.
 
-        With `keep_particles` the particles after each event are stored, too, for runs that are not
-        computed yet.
+        Parameters
+        ----------
+        study, axes, runs
+            Name of the study, paths of the parameters that vary, and runs.
+        keep_particles
+            Whether the particles after each event are stored, too, for runs that are not computed
+            yet.
+        same_version
+            Whether results of another build of the same version count. Otherwise they are set aside
+            in the store, and the runs become pending again.
+
+        Returns
+        -------
+        int
+            The number of runs whose results were set aside.
         """
-        runs = list(runs)
+        runs, build = list(runs), build_id()
         with self._transaction() as write:
+            aside = 0 if same_version else set_aside(write, [run.hash for run in runs], build)
             write.execute("DELETE FROM study_run WHERE study = ?", (study,))
             write.execute("INSERT OR REPLACE INTO study VALUES (?, ?)", (study, json.dumps(axes)))
             write.executemany(
                 # A known run keeps its results; without results, its files may have moved since.
-                "INSERT INTO run (hash, version, scene) VALUES (?, ?, ?) ON CONFLICT (hash)"
-                " DO UPDATE SET scene = excluded.scene WHERE status = 'pending'",
-                ((run.hash, _core.version, run.scene) for run in runs),
+                "INSERT INTO run (hash, version, scene, build) VALUES (?, ?, ?, ?)"
+                " ON CONFLICT (hash) DO UPDATE SET scene = excluded.scene,"
+                " build = CASE WHEN owner IS NULL THEN excluded.build ELSE build END"
+                " WHERE status = 'pending'",
+                ((run.hash, _core.version, run.scene, build) for run in runs),
             )
             if keep_particles:
                 write.executemany(
@@ -163,6 +185,7 @@ class Store:
             for run in runs:
                 checksums.store_run_checksum(write, run.hash)
             checksums.store_study_checksum(write, study)
+        return aside
 
     def studies(self) -> list[str]:
         """Return the names of the studies."""
@@ -221,8 +244,9 @@ class Store:
     def find(self, beginning: str) -> StoredRun:
         """Return the only run whose hash begins with a text; else raise InputError."""
         rows = self.read(
-            f"SELECT {self._run_columns()} FROM run WHERE substr(hash, 1, ?) = ? LIMIT 2",
-            (len(beginning), beginning),
+            f"SELECT {self._run_columns()} FROM run WHERE substr(hash, 1, ?) = ?"
+            " AND length(hash) = ? LIMIT 2",
+            (len(beginning), beginning, HASH_DIGITS),
         )
         if len(rows) != 1:
             matches = "several runs" if rows else "no run"
@@ -358,7 +382,7 @@ class Store:
     def _run_columns(self) -> str:
         present = self.columns("run")
         return ", ".join(
-            f"run.{name}" if name in present else f"0 AS {name}"
+            f"run.{name}" if name in present else f"{MISSING[name]} AS {name}"
             for name in StoredRun.__annotations__
         )
 

@@ -66,7 +66,7 @@ def test_rules_without_inputs_have_no_value_and_name_the_options():
     for rule in rules(5.0, 60.0, RuleInputs()):
         assert rule.value is None and rule.missing
     missing = rules(5.0, 60.0, RuleInputs())[3].missing
-    assert missing == ["--snow-density", "--snow-depth", "--creep-factor", "--glide-factor"]
+    assert missing == ["`snow_density=`", "`snow_depth=`", "`creep_factor=`", "`glide_factor=`"]
 
 
 @pytest.mark.parametrize("value", [0.0, -1.0, float("nan"), 1e9])

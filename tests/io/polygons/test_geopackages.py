@@ -71,13 +71,13 @@ def test_a_package_with_several_layers_needs_a_choice(tmp_path, package):
         *(package, geometries, [], np.array([])), crs="EPSG:25833", geometry_type="Polygon",
         layer="b", append=True,
     )  # fmt: skip
-    with pytest.raises(InputError, match=r"has 2 layers: 'a', 'b'; choose one \(--layer NAME\)"):
+    with pytest.raises(InputError, match=r"has 2 layers: 'a', 'b'; choose one \(`layer=`\)"):
         read_areas(package)
     assert len(read_areas(package, "b")[0].outline) == 3
     assert len(read_areas(package, "a")[0].outline) == 4
     with pytest.raises(InputError, match="has no layer 'c'; it has 'a', 'b'"):
         read_areas(package, "c")
-    with pytest.raises(InputError, match="has one layer, 'a'; --layer 'b'"):
+    with pytest.raises(InputError, match="has one layer, 'a'; `layer=` 'b'"):
         read_areas(write_polygons(tmp_path / "a.geojson"), "b")
 
 

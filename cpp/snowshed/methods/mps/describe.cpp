@@ -12,13 +12,14 @@ void describe(SettingsVisitor& v, Settings& s) {
   v.number("max_time_step", s.max_time_step, "s", positive.up_to(1.0), "Longest step");
   v.number("courant_factor", s.courant_factor, "", positive.up_to(0.4),
            "Longest displacement of a particle in a step, over l0");
-  v.number("density", s.density, "kg/m3", positive.up_to(1e4), "Density, which is constant");
+  v.number("density", s.density, "kg/m3", positive.up_to(1e4).usual(20, 3000),
+           "Density, which is constant");
   v.choice("rheology", s.rheology, "Law of the shear stress");
   v.choice("regularisation", s.regularisation, "Form of the yield stress at small shear rates");
   v.number("viscosity", s.viscosity, "Pa s", non_negative.up_to(1e6), "Plastic viscosity");
   v.number("cohesion", s.cohesion, "Pa", non_negative.up_to(1e6),
            "Yield stress without pressure (adhesive force)");
-  v.number("friction_angle", s.friction_angle, "degrees", non_negative.below(90.0),
+  v.number("friction_angle", s.friction_angle, "degrees", non_negative.below(90.0).usual(2, 90),
            "Inner friction angle: the yield stress grows with its tangent times the pressure");
   v.number("stress_growth", s.stress_growth, "s", positive.up_to(1e6),
            "Coefficient m with which the yield stress is approached");

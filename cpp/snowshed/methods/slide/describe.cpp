@@ -12,12 +12,14 @@ void describe(SettingsVisitor& v, Settings& s) {
   v.number("cell", s.cell, "m", allowed::size_or_zero,
            "Cells of the computing grid; 0: those of the terrain's raster");
   v.number("time_step", s.time_step, "s", positive.up_to(1.0), "Length of a step");
-  v.number("density", s.density, "kg/m3", positive.up_to(1000.0), "Density of the sliding snow");
+  v.number("density", s.density, "kg/m3", positive.up_to(1000.0).usual(20, 917),
+           "Density of the sliding snow");
   v.number("layer_thickness", s.layer_thickness, "m", positive.up_to(100.0),
            "Snow of this thickness over a whole cell makes one particle");
   v.choice("friction_law", s.friction_law, "Friction with the ground");
-  v.number("friction", s.friction, "", allowed::coefficient, "Coulomb coefficient mu");
-  v.number("turbulence", s.turbulence, "m/s2", positive.up_to(1e6), "Voellmy's xi");
+  v.number("friction", s.friction, "", allowed::coefficient.usual(0.01, 2),
+           "Coulomb coefficient mu");
+  v.number("turbulence", s.turbulence, "m/s2", positive.up_to(1e6).usual(50, 1e5), "Voellmy's xi");
   v.flag("explicit_friction", s.explicit_friction,
          "Friction from the speed before the step; in the compatible mode only");
   v.number("resistance", s.resistance, "", non_negative.up_to(1e9),
@@ -30,7 +32,7 @@ void describe(SettingsVisitor& v, Settings& s) {
            "Stiffness of the bonds (cohesive surface tension)");
   v.number("min_bond_length", s.min_bond_length, "m", allowed::size_or_zero,
            "Length below which a bond exerts no force");
-  v.number("entrained_density", s.entrained_density, "kg/m3", positive.up_to(1000.0),
+  v.number("entrained_density", s.entrained_density, "kg/m3", positive.up_to(1000.0).usual(20, 917),
            "Density of the entrained snow");
   v.number(
       "erosion_energy", s.erosion_energy, "J/kg", non_negative.up_to(1e12),

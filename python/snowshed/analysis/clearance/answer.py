@@ -289,6 +289,7 @@ def required_clearance(
     scene: Optional[Mapping[str, JsonValue]] = None,
     winter_list: Optional[WinterList] = None,
     jobs: Optional[int] = None,
+    same_version: bool = False,
     progress: Optional[Reporter] = None,
 ) -> ClearanceResult:
     """Return the height of the lower edge that a panel needs.
@@ -313,6 +314,8 @@ def required_clearance(
         All winters of the file (`SeasonRecord.winters`), which the answer's text mentions.
     jobs
         Local processes at once. [default: the number of cores]
+    same_version
+        As for `Study.compute`.
     progress
         Called with a `Progress` a few times a second.
 
@@ -333,7 +336,10 @@ def required_clearance(
     search = _Search(cases, candidates)
     while search.undecided():
         runs = search.runs()
-        compute_runs(folder, STUDY, [], list(runs.values()), jobs=jobs, progress=progress)
+        compute_runs(
+            folder, STUDY, [], list(runs.values()), jobs=jobs, same_version=same_version,
+            progress=progress,
+        )  # fmt: skip
         search.record_outcomes(read_table(folder, STUDY))
     complete = [number for number, outcomes in enumerate(search.outcomes) if outcomes]
     if not complete:

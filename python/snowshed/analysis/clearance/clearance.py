@@ -38,6 +38,7 @@ def clearance(
     snow_from: str = AUTO,
     temperature: Optional[PathLike] = None,
     jobs: Optional[int] = None,
+    same_version: bool = False,
     progress: Optional[Reporter] = None,
 ) -> ClearanceResult:
     r"""Return how high the lower edge of a panel must be to stay clear of shed snow.
@@ -71,6 +72,8 @@ def clearance(
         Another file of the same station, for its temperature.
     jobs
         Local processes at once. [default: the number of cores]
+    same_version
+        As for `Study.compute`.
     progress
         Called with a `Progress` a few times a second.
 
@@ -116,5 +119,6 @@ def clearance(
         scene=scene,
         winter_list=winter_list,
         jobs=jobs,
+        same_version=same_version,
         progress=progress,
     )

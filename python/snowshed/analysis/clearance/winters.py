@@ -84,6 +84,6 @@ def counted_winters(winter_list: WinterList) -> list[Winter]:
             "the weather: no winter has snow observed on "
             f"{whole_percent(winter_list.coverage)} of the "
             f"days {winter_list.season.text}: {winter_list.excluded_text}; give a longer record, a "
-            "smaller --coverage, or another column (--snow-from)"
+            "smaller `coverage=`, or another column (`snow_from=`)"
         )
     return winters

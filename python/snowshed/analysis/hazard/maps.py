@@ -236,7 +236,9 @@ def stored_maps(store: Store, hash_: str) -> PeakMaps:
             return PeakMaps.unpacked(data)
         except InputError as error:
             raise store.damaged(f"run {hash_}: {error}") from None
-    raise InputError(f"{store.folder}: run {hash_} kept no maps; compute it with --keep-particles")
+    raise InputError(
+        f"{store.folder}: run {hash_} kept no maps; compute it with `keep_particles=True`"
+    )
 
 
 def moving_notes(table: pd.DataFrame, runs: int) -> list[str]:

@@ -16,6 +16,7 @@ from snowshed.analysis.loads.slope import SnowSlope
 from snowshed.analysis.loads.standards import Rule, RuleInputs, rules
 from snowshed.analysis.loads.structures import WINDOWS, kilo, structure_loads
 from snowshed.base.formatting import percent
+from snowshed.base.messages import as_options
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
 from snowshed.plot.html_page import HtmlTable, Picture, template
@@ -311,7 +312,7 @@ def _names(results: Sequence[Results]) -> list[str]:
 
 def _value(rule: Rule) -> str:
     if rule.value is None:
-        return f"needs {', '.join(rule.missing)}"
+        return as_options(f"needs {', '.join(rule.missing)}")
     return f"{rule.value:.2f} {rule.unit}"
 
 

@@ -37,7 +37,7 @@ class Rule:
     value, unit
         The load; None if inputs are missing.
     missing
-        Options that would give the missing inputs.
+        Arguments that would give the missing inputs.
     limits
         Where the rule ends.
     source
@@ -232,7 +232,7 @@ def _given(symbol: str, value: Optional[float], unit: str) -> str:
 
 def _missing(**values: Optional[float]) -> list[str]:
     return [
-        f"--{name.replace('_', '-')}" if "_" in name or name == "efficiency" else name
+        f"`{name}=`" if "_" in name or name == "efficiency" else name
         for name, value in values.items()
         if value is None
     ]

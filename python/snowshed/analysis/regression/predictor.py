@@ -197,7 +197,7 @@ def _refusal(outside: Mapping[int, list[str]], questions: Questions) -> str:
     this = "this panel" if len(outside) == 1 else "these panels"
     return (
         f"{subject} outside the data: {'; '.join(shown)}; no model is reliable there. Simulate "
-        f"{this} (snowshed panel), or force an answer with --extrapolate"
+        f"{this} (snowshed panel), or force an answer with `extrapolate=True`"
     )
 
 

@@ -11,6 +11,7 @@ import click
 
 from snowshed._core import InputError
 from snowshed.base.formatting import about, percent, plural
+from snowshed.base.messages import as_options
 from snowshed.cli.exit_codes import Stopped
 from snowshed.cli.options.accuracy import parse_fraction
 from snowshed.cli.options.common import (
@@ -20,6 +21,7 @@ from snowshed.cli.options.common import (
     jobs_option,
     quiet_option,
     resume_option,
+    same_version_option,
 )
 from snowshed.cli.options.number_texts import named_span, numbers
 from snowshed.cli.options.rows import rows_options
@@ -101,6 +103,7 @@ SHORT_NAMES = {"sliding": "sliding_friction", "melt": "melt_factor"}
 @rows_options
 @weather_options
 @jobs_option("Processes")
+@same_version_option
 @click.option(
     *("-o", "--output", "folder"),
     type=PATH,
@@ -130,6 +133,7 @@ def clearance(
     snow_from: str,
     temperature: Optional[Path],
     jobs: Optional[int],
+    same_version: bool,
     folder: Path,
     dry_run: bool,
     quiet: bool,
@@ -162,7 +166,7 @@ def clearance(
     winter_list = record.winters(coverage)
     notes = [*record.notes, *winter_list.notes]
     for note in () if quiet else notes:
-        say(f"note: {note}")
+        say(as_options(f"note: {note}"))
     winters = counted_winters(winter_list)
     grid, settings = _grid(designs, dx, scheme, accuracy, quiet=quiet)
     options: dict[str, Any] = {
@@ -182,7 +186,7 @@ def clearance(
         )
     if dry_run:
         return
-    options["winter_list"] = winter_list
+    options.update(winter_list=winter_list, same_version=same_version)
     answers = _answers(designs, winters, candidates, folder, options, quiet=quiet)
     write_report(answers, ranges, folder, notes, price)
     if not quiet:
@@ -309,5 +313,5 @@ def print_answers(answers: Sequence[ClearanceResult], folder: Path) -> None:
     if answers[0].winter_list is not None:
         print_quality(console, answers[0].winter_list)
     for warning in answer_text.warnings(answers):
-        console.print(f"note: {warning}")
+        console.print(as_options(f"note: {warning}"))
     console.print(f"clearance.html, heights.csv and clearance.csv in {folder}")

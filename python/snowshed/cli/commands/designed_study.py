@@ -19,6 +19,7 @@ from snowshed.cli.options.common import (
     jobs_option,
     quiet_option,
     resume_option,
+    same_version_option,
 )
 from snowshed.snow.stack.quantities import MEASURES
 from snowshed.study.definition import Study
@@ -60,6 +61,7 @@ def _options(default_seeds: str) -> Sequence[Callable[[Command], Command]]:
     return (
         quiet_option,
         jobs_option("Runs"),
+        same_version_option,
         click.option(
             "--measure",
             type=click.Choice(list(MEASURES)),
@@ -132,9 +134,9 @@ def compute_missing_runs(
     Returns None after a dry run. If runs fail or are interrupted, the command ends with the exit
     codes of ``snowshed study run``, and the same command resumes.
     """
-    jobs, quiet = context.params["jobs"], context.params["quiet"]
+    jobs, quiet, same_version = (context.params[name] for name in ("jobs", "quiet", "same_version"))
     if context.params["dry_run"]:
         print_study_cost(study, jobs)
         return None
-    compute_study(study, folder / RUNS, quiet=quiet, jobs=jobs)
+    compute_study(study, folder / RUNS, quiet=quiet, jobs=jobs, same_version=same_version)
     return folder / RUNS, study.name

@@ -17,6 +17,7 @@ from snowshed.cli.options.common import (
     jobs_option,
     quiet_option,
     resume_option,
+    same_version_option,
 )
 from snowshed.cli.options.settings import settings_options
 from snowshed.cli.output.terminal import plain_table, say, wide_console
@@ -61,6 +62,7 @@ def study_options(command: Command) -> Command:
                      help="Load each sample along x and y, too, as further samples of the same "
                           "snow."),
         jobs_option("Tests"),
+        same_version_option,
         resume_option,
         dry_run_option("Print the number of tests and their estimated time and exit."),
         quiet_option,
@@ -82,7 +84,7 @@ def study_options(command: Command) -> Command:
 def sensitivity(
     labels: Sequence[Path], voxel: Optional[float], split_labels: bool, coarser: int,
     turned: bool, speed: float, strain: float, finer: bool, folder: Path, jobs: Optional[int],
-    dry_run: bool, quiet: bool, **values: Any,
+    same_version: bool, dry_run: bool, quiet: bool, **values: Any,
 ) -> None:  # fmt: skip
     """Compare each parameter's effect on compressive strength with the scatter of samples.
 
@@ -109,7 +111,7 @@ def sensitivity(
     if dry_run:
         print_study_cost(study, jobs)
         return
-    compute_study(study, folder / RUNS, quiet=quiet, jobs=jobs)
+    compute_study(study, folder / RUNS, quiet=quiet, jobs=jobs, same_version=same_version)
     table = evaluate_variants(comparison, folder / RUNS, folder)
     if not quiet:
         print_comparison(table)
@@ -154,8 +156,8 @@ def study_settings(values: dict[str, Any]) -> GrainsSettings:
 @study_options
 def material(
     labels: Sequence[Path], voxel: Optional[float], split_labels: bool, coarser: int,
-    turned: bool, modulus: Optional[float], folder: Path, jobs: Optional[int], dry_run: bool,
-    quiet: bool, **values: Any,
+    turned: bool, modulus: Optional[float], folder: Path, jobs: Optional[int], same_version: bool,
+    dry_run: bool, quiet: bool, **values: Any,
 ) -> None:  # fmt: skip
     """Fit the snow of the material point method to loading tests, for panel --snow FILE.
 
@@ -185,9 +187,12 @@ def material(
         if dry_run:
             print_study_cost(first, jobs)
             continue
-        compute_study(first, files.runs, quiet=quiet, jobs=jobs, keep_particles=True)
+        options: dict[str, Any] = {
+            "quiet": quiet, "jobs": jobs, "same_version": same_version, "keep_particles": True,
+        }  # fmt: skip
+        compute_study(first, files.runs, **options)
         shear = tests.shear(files.strength(tests))
-        compute_study(shear.study(), files.runs, quiet=quiet, jobs=jobs, keep_particles=True)
+        compute_study(shear.study(), files.runs, **options)
         fits.append(files.write(tests, shear))
     if dry_run:
         say("and 2 shear tests of each sample, whose stresses depend on these results")

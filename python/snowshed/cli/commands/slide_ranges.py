@@ -13,7 +13,7 @@ from snowshed._core import InputError
 from snowshed.base.messages import suggestion
 from snowshed.cli.compute_study import compute_study, print_study_cost
 from snowshed.cli.exit_codes import Failed, Stopped
-from snowshed.cli.options.common import jobs_option
+from snowshed.cli.options.common import jobs_option, same_version_option
 from snowshed.cli.options.number_texts import named_span, numbers
 from snowshed.cli.output.terminal import PlainConsole, say
 from snowshed.methods.slide.settings import SlideSettings
@@ -43,6 +43,7 @@ class RangeOptions:
     pressures: Sequence[float]
     reached_above: float
     jobs: Optional[int]
+    same_version: bool
 
     @classmethod
     def pop_from(cls, options: dict[str, Any]) -> RangeOptions:
@@ -62,13 +63,14 @@ class RangeOptions:
         return cls(
             draw(spans, runs, seed=seed) if spans else None,
             numbers("--pressures", options.pop("pressures"), example="1,3,10"),
-            **{name: options.pop(name) for name in ("reached_above", "jobs")},
+            **{name: options.pop(name) for name in ("reached_above", "jobs", "same_version")},
         )
 
 
 def range_options(command: Any) -> Any:
     """Add the options of many slides."""
     for option in (
+        same_version_option,
         jobs_option("With --range: runs"),
         click.option(
             "--pressures", default="1,3,10", show_default=True, metavar="KPA,...",
@@ -112,7 +114,10 @@ def run_ranges(
     study.save(folder / "study.toml")
     failure: Optional[Failed] = None
     try:
-        compute_study(study, folder / RUNS, quiet=quiet, jobs=options.jobs, keep_particles=True)
+        compute_study(
+            study, folder / RUNS, quiet=quiet, jobs=options.jobs, keep_particles=True,
+            same_version=options.same_version,
+        )  # fmt: skip
     except Failed as failed:  # maps of the other runs are written, with a note
         failure = failed
     except Stopped:

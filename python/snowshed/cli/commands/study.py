@@ -27,6 +27,7 @@ from snowshed.cli.options.common import (
     quiet_notes_option,
     quiet_option,
     resume_option,
+    same_version_option,
 )
 from snowshed.cli.output.terminal import PlainConsole, say, write_out
 from snowshed.io.atomic import write_text
@@ -62,6 +63,7 @@ def _computing_options(command: Command) -> Command:
         ),
         click.option("--threads", type=int, help="Threads of each run.  [default: fill the cores]"),
         jobs_option("Runs"),
+        same_version_option,
     ):
         command = option(command)
     return command

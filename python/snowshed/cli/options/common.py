@@ -54,6 +54,14 @@ def jobs_option(units: str) -> Callable[[Command], Command]:
     return click.option("--jobs", type=int, help=text)
 
 
+same_version_option = click.option(
+    "--same-version-is-enough",
+    "same_version",
+    is_flag=True,
+    help="Use results of another build of this version.  [default: compute them again]",
+)
+
+
 class Renamed(click.Option):
     """An option whose help shows only its first spelling; the others are former spellings."""
 

@@ -175,7 +175,7 @@ class _Package:
             raise InputError(f"{self.path}: holds no layer of {noun}")
         if len(readable) > 1:
             raise InputError(
-                f"{self.path}: has {len(every)} layers: {names}; choose one ({option} NAME)"
+                f"{self.path}: has {len(every)} layers: {names}; choose one ({option})"
             )
         if len(every) > 1:
             issue_note(

@@ -59,7 +59,7 @@ def read_areas(
     path: PathLike,
     layer: Optional[str] = None,
     *,
-    option: str = "--layer",
+    option: str = "`layer=`",
     with_thickness: bool = True,
 ) -> list[MapArea]:
     """Return the polygons of a file; parts of a feature become areas of their own.
@@ -71,7 +71,7 @@ def read_areas(
     layer
         Name of the layer of a GeoPackage; None: the only one.
     option
-        Option that names a layer, for the message if there are several.
+        Argument that names a layer, for the message if there are several.
     with_thickness
         Whether the thickness of snow is read; else it is None.
 
@@ -93,7 +93,7 @@ def read_areas(
 
 
 def read_map_layer(
-    path: Path, layer: Optional[str] = None, *, option: str = "--layer", lines: bool = False
+    path: Path, layer: Optional[str] = None, *, option: str = "`layer=`", lines: bool = False
 ) -> PolygonLayer:
     """Return the polygons of a file on a projected map, as they are in the file.
 

@@ -170,7 +170,7 @@ def _checked_band(source: Any, path: Path, band: Optional[int]) -> int:
     if band is None and len(bands) != 1:
         raise InputError(
             f"{path}: has {len(bands)} bands ({_band_names(source, bands)}); say which to read "
-            "(--band; for a raster of thickness --thickness-band)"
+            "(`band=`; for a raster of thickness `thickness_band=`)"
         )
     chosen = bands[0] if band is None else band
     if source.colorinterp[chosen - 1].name == "palette":

@@ -30,11 +30,11 @@ from snowshed.scene.scene import Scene
 MAX_TIME = 400.0  # s, as in AvaFrame
 MIN_THICKNESS = 0.01  # m, smallest thickness of snow for a slide
 MAX_THICKNESS = 10.0  # m, largest plausible thickness of snow, as in the core
-#: Options that name the layer of a file.
+#: Arguments that name the layer of a file.
 LAYER_OPTIONS = {
-    "release": "--layer",
-    "entrainment": "--entrainment-layer",
-    "resistance": "--resistance-layer",
+    "release": "`layer=`",
+    "entrainment": "`entrainment_layer=`",
+    "resistance": "`resistance_layer=`",
 }
 
 
@@ -235,7 +235,7 @@ def _snow_area(
     if depth is not None:  # the scene's raster has priority
         snow = float(np.nanmax(depth.heights))
     if snow is None:
-        raise InputError(f"{area.name}: the file gives no thickness; give one (--thickness)")
+        raise InputError(f"{area.name}: the file gives no thickness; give one (`thickness=`)")
     if snow < MIN_THICKNESS:
         raise InputError(
             f"{area.name}: {snow:g} m of snow; at least {MIN_THICKNESS:g} m are needed"
@@ -243,7 +243,7 @@ def _snow_area(
     if snow > most and depth is None:  # the core checks the cells of a raster
         raise InputError(
             f"{area.name}: {snow:g} m of snow; at most {most:g} m are plausible; is it in "
-            "centimetres? If not, raise --max-thickness"
+            "centimetres? If not, raise `max_thickness=`"
         )
     return Area(name=area.name, outline=area.outline, holes=_holes(area), thickness=snow)
 

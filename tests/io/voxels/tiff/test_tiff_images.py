@@ -56,7 +56,7 @@ def test_white_is_zero_means_the_same_for_every_type(tmp_path, kind):
     voxels = VOXELS > 100 if kind == "bool" else voxels_of_type(kind)
     numbers, notes = read(written(tmp_path, voxels, photometric="miniswhite"))
     assert_same(numbers, voxels.astype(np.uint8) if kind == "bool" else voxels)
-    assert len(notes) == 1 and "WhiteIsZero" in notes[0] and "--dark-ice" in notes[0]
+    assert len(notes) == 1 and "WhiteIsZero" in notes[0] and "`dark_ice=True`" in notes[0]
 
 
 @pytest.mark.parametrize("kind", ["uint8", "uint16", "uint32", "uint64", "float32", "float64"])

@@ -20,7 +20,7 @@ from snowshed.io.voxels.voxel_file import check_size
 WHITE_IS_ZERO, BLACK_IS_ZERO, PALETTE = 0, 1, 3
 WHITE_NOTE = (
     "numbers are taken as they are stored; by its tag PhotometricInterpretation (WhiteIsZero), "
-    "larger numbers are darker. If ice has the smaller numbers, give --dark-ice"
+    "larger numbers are darker. If ice has the smaller numbers, give `dark_ice=True`"
 )
 #: The sample formats of TIFF, by NumPy's letter for the kind.
 KINDS = {1: "u", 2: "i", 3: "f", 4: "u"}

@@ -228,7 +228,7 @@ def _releases(folder: Path, project: ProjectSettings) -> list[Path]:
     if rasters:
         raise InputError(
             f"{rasters[0]}: com5SnowSlide takes no release from a raster; give polygons, or use "
-            "--terrain with --thickness-raster"
+            "`terrain=` with `thickness_raster=`"
         )
     files = _files(folder, POLYGONS)
     if project.release_scenario:

@@ -1,0 +1,70 @@
+#include "snowshed/scene/unusual_values.hpp"
+
+#include <gtest/gtest.h>
+
+#include "scene/panel_scene.hpp"
+#include "snowshed/methods/slide/settings.hpp"
+#include "snowshed/scene/presets.hpp"
+
+namespace snowshed::scene {
+namespace {
+
+std::vector<std::string> notes_of(const Scene& scene) {
+  std::vector<std::string> notes;
+  add_notes_on_unusual_values(scene, notes);
+  return notes;
+}
+
+TEST(UnusualValues, UsualScenesHaveNoNotes) {
+  EXPECT_TRUE(notes_of(panel_scene(40)).empty());
+  for (const std::string& name : scene_preset_names())
+    EXPECT_TRUE(notes_of(preset_scene(name)).empty()) << name;
+}
+
+TEST(UnusualValues, ZeroStandsForNoneAndHasNoNote) {
+  Scene scene = panel_scene(0);
+  scene.panel->friction = scene.panel->thickness = scene.panel->height = scene.gravity = 0;
+  EXPECT_TRUE(notes_of(scene).empty());
+}
+
+TEST(UnusualValues, TheNoteHasPathValueAndUsualRange) {
+  Scene scene = panel_scene(40);
+  scene.snow.preconsolidation_pressure = 7;
+  const auto notes = notes_of(scene);
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_EQ(notes[0],
+            "/snow/preconsolidation_pressure: 7 Pa is unusual; most values are 50 to 1e+07 Pa, so "
+            "check its unit");
+}
+
+TEST(UnusualValues, AnglesInRadiansAreNotedWithEitherSign) {
+  EXPECT_EQ(notes_of(panel_scene(0.87)).size(), 1u);
+  EXPECT_EQ(notes_of(panel_scene(40, -0.35)).size(), 1u);
+}
+
+TEST(UnusualValues, AFewOfManyAreShownAndTheRestIsCounted) {
+  Scene scene = panel_scene(0.87);
+  scene.snow.density = 0.3;
+  scene.panel->height = 330;
+  for (int i = 0; i < 9; ++i) {
+    ObstacleSpec& obstacle = scene.obstacles.emplace_back();
+    obstacle.shape.type = "sphere";
+    obstacle.shape.radius = 1;
+    obstacle.friction = 30;
+  }
+  const auto notes = notes_of(scene);
+  ASSERT_EQ(notes.size(), 6u);
+  EXPECT_EQ(notes.back(), "7 further values are unusual");
+}
+
+TEST(UnusualValues, SettingsOfMethodsAreChecked) {
+  Scene scene;
+  methods::slide::Settings settings;
+  settings.density = 0.2;
+  scene.numerics = settings;
+  ASSERT_EQ(notes_of(scene).size(), 1u);
+  EXPECT_EQ(notes_of(scene)[0].find("/numerics/density"), 0u);
+}
+
+}  // namespace
+}  // namespace snowshed::scene

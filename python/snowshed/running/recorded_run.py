@@ -1,0 +1,66 @@
+"""A run that is repeated from its run.json alone."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Optional
+
+import snowshed._core as _core
+from snowshed.base.build import package_digest
+from snowshed.io.json_file import read_object
+from snowshed.io.run_files import RECORD, file_mark
+from snowshed.running.ageing.ageing import Ageing
+from snowshed.scene.scene import SceneLike
+
+
+@dataclass(frozen=True)
+class RecordedRun:
+    """The settings of an earlier run besides its scene.
+
+    Attributes
+    ----------
+    record
+        The content of its run.json.
+    path
+        The file.
+    """
+
+    record: Mapping[str, Any]
+    path: Path
+
+    @property
+    def ageing(self) -> Optional[Ageing]:
+        """The ageing of its stack between events; None: none."""
+        data = self.record.get("ageing")
+        return None if data is None else Ageing.from_data(data, f"{self.path}: ageing")
+
+    def differences(self) -> list[str]:
+        """Return notes on what has changed since: the build, and the files of the scene."""
+        notes = []
+        present = {"build": _core.build_id, "package": package_digest()}
+        if any(self.record.get(name, digest) != digest for name, digest in present.items()):
+            notes.append(f"{self.path} is of another build of snowshed")
+        inputs = self.record.get("inputs")
+        for name, mark in inputs.items() if isinstance(inputs, dict) else ():
+            path = Path(name)
+            known = (mark.get("bytes"), mark.get("checksum")) if isinstance(mark, dict) else None
+            if path.is_file() and file_mark(path) != known:
+                notes.append(f"{path} has changed since the run of {self.path}")
+        return notes
+
+
+def recorded_run(scene: SceneLike) -> Optional[RecordedRun]:
+    """Return the recorded run if a scene is given by the path of a run.json; else None.
+
+    Raises
+    ------
+    InputError
+        If the file is damaged.
+    """
+    if not isinstance(scene, (str, os.PathLike)) or Path(scene).name != RECORD:
+        return None
+    record = read_object(Path(scene))
+    return RecordedRun(record, Path(scene)) if "snowshed" not in record else None
