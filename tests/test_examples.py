@@ -16,14 +16,15 @@ ARGUMENTS = {
     "dimension_ratio.py": ["out", "0.03", "1"],
     "image_to_stack.py": ["out", "18", "2", "0.05"],
     "in_memory.py": ["out", "0.02"],
+    "own_laws.py": ["out", "0.02"],
     "panel_2d.py": ["out", "0.02"],
     "resume.py": ["out", "0.02"],
     "slab_and_bonds.py": ["out", "1.0"],
 }
 #: Scripts that take most of a minute.
 LONG = {"image_to_stack.py"}
-#: The note on thin slabs, which coarse grids cause, and the script's line that caused it.
-NOTE = re.compile(r".*: SnowshedNote: the slab is .* thick, less than two cells .*\n.*\n")
+#: The notes on thin slabs, which coarse grids cause, and on laws, and the lines that caused them.
+NOTE = re.compile(r".*: SnowshedNote: (the slab is .* thick, less than|laws of the user).*\n.*\n")
 
 
 def test_all_scripts_are_run():

@@ -9,6 +9,7 @@
 #include "scene_argument.hpp"
 #include "simulation_handle.hpp"
 #include "snowshed/run/external_record.hpp"
+#include "user_laws.hpp"
 
 namespace py = pybind11;
 
@@ -99,16 +100,19 @@ void bind_event_sequence(py::module_& m) {
   py::class_<run::EventSequence, std::shared_ptr<run::EventSequence>>(m, "EventSequence")
       .def_static(
           "create",
-          [](const py::object& scene, const Path& base_dir, const Path& folder) {
-            return run::EventSequence::create(scene_of(scene), base_dir, folder, python_interrupts);
+          [](const py::object& scene, const Path& base_dir, const Path& folder,
+             const py::object& laws) {
+            return run::EventSequence::create(scene_of(scene), base_dir, folder, python_interrupts,
+                                              laws_of(laws));
           },
-          "scene"_a, "base_dir"_a, "folder"_a)
+          "scene"_a, "base_dir"_a, "folder"_a, "laws"_a = py::none())
       .def_static(
           "resume",
-          [](const py::object& scene, const Path& base_dir, const Path& folder) {
-            return run::EventSequence::resume(scene_of(scene), base_dir, folder);
+          [](const py::object& scene, const Path& base_dir, const Path& folder,
+             const py::object& laws) {
+            return run::EventSequence::resume(scene_of(scene), base_dir, folder, laws_of(laws));
           },
-          "scene"_a, "base_dir"_a, "folder"_a)
+          "scene"_a, "base_dir"_a, "folder"_a, "laws"_a = py::none())
       .def("run", &run_sequence, "observer"_a, "report_interval_s"_a)
       .def("__enter__", [](run::EventSequence& self) -> run::EventSequence& { return self; })
       .def("__exit__", [](run::EventSequence& self, const py::args&) { self.close(); })

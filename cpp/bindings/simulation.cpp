@@ -14,6 +14,7 @@
 #include "snowshed/run/energy_history.hpp"
 #include "snowshed/run/force_history.hpp"
 #include "snowshed/run/run_record.hpp"
+#include "user_laws.hpp"
 
 namespace py = pybind11;
 
@@ -197,7 +198,14 @@ void add_snow(run::Simulation& sim, const py::array_t<double>& positions, double
 
 void bind_run(SimulationClass& c) {
   using namespace py::literals;
-  c.changes("begin_event", [](run::Simulation& s) { return reseeding_dict(s.begin_event()); });
+  c.changes("begin_event", [](run::Simulation& s) {
+    std::optional<run::Reseeding> reseeding;
+    {
+      py::gil_scoped_release release;  // laws of the user may be Python functions
+      reseeding = s.begin_event();
+    }
+    return reseeding_dict(reseeding);
+  });
   c.changes(
       "run",
       [](run::Simulation& s, const py::function& callback, double interval) {
@@ -230,10 +238,10 @@ void bind_files(SimulationClass& c) {
   using namespace py::literals;
   (*c).def_static(
       "load",
-      [](const std::filesystem::path& path) {
-        return std::make_unique<SimulationHandle>(run::Simulation::load(path));
+      [](const std::filesystem::path& path, const py::object& laws) {
+        return std::make_unique<SimulationHandle>(run::Simulation::load(path, {}, laws_of(laws)));
       },
-      "path"_a);
+      "path"_a, "laws"_a = py::none());
   (*c).def_static(
       "load_into",
       [](const py::object& scene, const std::filesystem::path& base_dir,
@@ -339,11 +347,12 @@ void bind_simulation(py::module_& m) {
   using namespace py::literals;
   m.def("quantities", &quantity_list, "(name, unit, meaning) of the quantities of particles.");
   SimulationClass c(m);
-  (*c).def(py::init([](const py::object& scene, const std::filesystem::path& base_dir) {
+  (*c).def(py::init([](const py::object& scene, const std::filesystem::path& base_dir,
+                       const py::object& laws) {
              return std::make_unique<SimulationHandle>(
-                 std::make_shared<run::Simulation>(scene_of(scene), base_dir));
+                 std::make_shared<run::Simulation>(scene_of(scene), base_dir, laws_of(laws)));
            }),
-           "scene"_a, "base_dir"_a = ".");
+           "scene"_a, "base_dir"_a = ".", "laws"_a = py::none());
   bind_run(c);
   bind_files(c);
   bind_fields(c);

@@ -2,6 +2,12 @@
 --
 --   snowshed lua lab_init.lua -o lab-40
 --   snowshed lua lab_init.lua lab_update.lua -o lab-50
+--
+-- The settings are those of the preset "lab-40" and differ from Table 4.1.1 in three points:
+--   the panel is SEPARATE; the table has SLIP:       panel { condition = SLIP }
+--   the stack is carried; the thesis reseeds it:     events { between = "reseed" }
+--   events end at rest; the table has 60 frames:     frames { interval = 1 / 24, count = 60 }
+-- The thesis prints neither the friction of the panel nor the frames per second.
 
 title "Laboratory experiment, Tables 2.3.1 and 4.1.1, calibrated snow"
 dimension(3)
@@ -19,7 +25,8 @@ material {
   xi = 0.1,
 }
 
--- The panel is simulated 1.5 times as wide as the slab, so that no snow falls off its sides.
+-- The panel is simulated 1.5 times as wide as the slab, so that no snow falls off its sides (Table
+-- 4.1.1). The panel of the experiment was as wide as the slab, 0.142 m (Table 2.3.1).
 local length = 0.245 -- m
 
 panel {

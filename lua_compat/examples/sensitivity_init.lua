@@ -1,7 +1,13 @@
--- The sensitivity analysis of the thesis (Table 3.2.1): reference snow and geometry.
+-- A sensitivity analysis with the reference snow and the geometry of the thesis (Table 3.2.1).
 --
 --   snowshed lua sensitivity_init.lua -o reference
 --   snowshed lua sensitivity_init.lua sensitivity_update.lua --to-json scenes
+--
+-- The settings are those of the preset "sensitivity" and differ from the table in three points:
+--   the panel is SEPARATE; the table has SLIP:       panel { condition = SLIP }
+--   the stack is carried; the thesis reseeds it:     events { between = "reseed" }
+--   events end at rest; the table has 50 frames:     frames { interval = 1 / 24, count = 50 }
+-- The thesis prints neither the friction of the panel nor the frames per second.
 
 dimension(3)
 grid_size(0.01)

@@ -1,4 +1,6 @@
--- The loop over the parameters: all 243 combinations of the values of Table 3.2.1.
+-- The loop over the parameters: all 243 combinations of the values of Table 3.2.1. The thesis has
+-- fewer: the 27 combinations of M, p0 and beta with the reference xi and E, and the 9 of xi and E with
+-- the reference M, p0 and beta. `snowshed sensitivity --method fixation` computes those.
 
 -- E and p0 in Pa; M, xi and beta have no unit.
 local E = { 1e6, 2e6, 3e6 }

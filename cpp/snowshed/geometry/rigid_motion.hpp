@@ -35,16 +35,23 @@ struct RigidPose {
   }
 };
 
+/// A function for the pose at a time: translation (m), rotation vector (rad), velocity (m/s) and
+/// angular velocity (rad/s), three numbers each, about the origin.
+using PoseFunction = void (*)(double time, double* pose);
+
 /// The motion of a MotionSpec: a constant velocity, and a constant spin about a pivot that moves
-/// with that velocity. The body moves for start <= t < end and is at rest before and after.
+/// with that velocity. The body moves for start <= t < end and is at rest before and after. A
+/// PoseFunction may take its place; the body then always moves.
 class RigidMotion {
  public:
   explicit RigidMotion(const MotionSpec& spec) : spec_(spec) {}
+  explicit RigidMotion(PoseFunction function) : function_(function) {}
 
-  bool is_moving(double t) const { return t >= spec_.start && t < spec_.end; }
+  bool is_moving(double t) const { return function_ || (t >= spec_.start && t < spec_.end); }
 
   /// Returns pose and velocity at time t, seconds. Callers call it once per time step.
   RigidPose at(double t) const {
+    if (function_) return pose_of_function(t);
     const double elapsed = std::max(0.0, std::min(t, spec_.end) - spec_.start);
     RigidPose pose;
     pose.pivot = spec_.pivot;
@@ -65,7 +72,21 @@ class RigidMotion {
   Vec3 normal_to_world(const Vec3& n, double t) const { return at(t).normal_to_world(n); }
 
  private:
+  RigidPose pose_of_function(double t) const {
+    double values[12] = {};
+    function_(t, values);
+    RigidPose pose;
+    pose.moved_pivot = Vec3(values[0], values[1], values[2]);
+    const Vec3 rotation(values[3], values[4], values[5]);
+    if (const double angle = rotation.norm(); angle > 0)
+      pose.rotation = Eigen::AngleAxisd(angle, rotation / angle).toRotationMatrix();
+    pose.linear_velocity = Vec3(values[6], values[7], values[8]);
+    pose.angular_velocity = Vec3(values[9], values[10], values[11]);
+    return pose;
+  }
+
   MotionSpec spec_;
+  PoseFunction function_ = nullptr;
 };
 
 }  // namespace snowshed::geometry

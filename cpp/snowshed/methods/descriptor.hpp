@@ -47,6 +47,7 @@ struct MethodInfo {
   // Quantities of its particles beside those that all methods share.
   std::vector<Quantity> quantities{};
   bool records_forces = false;  // whether it can record the forces on obstacles
+  bool takes_laws = false;      // whether it calls laws of the user
 };
 
 /// A method together with its settings. The registry holds one of each method with the default

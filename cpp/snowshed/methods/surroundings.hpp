@@ -8,6 +8,7 @@
 
 #include "snowshed/material/snow.hpp"
 #include "snowshed/methods/obstacle.hpp"
+#include "snowshed/methods/user_laws.hpp"
 
 namespace snowshed::methods {
 
@@ -34,6 +35,7 @@ struct Surroundings {
   std::vector<Obstacle> obstacles;           // all of them, as they are given
   std::vector<Obstacle> resolved;            // the same, thickened to the method's resolution
   std::vector<std::string> notes;            // assumptions and changes, a sentence each
+  UserLaws laws;                             // the user's; the obstacles have theirs
   std::shared_ptr<const MethodInput> input;  // null if the method reads no files
 };
 

@@ -12,9 +12,10 @@ namespace fs = std::filesystem;
 namespace snowshed::run {
 
 EventSequence EventSequence::create(const scene::Scene& scene, const fs::path& base_dir,
-                                    const fs::path& folder, const StopRequest& stop) {
+                                    const fs::path& folder, const StopRequest& stop,
+                                    const methods::UserLaws& laws) {
   ResultsFolder::require_empty(folder);
-  auto sim = std::make_unique<Simulation>(scene, base_dir);
+  auto sim = std::make_unique<Simulation>(scene, base_dir, laws);
   sim->begin_event(stop);  // seeding may fail, and then nothing must be left behind
   RunRecord record;
   record.mark_inputs(sim->scene(), base_dir);
@@ -23,11 +24,11 @@ EventSequence EventSequence::create(const scene::Scene& scene, const fs::path& b
 }
 
 EventSequence EventSequence::resume(const scene::Scene& scene, const fs::path& base_dir,
-                                    const fs::path& folder) {
+                                    const fs::path& folder, const methods::UserLaws& laws) {
   ResultsFolder results = ResultsFolder::reopen(folder, scene);
   RunRecord record = RunRecord::read(results.record(), scene.numerics->info().energies);
-  auto sim = fs::exists(results.checkpoint()) ? results.load_checkpoint(scene)
-                                              : std::make_unique<Simulation>(scene, base_dir);
+  auto sim = fs::exists(results.checkpoint()) ? results.load_checkpoint(scene, laws)
+                                              : std::make_unique<Simulation>(scene, base_dir, laws);
   record.keep_through(sim->event() - int(sim->event_running()));
   record.mark_inputs(sim->scene(), base_dir);
   if (scene.output.film && fs::exists(results.film())) sim->record_film(results.film());

@@ -39,12 +39,14 @@ class EventSequence {
   /// Begins a run in a folder that is new or empty. The first snow is laid before anything is
   /// written. Throws InputError, and Stopped on request.
   static EventSequence create(const scene::Scene& scene, const std::filesystem::path& base_dir,
-                              const std::filesystem::path& folder, const StopRequest& stop = {});
+                              const std::filesystem::path& folder, const StopRequest& stop = {},
+                              const methods::UserLaws& laws = {});
 
   /// Continues an earlier run of the same scene, by any program, from the last checkpoint in its
   /// folder; without a checkpoint the run begins again. Throws InputError.
   static EventSequence resume(const scene::Scene& scene, const std::filesystem::path& base_dir,
-                              const std::filesystem::path& folder);
+                              const std::filesystem::path& folder,
+                              const methods::UserLaws& laws = {});
 
   /// Runs the remaining events, with a report every `report_interval` seconds of wall time.
   /// Checkpoints are written at the scene's output.checkpoint_interval and after each event.

@@ -98,8 +98,9 @@ ResultsFolder::ResultsFolder(fs::path folder) : folder_(std::move(folder)), lock
       io::remove_leftovers(at->path());
 }
 
-std::unique_ptr<Simulation> ResultsFolder::load_checkpoint(const scene::Scene& scene) const {
-  auto sim = Simulation::load(checkpoint(), scene.numerics->threads());
+std::unique_ptr<Simulation> ResultsFolder::load_checkpoint(const scene::Scene& scene,
+                                                           const methods::UserLaws& laws) const {
+  auto sim = Simulation::load(checkpoint(), scene.numerics->threads(), laws);
   const std::string paths = differences(sim->scene(), scene);
   if (!paths.empty())
     throw InputError(checkpoint().string(),

@@ -33,7 +33,8 @@ class ResultsFolder {
   std::filesystem::path snapshots() const { return folder_ / "snapshots"; }
 
   /// Reads the checkpoint. Throws InputError if it is damaged, or of another scene.
-  std::unique_ptr<Simulation> load_checkpoint(const scene::Scene&) const;
+  std::unique_ptr<Simulation> load_checkpoint(const scene::Scene&,
+                                              const methods::UserLaws& laws) const;
 
   /// The checksum of its scene.json.
   std::string scene_checksum() const;

@@ -10,6 +10,7 @@
 #include "snowshed/core/parallel.hpp"
 #include "snowshed/core/stopwatch.hpp"
 #include "snowshed/methods/capabilities.hpp"
+#include "snowshed/run/apply_laws.hpp"
 #include "snowshed/run/energy_history.hpp"
 #include "snowshed/run/film_recorder.hpp"
 #include "snowshed/run/force_history.hpp"
@@ -33,7 +34,8 @@ double particle_distance(const scene::Scene& scene) {
 
 }  // namespace
 
-Simulation::Simulation(const scene::Scene& scene, const std::filesystem::path& base_dir)
+Simulation::Simulation(const scene::Scene& scene, const std::filesystem::path& base_dir,
+                       const methods::UserLaws& laws)
     : scene_(scene::resolve(scene)),
       scene_text_(scene::write_scene(scene_)),
       base_dir_(base_dir),
@@ -46,6 +48,7 @@ Simulation::Simulation(const scene::Scene& scene, const std::filesystem::path& b
   }
   shape_fingerprints_ = shape_fingerprints(scene_, base_dir_);
   surroundings_ = scene::build_surroundings(scene_, base_dir_);
+  apply_laws(laws, scene_, surroundings_);
   notes_ = surroundings_.notes;
   listed_obstacles_ = scene::listed_obstacles(scene_, surroundings_.obstacles);
   resolved_obstacles_ = scene::listed_obstacles(scene_, surroundings_.resolved);

@@ -53,7 +53,8 @@ class Simulation {
  public:
   /// Builds obstacles, reads all files and checks that the scene fits into memory; seeds nothing
   /// yet. Relative file names are looked for in `base_dir`. Throws InputError.
-  explicit Simulation(const scene::Scene& scene, const std::filesystem::path& base_dir = ".");
+  explicit Simulation(const scene::Scene& scene, const std::filesystem::path& base_dir = ".",
+                      const methods::UserLaws& laws = {});
   ~Simulation();
 
   /// Seeds the next event's snow: the slab on the panel (above the snow that remained there, unless
@@ -103,9 +104,11 @@ class Simulation {
   /// older file then stays.
   void save(const std::filesystem::path& checkpoint) const;
   /// Throws InputError if the file is not a sound checkpoint. Any number of `threads` (0: all)
-  /// gives the same bits; by default it is that of the checkpoint's scene.
+  /// gives the same bits; by default it is that of the checkpoint's scene. Laws of the user must be
+  /// given again, under the same name.
   static std::unique_ptr<Simulation> load(const std::filesystem::path& checkpoint,
-                                          std::optional<int> threads = {});
+                                          std::optional<int> threads = {},
+                                          const methods::UserLaws& laws = {});
   /// The same for another scene, which may lay other snow from the next event on, or have more
   /// events. It must have the same method and obstacles, and its snows must begin with those of the
   /// checkpoint's scene. Also throws InputError if an event was running.
@@ -192,7 +195,8 @@ class Simulation {
   std::optional<RunEnd> event_end();
   std::unique_ptr<methods::Method> empty_method() const;
   static std::unique_ptr<Simulation> from_archive(const io::BinaryReader&, const scene::Scene&,
-                                                  const std::filesystem::path& base_dir);
+                                                  const std::filesystem::path& base_dir,
+                                                  const methods::UserLaws& laws = {});
   void read_back(const std::filesystem::path& checkpoint) const;
   RunReport report(double rms_speed) const;
 

@@ -62,6 +62,16 @@ void check_kernels(const io::BinaryReader& in) {
                          "those where the machine has them, or start a new run");
 }
 
+/// Throws InputError unless the laws of the user are those with which the checkpoint was made.
+void check_laws(const io::BinaryReader& in, const methods::UserLaws& laws) {
+  const std::string then = in.has("laws") ? in.text("laws") : "";
+  if (then == (laws.any() ? laws.name : "")) return;
+  throw InputError(in.path().string(),
+                   then.empty() ? "made without laws of the user; leave them out"
+                                : "made with the laws of the user " + quote(then) +
+                                      ", which a checkpoint cannot hold; give them again");
+}
+
 /// Throws InputError unless the particles' snows have the same numbers in another scene.
 void check_same_snow(const io::BinaryReader& in, const std::vector<material::Snow>& then,
                      const std::vector<material::Snow>& now) {
@@ -78,6 +88,7 @@ void Simulation::save(const std::filesystem::path& checkpoint) const {
   out.add_text("scene", scene_text_);
   out.add_text("base_dir", std::filesystem::absolute(base_dir_).string());
   out.add_text("kernels", kernel_variant_name());
+  if (surroundings_.laws.any()) out.add_text("laws", surroundings_.laws.name);
   if (!shape_fingerprints_.empty()) out.add("shape_files", shape_fingerprints_);
   if (surroundings_.input)
     out.add(surroundings_.input->section(), fingerprints_of(*surroundings_.input));
@@ -108,12 +119,13 @@ void Simulation::read_back(const std::filesystem::path& checkpoint) const {
 }
 
 std::unique_ptr<Simulation> Simulation::load(const std::filesystem::path& checkpoint,
-                                             std::optional<int> threads) {
+                                             std::optional<int> threads,
+                                             const methods::UserLaws& laws) {
   const io::BinaryReader in = io::BinaryReader::load(checkpoint);
   in.require_finite();  // a clock that is not a number would never reach the end of an event
   const scene::Scene scene = scene::parse_scene(in.text("scene"), checkpoint.string());
   return from_archive(in, threads ? scene::with_threads(scene, *threads) : scene,
-                      in.text("base_dir"));
+                      in.text("base_dir"), laws);
 }
 
 std::unique_ptr<Simulation> Simulation::load_into(const scene::Scene& scene,
@@ -133,8 +145,10 @@ std::unique_ptr<Simulation> Simulation::load_into(const scene::Scene& scene,
 
 std::unique_ptr<Simulation> Simulation::from_archive(const io::BinaryReader& in,
                                                      const scene::Scene& scene,
-                                                     const std::filesystem::path& base_dir) {
-  auto sim = std::make_unique<Simulation>(scene, base_dir);
+                                                     const std::filesystem::path& base_dir,
+                                                     const methods::UserLaws& laws) {
+  check_laws(in, laws);
+  auto sim = std::make_unique<Simulation>(scene, base_dir, laws);
   check_kernels(in);
   check_files(in, sim->surroundings_);
   check_shape_files(in, sim->scene_, sim->shape_fingerprints_);

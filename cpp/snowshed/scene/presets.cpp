@@ -23,7 +23,8 @@ material::Snow reference_snow() {
 }
 
 /// Tables 2.3.1 and 4.1.1. The panel is simulated wider than it was (0.142 m), 1.5 times the
-/// slab's width. Table 2.3.1 prints 3 events, sections 2.3 and 4.1 and their figures 5.
+/// slab's width. Table 2.3.1 prints 3 events, sections 2.3 and 4.1 and their figures 5. Contact
+/// (separate), the treatment between events (carry) and their end (rest) are ours.
 Scene lab_scene(double tilt) {
   Scene scene;
   scene.title = "Laboratory experiment, Tables 2.3.1 and 4.1.1, calibrated snow";

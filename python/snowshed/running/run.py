@@ -24,6 +24,8 @@ from snowshed.methods.registry import method_of
 from snowshed.results.reader import Results
 from snowshed.results.replacement import replaced_results
 from snowshed.running.ageing.ageing import Ageing
+from snowshed.running.kept_inputs import kept_inputs
+from snowshed.running.laws import Laws
 from snowshed.running.method_run import MethodRun, RunOptions
 from snowshed.running.recorded_run import recorded_run
 from snowshed.running.sequence import open_sequence, record_note, run_sequence
@@ -40,6 +42,7 @@ def run(
     resume: bool = False,
     overwrite: bool = False,
     ageing: Optional[Ageing] = None,
+    laws: Optional[Laws] = None,
     progress: Optional[Reporter] = None,
     pictures: bool = True,
     compact: bool = False,
@@ -63,6 +66,9 @@ def run(
     ageing
         Ageing of the stack between the events; None: none, or that of a run.json. It must be the
         same when resuming.
+    laws
+        Laws of one's own (`snowshed.running.Laws`); None: those of the scene. They must have the
+        same name when resuming.
     progress
         Called with a `Progress` about twice a second.
     pictures
@@ -101,7 +107,7 @@ def run(
         if resume or overwrite:
             raise _core.InputError("folder: missing; resume and overwrite need it")
         return _run_in_temporary_folder(
-            scene, ageing=ageing, progress=progress, pictures=pictures, compact=compact
+            scene, ageing=ageing, laws=laws, progress=progress, pictures=pictures, compact=compact
         )
     resolved, recorded = resolve_scene(scene), recorded_run(scene)
     method = method_of(resolved.data)
@@ -116,8 +122,9 @@ def run(
     if resume and overwrite:
         raise _core.InputError("resume, overwrite: give one of the two")
     options = RunOptions(resume, ageing, pictures, compact)
-    with replaced_results(folder) if overwrite else nullcontext():
-        sequence = open_sequence(resolved, folder, resume=resume)
+    replaced = replaced_results(folder) if overwrite else nullcontext()
+    with replaced, kept_inputs(resolved, folder) as resolved:
+        sequence = open_sequence(resolved, folder, resume=resume, laws=laws)
     with sequence, deferred_interrupts() as interrupt:
         method_run: MethodRun = method.run_class()(sequence, resolved, Path(folder), options)
         method_run.begin()
@@ -154,6 +161,7 @@ def run_events(
     resume: bool = False,
     overwrite: bool = False,
     ageing: Optional[Ageing] = None,
+    laws: Optional[Laws] = None,
     progress: Optional[Reporter] = None,
     pictures: bool = True,
 ) -> pd.DataFrame:
@@ -194,6 +202,7 @@ def run_events(
         resume=resume,
         overwrite=overwrite,
         ageing=ageing,
+        laws=laws,
         progress=progress,
         pictures=pictures,
     ).events

@@ -9,19 +9,23 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Optional
 
 import snowshed._core as _core
 from snowshed.base.interrupt import Interrupted
 from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike, utf8_path
 from snowshed.io.run_files import file_mark
+from snowshed.running.laws import Laws, addresses_of
 from snowshed.running.scene_notes import notes_before
 from snowshed.scene.scene import ResolvedScene
 
 REPORT_INTERVAL = 0.5  # s of wall time between progress reports
 
 
-def open_sequence(scene: ResolvedScene, folder: PathLike, *, resume: bool) -> _core.EventSequence:
+def open_sequence(
+    scene: ResolvedScene, folder: PathLike, *, resume: bool, laws: Optional[Laws] = None
+) -> _core.EventSequence:
     """Return the sequence of a scene's events in a folder that is new, empty or to be resumed.
 
     Raises
@@ -30,7 +34,8 @@ def open_sequence(scene: ResolvedScene, folder: PathLike, *, resume: bool) -> _c
         If the scene is wrong, the folder is not empty, or there is nothing to resume.
     """
     open_folder = _core.EventSequence.resume if resume else _core.EventSequence.create
-    return open_folder(scene.core, scene.base_dir, utf8_path(folder))
+    addresses = addresses_of(laws, scene.data)
+    return open_folder(scene.core, scene.base_dir, utf8_path(folder), addresses)
 
 
 def seal_files(sequence: _core.EventSequence, folder: PathLike, *names: str) -> None:

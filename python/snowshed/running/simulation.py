@@ -12,9 +12,11 @@ from numpy.typing import ArrayLike
 import snowshed._core as _core
 from snowshed._core import InputError, SimulationError
 from snowshed.base.arrays import finite, points, positive, whole_number
+from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.methods.registry import method_of
 from snowshed.results.provenance import present_origin, with_origin
+from snowshed.running.laws import Laws, addresses_of
 from snowshed.running.particle_reading import ReadsParticles
 from snowshed.running.sequence import issuing_notes
 from snowshed.scene.components import Snow
@@ -64,6 +66,8 @@ class Simulation(ReadsParticles):
     ----------
     scene : Scene, ResolvedScene, dict or path
         A scene, its JSON data, or a scene file.
+    laws
+        Laws of one's own (`snowshed.running.Laws`); None: those of the scene.
 
     Raises
     ------
@@ -85,13 +89,24 @@ class Simulation(ReadsParticles):
     'm/s'
     """
 
-    def __init__(self, scene: SceneLike) -> None:
+    def __init__(self, scene: SceneLike, *, laws: Optional[Laws] = None) -> None:
         self._scene = resolve_scene(scene)
-        self._core = _core.Simulation(self._scene.core, self._scene.base_dir)
+        self._laws = laws  # keeps the functions alive
+        addresses = addresses_of(laws, self._scene.data)
+        self._core = _core.Simulation(self._scene.core, self._scene.base_dir, addresses)
+        for note in self._core.notes:
+            issue_note(note)
 
     @classmethod
-    def load(cls, path: PathLike) -> Simulation:
+    def load(cls, path: PathLike, *, laws: Optional[Laws] = None) -> Simulation:
         """Return the simulation in a file of `save`, or in the ``checkpoint.bin`` of a run.
+
+        Parameters
+        ----------
+        path
+            The file.
+        laws
+            The laws of one's own with which it was made; a checkpoint holds their name only.
 
         Raises
         ------
@@ -101,7 +116,10 @@ class Simulation(ReadsParticles):
             If it cannot be read.
         """
         loaded = cls.__new__(cls)
-        loaded._core = _core.Simulation.load(os.fspath(path))
+        loaded._laws = laws
+        precision = "double" if laws is not None and laws.is_double else "float"
+        addresses = None if laws is None else laws.addresses(precision)
+        loaded._core = _core.Simulation.load(os.fspath(path), addresses)
         loaded._scene = ResolvedScene(loaded._core.scene)
         return loaded
 

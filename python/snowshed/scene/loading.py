@@ -8,6 +8,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, Optional
 
+import numpy as np
+from numpy.typing import ArrayLike
+
+from snowshed._core import InputError
+from snowshed.base.array_files import array_file
 from snowshed.base.paths import PathLike
 from snowshed.base.record import Record, default
 
@@ -33,6 +38,37 @@ class Sample(Record):
     file: Optional[PathLike] = None
     voxel_size: Optional[float] = None
     split_labels: Optional[bool] = default(False)
+
+    @classmethod
+    def from_labels(
+        cls, labels: ArrayLike, *, voxel_size: float, split_labels: Optional[bool] = None
+    ) -> Sample:
+        """Return a sample from an array of grains.
+
+        Parameters
+        ----------
+        labels : (nz, ny, nx)
+            Whole numbers: 0 air, and any other number a grain.
+        voxel_size
+            Edge of a voxel, m.
+        split_labels
+            Whether each connected piece of a label is a grain.
+
+        Raises
+        ------
+        InputError
+            If the array is none of three dimensions, or its numbers are not whole.
+
+        Examples
+        --------
+        >>> Sample.from_labels(np.ones((2, 2, 2), int), voxel_size=1e-4).voxel_size
+        0.0001
+        """
+        values = np.asarray(labels)
+        if values.ndim != 3 or values.dtype.kind not in "iub":
+            raise InputError("labels: needed is an array (nz, ny, nx) of whole numbers")
+        file = array_file(values.astype(np.int32))
+        return cls(file=file, voxel_size=voxel_size, split_labels=split_labels)
 
 
 @dataclass

@@ -6,6 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import List, Literal, Optional
 
+import numpy as np
+from numpy.typing import ArrayLike
+
+from snowshed._core import InputError
+from snowshed.base.array_files import array_file
 from snowshed.base.paths import PathLike
 from snowshed.base.record import Record
 
@@ -154,6 +159,38 @@ class Shape(Record):
     def grid(cls, file: PathLike, *, origin: Vector, spacing: float) -> Shape:
         """Return a solid from signed distances on a regular grid (.npy), the first at `origin`."""
         return cls(type="grid", file=file, origin=origin, spacing=spacing)
+
+    @classmethod
+    def from_distances(cls, distances: ArrayLike, *, origin: Vector, spacing: float) -> Shape:
+        """Return a solid from an array of signed distances, m, the first at `origin`.
+
+        Parameters
+        ----------
+        distances : (nx, ny, nz), or (nx, nz) in 2D
+            Distances, negative inside.
+        origin
+            Position of the first distance, m.
+        spacing
+            Distance between samples, m.
+
+        Raises
+        ------
+        InputError
+            If the array has another form, or a value is not finite.
+
+        Examples
+        --------
+        >>> x, z = np.meshgrid(np.arange(-3.0, 4.0), np.arange(-3.0, 4.0), indexing="ij")
+        >>> disc = Shape.from_distances(np.hypot(x, z) - 2.0, origin=(-3, -3), spacing=1.0)
+        >>> disc.type
+        'grid'
+        """
+        values = np.asarray(distances, dtype=np.float32)
+        if values.ndim == 2:  # the plane of a scene in 2D
+            values = values[:, np.newaxis, :]
+        if values.ndim != 3 or not np.isfinite(values).all():
+            raise InputError("distances: needed is an array (nx, ny, nz) of finite numbers")
+        return cls.grid(array_file(values), origin=origin, spacing=spacing)
 
     @classmethod
     def vdb(

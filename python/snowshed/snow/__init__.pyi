@@ -1,3 +1,4 @@
+from .point import follow_path as follow_path
 from .relations.new_snow import NEW_SNOW_DENSITY as NEW_SNOW_DENSITY
 from .relations.relation import Relation as Relation
 from .relations.settling import SETTLING_LAWS as SETTLING_LAWS

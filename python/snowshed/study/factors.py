@@ -29,7 +29,7 @@ class Factor:
     ----------
     columns
         The values of each parameter, by its dotted path in a scene; all parameters have the same
-        number of values.
+        number of values. A pandas DataFrame has such columns, too.
 
     Raises
     ------
@@ -46,6 +46,8 @@ class Factor:
     columns: Mapping[str, Sequence[object]]
 
     def __post_init__(self) -> None:
+        columns = {str(path): list(_plain(values)) for path, values in self.columns.items()}
+        object.__setattr__(self, "columns", columns)
         counts = {path: len(values) for path, values in self.columns.items()}
         if not counts:
             raise InputError("names no parameter; name at least one")
@@ -64,6 +66,12 @@ class Factor:
     def points(self) -> list[dict[str, object]]:
         """Return the points, each as ``{path: value}``."""
         return [dict(zip(self.columns, values)) for values in zip(*self.columns.values())]
+
+
+def _plain(values: Sequence[object]) -> Sequence[object]:
+    """Return the values of an array or a column of a table as Python's own numbers."""
+    plain = getattr(values, "tolist", None)
+    return plain() if callable(plain) else values
 
 
 #: Factors whose points a study combines with each other.

@@ -26,6 +26,10 @@ inline constexpr int block_nodes = block_edge<D> * block_edge<D> * (D == 3 ? blo
 ///             (FLIP, affine FLIP) or the new velocity again (APIC).
 inline constexpr int node_values = 8;
 
+/// Smallest mass of a node with snow, kg. The inverse of a smaller mass may overflow.
+template <class T>
+inline constexpr T min_node_mass = T(1e-30);
+
 /// Nodes that a particle touches along one direction.
 constexpr int support(Basis basis) { return basis == Basis::quadratic ? 3 : 4; }
 
@@ -101,6 +105,7 @@ struct StepParameters {
   // Whether the contacts still hold the impulses of the step before, which was taken, and not those
   // of a try of this step.
   bool holds_last = false;
+  MaterialLaw<T> law = nullptr;  // the user's, in place of those of the snows
 };
 
 /// Returns the share of its stored normal impulse for which a contact exerts friction in a step.

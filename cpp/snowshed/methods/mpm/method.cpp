@@ -71,6 +71,7 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
           "Volumetric plastic strain, logarithmic, negative in compaction", 1, 0.01},
          {"be_minus_identity", "1", "Elastic left Cauchy-Green tensor less the identity"},
          {"affine", "1/s", "Affine velocity matrix C of APIC, by rows", 9}},
+        true,
         true};
     return info;
   }
@@ -101,6 +102,7 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
     for (const Obstacle& obstacle : surroundings.obstacles) o.surfaces.push_back(obstacle.shape);
     o.energy = scene.output.energy;
     o.forces = scene.output.forces;
+    o.laws = surroundings.laws;
     return make_solver(std::move(o));
   }
 

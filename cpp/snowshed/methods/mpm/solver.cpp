@@ -40,7 +40,8 @@ StepParameters<T> SolverImpl<T, D>::parameters(double dt) const {
           T(n.overstress_share(dt)),
           model_.constants.data(),
           workspace_.friction_shares.shares.data(),
-          false};
+          false,
+          reinterpret_cast<MaterialLaw<T>>(model_.options.laws.material)};
 }
 
 template <class T, int D>
@@ -192,25 +193,58 @@ void SolverImpl<T, D>::update_overlap(const StepParameters<T>& step, std::ptrdif
   if (!state_.sleep.is_active(*begin)) return;
   for (auto g = begin; g != end; ++g) {
     workspace_.grid.node_stats[*g] = {};
-    if (workspace_.grid.touched[*g])
+    if (workspace_.grid.touched[*g]) {
       model_.kernels.update_free(step, workspace_.grid.sum(*g), workspace_.grid.velocity(*g));
-    else
+      if (model_.options.laws.body_force) add_body_force(step, *g);
+    } else {
       clear_block(step, *g);
+    }
   }
   workspace_.event_contacts.exchange(step, model_.event_friction(), state_, workspace_.grid,
                                      overlap);
   for (auto g = begin; g != end; ++g)
-    if (workspace_.grid.touched[*g])
-      model_.kernels.finish(step, workspace_.grid.sum(*g), workspace_.grid.velocity(*g),
-                            state_.contacts.of_block(*g), state_.contacts.forces_of(*g),
-                            state_.contacts.count(*g), model_.boundary.laws().data(),
-                            workspace_.grid.node_stats[*g]);
+    if (workspace_.grid.touched[*g]) finish_block(step, *g);
+}
+
+/// Contact with obstacles, after the forces.
+template <class T, int D>
+void SolverImpl<T, D>::finish_block(const StepParameters<T>& step, std::ptrdiff_t g) {
+  model_.kernels.finish(step, workspace_.grid.sum(g), workspace_.grid.velocity(g),
+                        state_.contacts.of_block(g), state_.contacts.forces_of(g),
+                        state_.contacts.count(g), model_.boundary.laws().data(),
+                        workspace_.grid.node_stats[g]);
+}
+
+/// Adds the acceleration by the user's body force to the velocities of a block's nodes.
+template <class T, int D>
+void SolverImpl<T, D>::add_body_force(const StepParameters<T>& step, std::ptrdiff_t g) {
+  constexpr int n = block_nodes<D>;
+  double x[3][n] = {}, a[3][n] = {};
+  const BlockCoord<D> block = block_coord<D>(state_.layout.grid_blocks[g]);
+  for (int k = 0; k < n; ++k) {
+    const Vec3 at = embed(node_position<D>(block, k, model_.options.settings.dx));
+    for (int d = 0; d < 3; ++d) x[d][k] = at[d];
+  }
+  model_.options.laws.body_force(n, x[0], x[1], x[2], time(), a[0], a[1], a[2]);
+  const T* sums = workspace_.grid.sum(g);
+  T* velocities = workspace_.grid.velocity(g);
+  for (int k = 0; k < n; ++k) {
+    if (!(sums[k * node_values] > min_node_mass<T>)) continue;
+    const VecD<D> change = double(step.dt) * section<D>(Vec3(a[0][k], a[1][k], a[2][k]));
+    for (int d = 0; d < D; ++d)
+      for (const int half : {0, 4}) velocities[k * node_values + half + d] += T(change[d]);
+  }
 }
 
 template <class T, int D>
 void SolverImpl<T, D>::update_block(const StepParameters<T>& step, std::ptrdiff_t g) {
   workspace_.grid.node_stats[g] = {};
   if (!workspace_.grid.touched[g]) return clear_block(step, g);
+  if (model_.options.laws.body_force) {
+    model_.kernels.update_free(step, workspace_.grid.sum(g), workspace_.grid.velocity(g));
+    add_body_force(step, g);
+    return finish_block(step, g);
+  }
   model_.kernels.update(step, workspace_.grid.sum(g), workspace_.grid.velocity(g),
                         state_.contacts.of_block(g), state_.contacts.forces_of(g),
                         state_.contacts.count(g), model_.boundary.laws().data(),

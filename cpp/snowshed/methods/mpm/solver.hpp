@@ -10,6 +10,7 @@
 #include "snowshed/methods/mpm/settings.hpp"
 #include "snowshed/methods/obstacle.hpp"
 #include "snowshed/methods/obstacle_forces.hpp"
+#include "snowshed/methods/user_laws.hpp"
 
 namespace snowshed::methods::mpm {
 
@@ -27,6 +28,7 @@ struct Options {
   std::vector<geometry::Shape> surfaces;
   bool energy = false;  // whether to keep the energy balance
   bool forces = false;  // whether to record the forces on obstacles
+  UserLaws laws;        // except those of obstacles
 };
 
 /// A solver of MPM: a method that can also settle, balance energy, record forces and sleep.

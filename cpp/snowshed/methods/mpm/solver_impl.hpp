@@ -86,6 +86,8 @@ class SolverImpl final : public Solver {
   void gather_and_update(double dt);
   void update(double dt);
   void update_block(const StepParameters<T>& step, std::ptrdiff_t block);
+  void finish_block(const StepParameters<T>& step, std::ptrdiff_t block);
+  void add_body_force(const StepParameters<T>& step, std::ptrdiff_t block);
   void clear_block(const StepParameters<T>& step, std::ptrdiff_t block);
   bool has_overlap(std::int32_t grid_block) const {
     return !state_.layout.has_overlap.empty() && state_.layout.has_overlap[grid_block];

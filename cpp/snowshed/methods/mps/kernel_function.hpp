@@ -9,12 +9,13 @@ namespace snowshed::methods::mps {
 /// Constants of Koshizuka and Oka's operators for a regular lattice, in units of the spacing l0.
 struct KernelConstants {
   double radius;          // r_e
-  double number_density;  // n0, equation (7)
-  double lambda;          // equation (6)
+  double number_density;  // n0, equation (7) of Saito and others (2012)
+  double lambda;          // Koshizuka and Oka (1996)
   double filling;         // sum of filling_weight, with the particle's own
 };
 
-/// w(r) = r_e/r - 1 within r_e, equation (3) of Saito and others (2012).
+/// w(r) = r_e/r - 1 within r_e, of Koshizuka and Oka (1996); equation (3) of Saito and others
+/// (2012) is not legible.
 inline double kernel_weight(double r, double radius) { return r < radius ? radius / r - 1 : 0.0; }
 
 /// Wendland's function (1995, doi:10.1007/BF02123482) of w(r) as above; 1 at r = 0. Its sum over a

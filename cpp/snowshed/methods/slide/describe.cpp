@@ -27,7 +27,8 @@ void describe(SettingsVisitor& v, Settings& s) {
   v.number("artificial_viscosity", s.artificial_viscosity, "", non_negative.up_to(1e6),
            "Strength with which particles are drawn to the mean velocity around them");
   v.flag("bonds", s.bonds, "Cohesive bonds; without them a plain depth-averaged avalanche");
-  v.number("max_strain", s.max_strain, "", positive.up_to(10.0), "Strain at which a bond breaks");
+  v.number("max_strain", s.max_strain, "", positive.up_to(10.0),
+           "Strain at which a bond breaks, in tension or compression");
   v.number("bond_modulus", s.bond_modulus, "Pa", non_negative.up_to(1e12),
            "Stiffness of the bonds (cohesive surface tension)");
   v.number("min_bond_length", s.min_bond_length, "m", allowed::size_or_zero,

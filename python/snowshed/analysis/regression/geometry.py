@@ -30,7 +30,8 @@ BETWEEN = ("carry", "reseed")
 #: the panels, it gives ratios of height to length nearest to Table 5.3.1.
 FRICTION = 0.8
 #: Damping rate of PIC, 1/s. It corresponds to the thesis's share of 0.01 in each step, with cells
-#: of 1 cm and the calibrated snow (steps of 0.054 ms). The rate holds for cells of any size.
+#: of 1 cm and the calibrated snow in 2D (steps of 0.054 ms; in 3D it would be 211 1/s). The rate
+#: holds for cells of any size.
 DAMPING_RATE = 190.0
 #: Number of seeds of the shortest panels for each seed of panels up to some length, m. Stacks of
 #: short panels scatter most, and long panels take longest. With these shares, one more stack of

@@ -15,6 +15,7 @@ from snowshed.analysis.tomography.ice_image import IceImage, check_phases
 from snowshed.analysis.tomography.region_merging import merge_contiguous, merge_shallow
 from snowshed.analysis.tomography.watershed import Basins, distance_basins, voxel_counts
 from snowshed.base.arrays import Labels, finite, positive
+from snowshed.scene.loading import Sample
 
 SegmentationMethod = Literal["watershed", "curvature"]
 
@@ -96,6 +97,10 @@ class Segmentation:
     def count(self) -> int:
         """Number of grains."""
         return len(self.touching.air) - 1
+
+    def sample(self) -> Sample:
+        """Return the grains as the sample of a scene, without a file of one's own."""
+        return Sample.from_labels(self.labels, voxel_size=self.image.voxel_size)
 
 
 def segment(

@@ -48,7 +48,7 @@ class SlideSettings(MethodSettings):
     bonds : bool
         Cohesive bonds; without them a plain depth-averaged avalanche. Default True.
     max_strain : float
-        Strain at which a bond breaks. 0 < value <= 10; default 0.2.
+        Strain at which a bond breaks, in tension or compression. 0 < value <= 10; default 0.2.
     bond_modulus : float
         Stiffness of the bonds (cohesive surface tension) [Pa]. 0 <= value <= 1e+12; default 50000.
     min_bond_length : float

@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Optional
+from typing import TYPE_CHECKING, Optional, Union
 
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
+from snowshed.io.raster.raster import Raster
 from snowshed.methods.slide.settings import SlideSettings
 from snowshed.results.reader import Results
 from snowshed.running.run import run
 from snowshed.scene.builders.slides import slide_scene
 from snowshed.scene.builders.terrain_copy import copies_removed_on_failure, terrain_copy
 
+if TYPE_CHECKING:
+    import xarray
+
 
 def slide(
-    terrain: PathLike,
-    release: PathLike,
+    terrain: Union[PathLike, Raster, xarray.DataArray],
+    release: object,
     folder: PathLike,
     *,
     thickness: Optional[float] = None,
@@ -30,9 +34,11 @@ def slide(
     Parameters
     ----------
     terrain
-        Elevations: an ESRI ASCII grid or a GeoTIFF, on a projected map.
+        Elevations: an ESRI ASCII grid or a GeoTIFF, on a projected map; or a `Raster`, or a
+        DataArray of xarray with the coordinates x and y.
     release
-        Polygons of the release areas: GeoPackage, shapefile or GeoJSON.
+        Polygons of the release areas: GeoPackage, shapefile or GeoJSON; shapely polygons, or a
+        GeoDataFrame.
     folder
         The results folder; new or empty. A copy of a GeoTIFF is written beside it.
     thickness

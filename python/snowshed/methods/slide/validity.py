@@ -1,7 +1,8 @@
 """Warnings where a slide violates the method's assumptions.
 
 AvaFrame's documentation states the range of com5SnowSlide: releases on slopes of 28 to 50 degrees
-between 500 and 1500 m of altitude, drops of 30 to 80 m, and snow that moves as one slab.
+between 500 and 1500 m of altitude, drops of 30 to at most 60 or 80 m, a snow depth of 150 years,
+and snow that moves as one slab without turbulence.
 """
 
 from __future__ import annotations

@@ -26,7 +26,7 @@ def mesh_structure(
 ) -> Scene:
     """Return a structure from a mesh, with snow of even depth on all upward faces.
 
-    The scene has no panel: snow that stays on the structure counts as part of the stack.
+    The scene has no panel. Snow that stays on the structure is no part of the stack.
 
     Parameters
     ----------

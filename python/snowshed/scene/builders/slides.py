@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import dataclasses
+import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Optional
+from typing import TYPE_CHECKING, Optional, Union
+from uuid import uuid4
 
 import numpy as np
 
 from snowshed._core import InputError
+from snowshed.base.array_files import array_folder
 from snowshed.base.limits import MAX_TERRAIN_CELLS
 from snowshed.base.notes import record_notes
 from snowshed.base.paths import PathLike
 from snowshed.io.raster.areas import MapArea, read_areas
+from snowshed.io.raster.arrays import areas_of, raster_of
 from snowshed.io.raster.raster import Raster, is_single, read_raster, write_ascii_grid
 from snowshed.io.raster.release import areas_of_depth, snow_part
 from snowshed.methods.slide.settings import SlideSettings
@@ -21,11 +26,15 @@ from snowshed.scene.builders.terrain_checks import (
     MAX_SLOPE,
     check_apart,
     check_place,
+    check_terrain,
     common_system,
     read_terrain,
 )
 from snowshed.scene.components import Area, Events, Hole, ResistanceArea, Terrain
 from snowshed.scene.scene import Scene
+
+if TYPE_CHECKING:
+    import xarray
 
 MAX_TIME = 400.0  # s, as in AvaFrame
 MIN_THICKNESS = 0.01  # m, smallest thickness of snow for a slide
@@ -39,14 +48,14 @@ LAYER_OPTIONS = {
 
 
 def slide_scene(
-    raster: PathLike,
-    release: Optional[PathLike] = None,
+    raster: Union[PathLike, Raster, xarray.DataArray],
+    release: Optional[object] = None,
     *,
     thickness: Optional[float] = None,
     thickness_raster: Optional[PathLike] = None,
-    entrainment: Optional[PathLike] = None,
+    entrainment: Optional[object] = None,
     entrained_thickness: Optional[float] = None,
-    resistance: Optional[PathLike] = None,
+    resistance: Optional[object] = None,
     layers: Optional[Mapping[str, str]] = None,
     settings: Optional[SlideSettings] = None,
     ascii_copy: Optional[PathLike] = None,
@@ -62,9 +71,11 @@ def slide_scene(
     Parameters
     ----------
     raster
-        Elevations, m: an ESRI ASCII grid or a GeoTIFF, on a projected map.
+        Elevations, m: an ESRI ASCII grid or a GeoTIFF, on a projected map; or a `Raster`, or a
+        DataArray of xarray with the coordinates x and y.
     release
-        Polygons of the release areas; a field "thickness" holds the thickness of the snow, m.
+        Polygons of the release areas: a file, shapely polygons, or a GeoDataFrame; a field
+        "thickness" holds the thickness of the snow, m.
         None: all cells with snow in `thickness_raster`.
     thickness
         Thickness of the snow, normal to the ground [m], instead of the thickness in the file.
@@ -103,7 +114,7 @@ def slide_scene(
     """
     with record_notes() as notes:
         steepest = MAX_SLOPE if max_slope is None else max_slope
-        terrain = read_terrain(raster, band, steepest, max_cells or MAX_TERRAIN_CELLS)
+        terrain = _terrain(raster, band, steepest, max_cells or MAX_TERRAIN_CELLS)
         depth = None
         if thickness_raster is not None:
             depth = read_raster(thickness_raster, thickness_band)
@@ -113,13 +124,14 @@ def slide_scene(
         held = polygons.areas(resistance, "resistance")
     check_place(terrain, areas)
     check_apart(areas)
-    files = [(str(raster), terrain.crs), *((area.file, area.crs) for area in areas + eroded + held)]
+    files = [(terrain.name, terrain.crs)]
+    files += [(area.file, area.crs) for area in areas + eroded + held]
     if depth is not None:
         files.append((depth.name, depth.crs))
     crs = common_system(files)
     most = MAX_THICKNESS if max_thickness is None else max_thickness
     rings = [_snow_area(area, thickness, most, depth) for area in areas]
-    file = _ascii_grid(Path(raster), terrain, ascii_copy)
+    file = _ascii_grid(Path(terrain.name), terrain, ascii_copy)
     map_file = None if depth is None else str(_thickness_file(depth, ascii_copy).resolve())
     return Scene(
         method="slide",
@@ -145,6 +157,22 @@ def slide_scene(
         numerics=settings or SlideSettings(),
         events=Events(max_time=MAX_TIME),
     )
+
+
+def _terrain(
+    raster: Union[PathLike, Raster, xarray.DataArray],
+    band: Optional[int],
+    steepest: float,
+    max_cells: int,
+) -> Raster:
+    """Return elevations from a file, or from an object in memory."""
+    if isinstance(raster, (str, os.PathLike)):
+        return read_terrain(raster, band, steepest, max_cells)
+    terrain = raster if isinstance(raster, Raster) else raster_of(raster)
+    if terrain.heights.size > max_cells:
+        raise InputError(f"terrain: {terrain.heights.size} cells; at most {max_cells} are allowed")
+    check_terrain(terrain, steepest)
+    return dataclasses.replace(terrain, plain=False)
 
 
 def example_slide(folder: PathLike) -> Scene:
@@ -177,6 +205,8 @@ def _ascii_grid(file: Path, raster: Raster, copy: Optional[PathLike]) -> Path:
     """Return an ASCII grid of a raster: itself, or its copy."""
     if raster.plain:
         return file
+    if copy is None and not file.exists():  # elevations in memory
+        copy = array_folder() / f"{uuid4().hex}.asc"
     if copy is None:
         raise InputError(f"{file}: give the file for its copy as an ASCII grid (ascii_copy)")
     write_ascii_grid(copy, raster, exact=True)
@@ -200,10 +230,12 @@ class _Polygons:
             if part not in LAYER_OPTIONS:
                 raise InputError(f"layers: {part!r} is none of {', '.join(LAYER_OPTIONS)}")
 
-    def areas(self, file: Optional[PathLike], part: str) -> list[MapArea]:
+    def areas(self, file: Optional[object], part: str) -> list[MapArea]:
         """Return the areas of a file; none without a file. Forest has no thickness."""
         if file is None:
             return []
+        if not isinstance(file, (str, os.PathLike)):
+            return areas_of(file, name=part)
         return read_areas(
             file,
             self.layers.get(part),
@@ -213,7 +245,7 @@ class _Polygons:
 
 
 def _release_areas(
-    release: Optional[PathLike],
+    release: Optional[object],
     thickness: Optional[float],
     depth: Optional[Raster],
     polygons: _Polygons,

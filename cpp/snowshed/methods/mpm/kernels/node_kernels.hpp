@@ -11,8 +11,7 @@ SNOWSHED_MODULE_VARIANT_BEGIN(methods::mpm)
 template <class T, int D, Basis basis, bool takes_change, bool energy>
 struct NodeKernels {
   using Half = NodeHalf<T>;
-  /// Smallest mass of a node with snow, kg. The inverse of a smaller mass may overflow.
-  static constexpr T min_mass = T(1e-30);
+  static constexpr T min_mass = min_node_mass<T>;
 
   static void gather(const T* const* tiles, T* sums) {
     std::memset(sums, 0, block_nodes<D> * node_values * sizeof(T));
@@ -238,6 +237,14 @@ struct NodeKernels {
     return c.acts ? decay_share(step, sliding_speed) : T(1);
   }
 
+  /// Returns Coulomb's coefficient at a sliding speed, for a normal impulse whose friction is due.
+  static T coefficient(const StepParameters<T>& step, const ContactLaw& law, T speed, T impulse) {
+    if (!law.coefficient) return T(law.friction);
+    double area = 1;
+    for (int d = 1; d < D; ++d) area *= double(step.dx);
+    return T(law.coefficient(double(speed), double(impulse) / (double(step.dt) * area)));
+  }
+
   /// Returns the largest pull that a contact can cancel in a step, as a negative push (N s). A
   /// larger pull releases the snow. `stored` is what remains of earlier pushes.
   static T min_push(const Contact<T>& c, T stored) {
@@ -245,13 +252,13 @@ struct NodeKernels {
     return c.release == Release::after_push ? -stored : T(0);
   }
 
-  /// Sticky, slip, separate (thesis 1.2.3), with Coulomb friction on the running mean of the net
-  /// normal impulse. Each contact stores a normal impulse: pushes on the obstacle add to it, pulls
-  /// subtract from it, and it decays at the rate 1/(friction memory). The friction of a step
-  /// follows from the part that decays in it, so that every newton-second of net push counts once.
-  /// The usual rule applies the friction of each step's push at once. It overestimates the friction
-  /// of a slab that vibrates on its panel, because slip cancels the pulls but forgets them. The
-  /// slab may even be held where it should slide.
+  /// Sticky, slip, separate (thesis, section 1.2.3), with Coulomb friction on the running mean of
+  /// the net normal impulse. Each contact stores a normal impulse: pushes on the obstacle add to
+  /// it, pulls subtract from it, and it decays at the rate 1/(friction memory). The friction of a
+  /// step follows from the part that decays in it, so that every newton-second of net push counts
+  /// once. The usual rule applies the friction of each step's push at once. It overestimates the
+  /// friction of a slab that vibrates on its panel, because slip cancels the pulls but forgets
+  /// them. The slab may even be held where it should slide.
   ///
   /// Slip cancels any pull, so its stored impulse may become negative. It then causes no friction
   /// until later pushes have made it positive. Separate releases snow when the pull exceeds the
@@ -295,8 +302,9 @@ struct NodeKernels {
       slip_squared += slip[d] * slip[d];
     }
     const T slip_impulse = mass * std::sqrt(slip_squared);
-    const T friction =
-        T(law.friction) * step.friction_shares[c.obstacle] * (decayed > T(0) ? decayed : T(0));
+    const T due = decayed > T(0) ? decayed : T(0);
+    const T friction = coefficient(step, law, std::sqrt(slip_squared), due) *
+                       step.friction_shares[c.obstacle] * due;
     const T slip_share = slip_impulse > friction ? friction / slip_impulse : T(1);
     for (int d = 0; d < D; ++d) node[d] = after[d] = pushed[d] - slip_share * slip[d];
     if constexpr (energy) {

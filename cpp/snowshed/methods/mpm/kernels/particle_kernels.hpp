@@ -192,7 +192,7 @@ struct ParticleKernels {
 
   /// Returns the stress of the present elastic strain. With plastic laws the strain is first
   /// returned to the yield surface, unless this has been done (`committed`).
-  SNOWSHED_INLINE Stress stress(State& s, const Snow& snow, int n, bool committed) const {
+  SNOWSHED_INLINE Stress stress(State& s, const Snow& snow, int at, int n, bool committed) const {
     const auto& el = snow.law.elastic;
     Tensor e = material::hencky_strain(s.be_minus_identity);
     const V volumetric = material::trace(e);
@@ -204,7 +204,7 @@ struct ParticleKernels {
     if constexpr (Snow::plastic) {
       const V q_trial = sqrt(V(T(6) * dev_squared)) * el.mu;  // q = sqrt(3/2 s:s)
       material::PQ<V> pq{p_now, q_trial};
-      if (!committed && snow.law.return_map(pq, s.plastic, step.overstress)) {
+      if (!committed && return_to_yield(pq, s, snow, at, n)) {
         const auto sheared = q_trial > T(0);
         shear_ratio = select(sheared, V(pq.q / select(sheared, q_trial, shear_ratio)), shear_ratio);
         third = pq.p * (T(-1) / (el.bulk * T(D)));
@@ -224,6 +224,37 @@ struct ParticleKernels {
     for (int k = 0; k < D; ++k) r.tau.c[k] -= p_now;
     r.strain_squared = shear_ratio * shear_ratio * dev_squared + T(D) * third * third;
     return r;
+  }
+
+  /// Returns the trial of a chunk to the yield surface, by the law of the snow or of the user;
+  /// returns whether any stress may have changed.
+  SNOWSHED_INLINE bool return_to_yield(material::PQ<V>& pq, State& s, const Snow& snow, int at,
+                                       int n) const {
+    if (!step.law) return snow.law.return_map(pq, s.plastic, step.overstress);
+    const Returned returned = user_return(pq.p, pq.q, s.plastic, at, n);
+    pq = {returned.p, returned.q};
+    s.plastic = returned.plastic;
+    return true;
+  }
+
+  struct Returned {
+    V p, q, plastic;
+  };
+  /// Values go in and out by copy, so that they stay in registers where no law of the user is.
+  __attribute__((noinline)) Returned user_return(V pressure, V mises, V plastic, int at,
+                                                 int n) const {
+    static constexpr std::uint8_t only_snow[W] = {};
+    T values[3][W];
+    std::memcpy(values[0], &pressure, sizeof(V));
+    std::memcpy(values[1], &mises, sizeof(V));
+    std::memcpy(values[2], &plastic, sizeof(V));
+    step.law(n, values[0], values[1], values[2], p.material_id ? p.material_id + at : only_snow,
+             double(step.dt));
+    Returned returned;
+    std::memcpy(&returned.p, values[0], sizeof(V));
+    std::memcpy(&returned.q, values[1], sizeof(V));
+    std::memcpy(&returned.plastic, values[2], sizeof(V));
+    return returned;
   }
 
   /// Records the elastic energy p^2/(2 K_d) + q^2/(6 mu) per initial volume, and the plastic work
@@ -326,7 +357,7 @@ struct ParticleKernels {
       const Stencil<T, D, basis> stencil(s.cell);
       if (!make_room(stencil, reach, tile)) return;
       const Snow& snow = snows.of(p, at, n);
-      const Tensor tau = stress(s, snow, n, true).tau;
+      const Tensor tau = stress(s, snow, at, n, true).tau;
       scatter_chunk(stencil, s, tau, snow, n, tile.values());
       if constexpr (energy) record_kinetic_energy(s, n);
     });
@@ -350,7 +381,7 @@ struct ParticleKernels {
         if (average) add_velocity(s, velocity_change, n);
       update_left_cauchy_green(s, m);
       const Snow& snow = snows.of(p, at, n);
-      const auto [tau, strain_squared] = stress(s, snow, n, false);
+      const auto [tau, strain_squared] = stress(s, snow, at, n, false);
       write(s, at, n);
 
       V v2 = s.velocity[0] * s.velocity[0], u2 = m.pic[0] * m.pic[0];

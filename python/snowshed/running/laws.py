@@ -1,0 +1,182 @@
+"""Laws of one's own: compiled functions that the material point method calls.
+
+A function may come from numba (``cfunc``), from C by `ctypes`, or be given by its address. It is
+called by several threads at once. A Python function behind `ctypes` works, too, but is far too slow
+for more than a test.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Callable, Optional, Union
+
+from snowshed._core import InputError
+
+_DOUBLES = ctypes.POINTER(ctypes.c_double)
+_FLOATS = ctypes.POINTER(ctypes.c_float)
+_SNOW = ctypes.POINTER(ctypes.c_uint8)
+
+#: Types of the functions for `ctypes`, by the name of the law. The law of the material has one for
+#: each precision of ``numerics.precision``.
+LAW_PROTOTYPES = {
+    "material_float": ctypes.CFUNCTYPE(
+        None, ctypes.c_int64, _FLOATS, _FLOATS, _FLOATS, _SNOW, ctypes.c_double
+    ),
+    "material_double": ctypes.CFUNCTYPE(
+        None, ctypes.c_int64, _DOUBLES, _DOUBLES, _DOUBLES, _SNOW, ctypes.c_double
+    ),
+    "friction": ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double, ctypes.c_double),
+    "body_force": ctypes.CFUNCTYPE(
+        None, ctypes.c_int64, *[_DOUBLES] * 3, ctypes.c_double, *[_DOUBLES] * 3
+    ),
+    "motion": ctypes.CFUNCTYPE(None, ctypes.c_double, _DOUBLES),
+}
+#: The same types for `numba.cfunc`.
+LAW_SIGNATURES = {
+    "material_float": "void(int64, CPointer(float32), CPointer(float32), CPointer(float32),"
+    " CPointer(uint8), float64)",
+    "material_double": "void(int64, CPointer(float64), CPointer(float64), CPointer(float64),"
+    " CPointer(uint8), float64)",
+    "friction": "float64(float64, float64)",
+    "body_force": "void(int64, CPointer(float64), CPointer(float64), CPointer(float64), float64,"
+    " CPointer(float64), CPointer(float64), CPointer(float64))",
+    "motion": "void(float64, CPointer(float64))",
+}
+
+#: The class of all functions of ctypes.
+_FUNCTION: type = ctypes.CFUNCTYPE(None).__mro__[1]
+
+#: A compiled function: of numba (with an ``address``), of ctypes, or its address.
+Compiled = Union[int, Callable[..., object]]
+
+
+@dataclass(frozen=True)
+class Laws:
+    """Laws of one's own for a simulation by the material point method.
+
+    Attributes
+    ----------
+    name
+        A name for results and checkpoints, which cannot hold the functions themselves: a run that
+        resumes needs laws of the same name.
+    material
+        The law of the snow after its elastic trial: ``material(count, p, q, plastic_strain, snow,
+        time_step)`` changes the arrays `p` and `q`, pressure and Mises stress [Pa] (Kirchhoff,
+        compression positive), and `plastic_strain`, the volumetric plastic strain. A change of p
+        by dp changes the plastic strain by dp/K, K the bulk modulus. `snow` has the index of each
+        particle's snow. Numbers are of the type of ``numerics.precision``.
+    friction
+        Coulomb's coefficient of obstacles, by their name: ``friction(speed, normal_stress)``, of
+        the sliding speed [m/s] and the normal stress [Pa].
+    body_force
+        Acceleration in addition to gravity: ``body_force(count, x, y, z, time, ax, ay, az)`` fills
+        the last three arrays [m/s2] for positions [m] at a time of the whole run [s].
+    motion
+        Motion of obstacles, by their name: ``motion(time, pose)`` fills twelve numbers: translation
+        [m], rotation vector about the origin [rad], velocity [m/s] and angular velocity [rad/s].
+
+    Raises
+    ------
+    InputError
+        If the name is empty, there is no law, or something is not a compiled function of the right
+        type.
+
+    Examples
+    --------
+    >>> growing = LAW_PROTOTYPES["friction"](lambda speed, stress: 0.2 + 0.1 * speed)
+    >>> Laws("faster is rougher", friction={"panel": growing}).name
+    'faster is rougher'
+    """
+
+    name: str
+    material: Optional[Compiled] = None
+    friction: Mapping[str, Compiled] = field(default_factory=dict)
+    body_force: Optional[Compiled] = None
+    motion: Mapping[str, Compiled] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if not self.name or not self.name.isprintable():
+            raise InputError(f"name: {self.name!r} is not a name of printable characters")
+        self.addresses("double" if self.is_double else "float")
+        if not (self.material or self.friction or self.body_force or self.motion):
+            raise InputError("laws: there is none; give at least one")
+
+    @property
+    def is_double(self) -> bool:
+        """Whether the law of the material, if any, takes double precision."""
+        return self._matches("material_double", self.material)
+
+    def addresses(self, precision: str) -> dict[str, Any]:
+        """Return the addresses of the functions for the core.
+
+        Parameters
+        ----------
+        precision
+            "float" or "double", as in ``numerics.precision``.
+
+        Raises
+        ------
+        InputError
+            If a function is not of its type, such as a law of the material of another precision.
+        """
+        laws: dict[str, Any] = {"name": self.name}
+        if self.material is not None:
+            laws["material"] = self._address(f"material_{precision}", "material", self.material)
+        if self.body_force is not None:
+            laws["body_force"] = self._address("body_force", "body_force", self.body_force)
+        for kind in ("friction", "motion"):
+            given: Mapping[str, Compiled] = getattr(self, kind)
+            if given:
+                laws[kind] = {
+                    name: self._address(kind, f"{kind} of {name}", function)
+                    for name, function in given.items()
+                }
+        return laws
+
+    def _address(self, kind: str, where: str, function: Compiled) -> int:
+        address: Optional[int] = None
+        if isinstance(function, int):
+            address = function
+        elif isinstance(function, _FUNCTION):
+            pointer: Any = function
+            address = ctypes.cast(pointer, ctypes.c_void_p).value
+        else:
+            own = getattr(function, "address", None)
+            address = own if isinstance(own, int) else None
+        if not address:
+            raise InputError(
+                f"{where}: a value of type {type(function).__name__}; allowed: a function of "
+                "numba.cfunc or ctypes, or its address"
+            )
+        if not self._matches(kind, function):
+            wanted = LAW_SIGNATURES[kind]
+            raise InputError(f"{where}: the function has other arguments than {wanted}")
+        return address
+
+    def _matches(self, kind: str, function: Optional[Compiled]) -> bool:
+        """Return whether a function has the types of a law, as far as it states them."""
+        if isinstance(function, _FUNCTION):
+            given = getattr(function, "argtypes", None)
+            return given is None or list(given) == list(LAW_PROTOTYPES[kind]._argtypes_)
+        signature = getattr(function, "_sig", None)  # of numba
+        if signature is None:
+            return True
+        count = len(LAW_PROTOTYPES[kind]._argtypes_)
+        wanted = {"material_float": "float32*", "material_double": "float64*"}.get(kind)
+        texts = [str(argument) for argument in signature.args]
+        return len(texts) == count and (wanted is None or texts[1] == wanted)
+
+
+def addresses_of(laws: Optional[Laws], scene: Mapping[str, Any]) -> Optional[dict[str, Any]]:
+    """Return the addresses of laws for a scene; None without laws.
+
+    Raises
+    ------
+    InputError
+        If the law of the material is of another precision than the scene.
+    """
+    if laws is None:
+        return None
+    return laws.addresses(str(scene["numerics"].get("precision", "double")))

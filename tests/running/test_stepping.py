@@ -1,0 +1,61 @@
+"""A simulation in memory, event by event and step by step."""
+
+import numpy as np
+import pytest
+
+from snowshed import Simulation, SnowshedNote
+
+
+@pytest.fixture
+def falling(tiny):
+    """The snow of the first event, half of it off the panel."""
+    simulation = Simulation(tiny)
+    simulation.begin_event()
+    simulation.run(until=0.2)
+    return simulation
+
+
+def test_iteration_runs_the_remaining_events(tiny):
+    simulation = Simulation(tiny.with_({"events.count": 2}))
+    ends = list(simulation)
+    assert [end.event for end in ends] == [1, 2] and simulation.events_left == 0
+    assert all(end.ended in ("rest", "time_limit") and end.time > 0 for end in ends)
+    assert list(simulation) == []
+
+
+def test_a_function_is_called_after_each_step_and_changes_nothing_by_itself(tiny):
+    plain, watched = Simulation(tiny), Simulation(tiny)
+    steps = []
+    assert plain.run() == watched.run(on_step=lambda s: steps.append(s.steps))
+    assert steps == list(range(1, plain.steps + 1))
+    assert np.array_equal(plain.positions(), watched.positions())
+    assert not watched.event_running
+
+
+@pytest.mark.parametrize("until", [0.01, lambda s: s.time >= 0.01])
+def test_a_function_is_called_after_each_step_until_a_condition_holds(tiny, until):
+    simulation, times = Simulation(tiny), []
+    assert simulation.run(until, every=1, on_step=lambda s: times.append(s.time)) == "reached"
+    assert times[-1] >= 0.01 and len(times) == simulation.steps
+
+
+def test_rest_is_seen_while_a_condition_is_awaited(tiny):
+    flat = tiny.with_({"panel.tilt": 0, "events": {"rest_time": 0.02, "max_time": 5}})
+    simulation = Simulation(flat)
+    assert not simulation.at_rest
+    assert simulation.run(lambda s: s.at_rest) == "reached"
+    assert simulation.at_rest and simulation.event_running
+    reference = Simulation(flat)
+    assert reference.run() == "rest" and reference.time == pytest.approx(simulation.time, abs=0.02)
+
+
+def test_particles_are_a_table_with_a_row_each(falling):
+    table = falling.to_dataframe()
+    assert len(table) == falling.particle_count
+    assert np.array_equal(table[["velocity_x", "velocity_y", "velocity_z"]], falling.velocities())
+    assert table.attrs["units"]["density"] == "kg/m3" and table.attrs["snowshed_version"]
+
+
+def test_notes_on_the_scene_are_issued_when_the_simulation_is_made(tiny):
+    with pytest.warns(SnowshedNote, match="/panel/tilt: 0.87 degrees is unusual"):
+        Simulation(tiny.with_({"panel.tilt": 0.87}))
