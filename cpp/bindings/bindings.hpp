@@ -24,6 +24,7 @@ void bind_film(pybind11::module_&);
 void bind_geometry(pybind11::module_&);
 void bind_machine(pybind11::module_&);
 void bind_material(pybind11::module_&);
+void bind_program(pybind11::module_&);
 
 pybind11::object reseeding_dict(const std::optional<run::Reseeding>&);  ///< None if there is none
 pybind11::dict report_dict(const run::RunReport&);

@@ -17,6 +17,7 @@ PYBIND11_MODULE(_core, m) {
   snowshed::bind_scene(m);
   snowshed::bind_simulation(m);
   snowshed::bind_event_sequence(m);
+  snowshed::bind_program(m);
   snowshed::bind_film(m);
   snowshed::bind_geometry(m);
   snowshed::bind_machine(m);

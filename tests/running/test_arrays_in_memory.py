@@ -6,8 +6,8 @@ import pytest
 
 import snowshed
 from snowshed import GrainsSettings, InputError, LoadingStage, Obstacle, Sample, Scene, Shape
-from snowshed.base.array_files import array_folder
 from snowshed.io import Raster
+from snowshed.io.array_files import array_folder
 from snowshed.scene import slide_scene
 from snowshed.study import Study
 from snowshed.study.factors import Factor
@@ -51,8 +51,8 @@ def test_the_maps_of_a_slide_keep_the_coordinate_system(tmp_path, release):
 def test_a_scene_from_arrays_needs_no_file_and_its_run_keeps_one(tmp_path, release):
     scene = slide_scene(as_array(), [release], thickness=0.5).set("events.max_time", 1)
     first = snowshed.run(scene, tmp_path / "out", pictures=False)
-    kept = first.scene.data["terrain"]["file"]
-    assert kept.startswith(str(tmp_path / "out-inputs"))
+    file = first.scene.data["terrain"]["file"]
+    assert file.startswith(str(tmp_path / "out-inputs"))
     again = snowshed.run(tmp_path / "out/run.json", pictures=False)
     assert reached(again) == reached(first)
 

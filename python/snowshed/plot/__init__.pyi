@@ -3,7 +3,7 @@ from .figure_style import STACK as STACK
 from .figure_style import STYLE as STYLE
 from .figure_style import blank_figure as blank_figure
 from .figure_style import save_figure as save_figure
-from .point_figure import point_figure as point_figure
+from .material_path import point_figure as point_figure
 from .scene_picture import scene_figure as scene_figure
 from .terrain_map import draw_outlines as draw_outlines
 from .terrain_map import draw_terrain as draw_terrain

@@ -8,8 +8,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from snowshed.base.array_files import is_array_file
 from snowshed.base.paths import PathLike
+from snowshed.io.array_files import is_array_file
+from snowshed.io.atomic import replacing
 from snowshed.scene.resolved import ResolvedScene
 
 #: Keys of a scene whose values are paths of files.
@@ -64,5 +65,6 @@ def _copy(path: str, beside: Path) -> str:
     if not is_array_file(path):
         return path
     copy = beside / Path(path).name
-    shutil.copyfile(path, copy)
+    with replacing(copy) as beside_copy:
+        beside_copy.write_bytes(Path(path).read_bytes())
     return str(copy)

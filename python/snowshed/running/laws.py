@@ -108,7 +108,7 @@ class Laws:
         """Whether the law of the material, if any, takes double precision."""
         return self._matches("material_double", self.material)
 
-    def addresses(self, precision: str) -> dict[str, Any]:
+    def addresses(self, precision: str) -> dict[str, object]:
         """Return the addresses of the functions for the core.
 
         Parameters
@@ -121,7 +121,7 @@ class Laws:
         InputError
             If a function is not of its type, such as a law of the material of another precision.
         """
-        laws: dict[str, Any] = {"name": self.name}
+        laws: dict[str, object] = {"name": self.name}
         if self.material is not None:
             laws["material"] = self._address(f"material_{precision}", "material", self.material)
         if self.body_force is not None:
@@ -169,7 +169,7 @@ class Laws:
         return len(texts) == count and (wanted is None or texts[1] == wanted)
 
 
-def addresses_of(laws: Optional[Laws], scene: Mapping[str, Any]) -> Optional[dict[str, Any]]:
+def addresses_of(laws: Optional[Laws], scene: Mapping[str, Any]) -> Optional[dict[str, object]]:
     """Return the addresses of laws for a scene; None without laws.
 
     Raises

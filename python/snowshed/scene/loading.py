@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from snowshed._core import InputError
-from snowshed.base.array_files import array_file
 from snowshed.base.paths import PathLike
 from snowshed.base.record import Record, default
+from snowshed.io.array_files import array_file
 
 LoadingKind = Literal["compress", "unload", "stretch", "shear", "isotropic", "penetrate", "hold"]
 

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from snowshed._core import InputError
-from snowshed.base.array_files import array_file
 from snowshed.base.paths import PathLike
 from snowshed.base.record import Record
+from snowshed.io.array_files import array_file
 
 Vector = Sequence[float]
 ShapeType = Literal[

@@ -12,10 +12,10 @@ from uuid import uuid4
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.base.array_files import array_folder
 from snowshed.base.limits import MAX_TERRAIN_CELLS
 from snowshed.base.notes import record_notes
 from snowshed.base.paths import PathLike
+from snowshed.io.array_files import array_folder
 from snowshed.io.raster.areas import MapArea, read_areas
 from snowshed.io.raster.arrays import areas_of, raster_of
 from snowshed.io.raster.raster import Raster, is_single, read_raster, write_ascii_grid

@@ -16,6 +16,8 @@ from tempfile import mkdtemp
 import numpy as np
 from numpy.typing import NDArray
 
+from snowshed.io.atomic import replacing
+
 
 @cache
 def array_folder() -> Path:
@@ -44,5 +46,6 @@ def array_file(values: NDArray[np.generic]) -> Path:
     digest = hashlib.sha256(facts + array.tobytes()).hexdigest()[:16]
     path = array_folder() / f"{digest}.npy"
     if not path.exists():
-        np.save(path, array)
+        with replacing(path) as beside, beside.open("wb") as stream:
+            np.save(stream, array)
     return path
