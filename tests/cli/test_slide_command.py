@@ -65,7 +65,7 @@ def test_an_impossible_sample_is_refused_and_leaves_no_files(tmp_path, capsys):
 def test_the_page_of_a_slide_is_self_contained_and_has_its_notes(tmp_path, capsys):
     assert snowshed("slide", "--example", "--max-time", 1.0, "-o", tmp_path / "out") == 0
     note = "was still moving at the time limit"
-    assert note in capsys.readouterr().out
+    assert note in capsys.readouterr().err
     assert note in json.loads((tmp_path / "out/slide.json").read_text())["notes"][-1]
     html = (tmp_path / "out/slide.html").read_text()
     page = Page(html)

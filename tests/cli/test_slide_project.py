@@ -156,10 +156,10 @@ def test_layers_are_chosen_on_the_command_line(tmp_path, capsys):
     command = ["slide", "--terrain", project / "Inputs/dem.asc", "--release", file, "-q"]
     command = [str(word) for word in (*command, "--max-time", 0.05, "-o", tmp_path / "out")]
     assert main(command) == 2
-    assert "has 2 layers: 'old', 'new'; choose one (--layer NAME)" in capsys.readouterr().err
+    assert "has 2 layers: 'old', 'new'; choose one (--layer)" in capsys.readouterr().err
     forest = ["--layer", "new", "--resistance-areas", str(file)]
     assert main([*command, *forest]) == 2
-    assert "choose one (--resistance-layer NAME)" in capsys.readouterr().err
+    assert "choose one (--resistance-layer)" in capsys.readouterr().err
     assert main([*command, *forest, "--resistance-layer", "old"]) == 0
     terrain = json.loads((tmp_path / "out/scene.json").read_text())["terrain"]
     assert terrain["release"][0]["outline"][0][0] in (40, 50)

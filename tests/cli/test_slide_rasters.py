@@ -41,7 +41,7 @@ def test_a_note_is_on_the_terminal_in_the_json_on_the_page_and_in_the_scene(
     assert slide(tmp_path) == 0
     note = "dem.tif: its values were converted to metres; one unit is 0.3048 m"
     printed = capsys.readouterr()
-    assert printed.out.count(note) == 1 and note not in printed.err
+    assert printed.err.count(note) == 1 and note not in printed.out
     assert note in json.loads((tmp_path / "out/slide.json").read_text())["notes"]
     page = (tmp_path / "out/slide.html").read_text()
     assert page.count(note) == 1

@@ -41,9 +41,16 @@ void apply_laws(const methods::UserLaws& laws, const scene::Scene& scene,
     throw InputError("/output/energy",
                      "a body force or a motion of the user is not in the energy "
                      "balance; leave the balance or the law out");
-  for (const auto& [name, law] : laws.friction)
-    for_each_named(surroundings, name,
-                   [law = law](methods::Obstacle& o) { o.law.coefficient = law; });
+  for (const auto& [name, law] : laws.friction) {
+    bool sticky = false;
+    for_each_named(surroundings, name, [&, law = law](methods::Obstacle& o) {
+      o.law.coefficient = law;
+      sticky = o.law.condition == methods::Condition::sticky;
+    });
+    if (sticky)
+      surroundings.notes.push_back("the friction of " + quote(name) +
+                                   " is not used, because snow sticks to it");
+  }
   for (const auto& [name, law] : laws.motion)
     for_each_named(surroundings, name, [law = law](methods::Obstacle& o) {
       o.motion.emplace(geometry::RigidMotion(law));

@@ -245,6 +245,7 @@ void RunRecord::write(const std::filesystem::path& file, const Simulation& sim, 
     j["film"] = {{"frames", film->frames}, {"checksum", io::hexadecimal(film->checksum)}};
   j["status"] = name_of(status);
   if (!error.empty()) j["error"] = error;
+  if (sim.laws().any()) j["laws"] = sim.laws().name;
   if (!ageing.empty()) j["ageing"] = ordered_json::parse(ageing);
   j["scene"] = ordered_json::parse(scene::write_scene(sim.scene()));
   io::write_atomic(file, scene::sealed_text(j));

@@ -119,6 +119,8 @@ class Simulation {
   const scene::Scene& scene() const { return scene_; }
   /// Indexed by material_id.
   const std::vector<material::Snow>& snows() const { return surroundings_.snows; }
+  /// The laws of the user; none by default.
+  const methods::UserLaws& laws() const { return surroundings_.laws; }
   const methods::CostEstimate& cost() const { return cost_; }
   const methods::Method& method() const { return *method_; }
   /// The curve measured after each step so far; null for methods without such a curve.

@@ -177,9 +177,9 @@ void describe(V& v, scene::Panel& p) {
   v.alias("height", "lower_edge_height");  // the words of pvlib
   v.alias("length", "slant_height");
   v.alias("tilt", "surface_tilt");
-  v.number("height", p.height, "m", methods::allowed::size_or_zero.required().usual(0.01, 50),
+  v.number("height", p.height, "m", methods::allowed::size_or_zero.required().usual(0.01, 20),
            "Vertical distance of the lower edge above the ground");
-  v.number("length", p.length, "m", methods::allowed::size.required().usual(0.05, 200),
+  v.number("length", p.length, "m", methods::allowed::size.required().usual(0.05, 100),
            "Length along the slope");
   v.number("width", p.width, "m", methods::allowed::size.required_in_3d().usual(0.05, 2000),
            "Width across the slope; ignored in 2D");
@@ -330,7 +330,7 @@ void describe(V& v, methods::Events& e) {
   v.choice("between", e.between,
            "Treatment of the stack between events: keep its particles, or reseed its volume");
   v.number("max_time", e.max_time, "s", methods::allowed::duration, "Longest duration of an event");
-  v.number("rest_speed", e.rest_speed, "m/s", methods::positive.up_to(1e4),
+  v.number("rest_speed", e.rest_speed, "m/s", methods::positive.up_to(1e4).usual(1e-6, 1),
            "Speed below which the snow counts as resting");
   v.number("rest_time", e.rest_time, "s", methods::allowed::time,
            "Duration of rest that ends the event");

@@ -58,6 +58,8 @@ def points(name: str, given: ArrayLike, dimension: int, count: Optional[int] = N
         allowed = " or ".join(f"({rows}, {size})" for size in reversed(columns))
         raise _wrong_shape(name, array, f"{allowed} in {dimension}D")
     _check_finite(name, array)
+    if dimension == 2 and array.shape[1] == 3 and array[:, 1].any():
+        raise InputError(f"{name}: y is not zero in 2D; two columns are x and z")
     if array.shape[1] == 2:
         array = np.insert(array, 1, 0.0, axis=1)
     return array
@@ -140,7 +142,7 @@ def finite(name: str, given: float) -> float:
     30.0
     """
     try:
-        number = float(given)
+        number = math.nan if isinstance(given, (bool, np.bool_)) else float(given)
     except (TypeError, ValueError, OverflowError):
         number = math.nan
     if not math.isfinite(number):

@@ -17,9 +17,16 @@ HARMFUL = re.compile(
     "[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]"
 )
 #: An argument of a function in a message, such as `max_thickness=`.
-_ARGUMENT = re.compile(r"`([a-z]\w*)=([^`\s]*)`")
+_ARGUMENT = re.compile(r"`([a-z]\w*(?:\['\w+'\])?)=([^`\s]*)`")
 #: Arguments whose options have another name.
-_OPTIONS = {"same_version": "same-version-is-enough"}
+_OPTIONS = {
+    "same_version": "same-version-is-enough",
+    "layers['release']": "layer",
+    "layers['entrainment']": "entrainment-layer",
+    "layers['resistance']": "resistance-layer",
+    "slope_length": "slope-length",
+    "ranges": "range",
+}
 FORMULA = ("=", "+", "-", "@", "\t", "\r")  # beginnings of cells that spreadsheets compute
 
 

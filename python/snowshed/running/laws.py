@@ -8,6 +8,7 @@ for more than a test.
 from __future__ import annotations
 
 import ctypes
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Callable, Optional, Union
@@ -158,15 +159,19 @@ class Laws:
     def _matches(self, kind: str, function: Optional[Compiled]) -> bool:
         """Return whether a function has the types of a law, as far as it states them."""
         if isinstance(function, _FUNCTION):
-            given = getattr(function, "argtypes", None)
-            return given is None or list(given) == list(LAW_PROTOTYPES[kind]._argtypes_)
+            pointer: Any = function
+            prototype = LAW_PROTOTYPES[kind]
+            if getattr(pointer, "argtypes", None) is None:
+                return True
+            same = list(pointer.argtypes) == list(prototype._argtypes_)
+            return same and pointer.restype == prototype._restype_
         signature = getattr(function, "_sig", None)  # of numba
         if signature is None:
             return True
-        count = len(LAW_PROTOTYPES[kind]._argtypes_)
-        wanted = {"material_float": "float32*", "material_double": "float64*"}.get(kind)
-        texts = [str(argument) for argument in signature.args]
-        return len(texts) == count and (wanted is None or texts[1] == wanted)
+        result, _, arguments = LAW_SIGNATURES[kind].partition("(")
+        wanted = re.sub(r"CPointer\((\w+)\)", r"\1*", arguments[:-1]).split(", ")
+        returned = str(signature.return_type).replace("none", "void")
+        return [str(argument) for argument in signature.args] == wanted and returned == result
 
 
 def addresses_of(laws: Optional[Laws], scene: Mapping[str, Any]) -> Optional[dict[str, object]]:

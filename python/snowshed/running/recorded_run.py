@@ -9,10 +9,12 @@ from pathlib import Path
 from typing import Any, Optional
 
 import snowshed._core as _core
+from snowshed._core import InputError
 from snowshed.base.build import package_digest
 from snowshed.io.json_file import read_object
 from snowshed.io.run_files import RECORD, file_mark
 from snowshed.running.ageing.ageing import Ageing
+from snowshed.running.laws import Laws
 from snowshed.scene.scene import SceneLike
 
 
@@ -36,6 +38,12 @@ class RecordedRun:
         """The ageing of its stack between events; None: none."""
         data = self.record.get("ageing")
         return None if data is None else Ageing.from_data(data, f"{self.path}: ageing")
+
+    def check_laws(self, laws: Optional[Laws]) -> None:
+        """Raise InputError unless the laws of one's own are those of the run, by their name."""
+        then, now = self.record.get("laws"), None if laws is None else laws.name
+        if then is not None and then != now:
+            raise InputError(f"{self.path}: made with the laws {then!r}; give them (`laws=`)")
 
     def differences(self) -> list[str]:
         """Return notes on what has changed since: the build, and the files of the scene."""

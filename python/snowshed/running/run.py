@@ -103,6 +103,9 @@ def run(
     ...     results.events.event.tolist()
     [1]
     """
+    _check_types(ageing=(ageing, Ageing), laws=(laws, Laws))
+    if progress is not None and not callable(progress):
+        raise _core.InputError("progress: give a function that gets a Progress")
     if folder is None:
         if resume or overwrite:
             raise _core.InputError("folder: missing; resume and overwrite need it")
@@ -111,8 +114,9 @@ def run(
         )
     resolved, recorded = resolve_scene(scene), recorded_run(scene)
     method = method_of(resolved.data)
-    if ageing is None and recorded is not None:
-        ageing = recorded.ageing
+    if recorded is not None:
+        ageing = ageing or recorded.ageing
+        recorded.check_laws(laws)
     if ageing is not None and not method.ages:
         raise _core.InputError(f'ageing: the snow of the method "{method.name}" does not age')
     if ageing is not None and resolved.data["events"]["between"] != "carry":
@@ -140,6 +144,15 @@ def run(
     if pictures:
         method_run.draw()
     return Results.of_run(folder, resolved)
+
+
+def _check_types(**arguments: tuple[object, type]) -> None:
+    """Raise InputError at an argument that is neither None nor of its type."""
+    for name, (value, kind) in arguments.items():
+        if value is not None and not isinstance(value, kind):
+            raise _core.InputError(
+                f"{name}: a value of type {type(value).__name__}; allowed: {kind.__name__}"
+            )
 
 
 def _run_in_temporary_folder(scene: SceneLike, **options: Any) -> Results:

@@ -29,6 +29,7 @@ Ended = Literal["rest", "time_limit", "reached"]
 Until = Union[Literal["rest"], float, Callable[["Simulation"], bool]]
 OnStep = Callable[["Simulation"], object]
 
+MASS_RATIO = 10.0  # masses that differ more from those of seeded particles are noted
 MAX_STEPS = 64  # steps between two checks for Ctrl-C
 CHECK_INTERVAL = 0.1  # s of wall time between checks while the core runs to rest
 
@@ -134,6 +135,8 @@ class Simulation(ReadsParticles):
         OSError
             If it cannot be written.
         """
+        if not self.event:
+            raise SimulationError("no event has begun, so nothing can be saved; begin_event first")
         self._core.save(os.fspath(path))
 
     def begin_event(self) -> None:
@@ -296,15 +299,30 @@ class Simulation(ReadsParticles):
         >>> simulation.particle_count - before
         2
         """
+        self._require("stack", "takes no added snow")
         snows = self.snows
         kind = whole_number("material_id", material_id, lowest=0)
         if kind >= len(snows):
             raise InputError(f"material_id: {kind}; the scene's snows are 0 to {len(snows) - 1}")
+        if not self.event_running:
+            issue_note("no event is running: the added snow moves with the next event")
         given = points("positions", positions, self.dimension)
         speed = points("velocity", np.atleast_2d(np.asarray(velocity)), self.dimension, 1)[0]
-        heavy = self._seeded_mass(snows[kind]) if mass is None else positive("mass", mass)
+        seeded = self._seeded_mass(snows[kind])
+        heavy = seeded if mass is None else positive("mass", mass)
+        if not seeded / MASS_RATIO <= heavy <= seeded * MASS_RATIO:
+            issue_note(
+                f"mass: {heavy:.3g} kg for each particle is {heavy / seeded:.3g} times that of "
+                "seeded snow; is it that of all particles?"
+            )
         with issuing_notes(self._core):
             self._core.add_snow(given, heavy, tuple(speed.tolist()), kind)
+
+    def _require(self, result: str, lack: str) -> None:
+        """Refuse a call that only methods with a result can serve."""
+        method = method_of(self.scene.data)
+        if result not in method.results:
+            raise InputError(f'/method: the snow of "{method.name}" {lack}')
 
     def add_velocity(self, changes: ArrayLike) -> None:
         """Add to the velocities of the particles.
@@ -336,6 +354,7 @@ class Simulation(ReadsParticles):
 
         See `measure_stack`; `snowshed.snow.stack.particles` defines the ground.
         """
+        self._require("stack", "makes no stack")
         core = self._core
         arrays = core.positions(), core.masses(), core.densities(), core.on_panel()
         return measure_particles(core, self.scene.data, *arrays)

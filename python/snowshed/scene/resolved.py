@@ -14,6 +14,7 @@ from typing import Any
 import snowshed._core as _core
 from snowshed._core import ParsedScene
 from snowshed.base.json_values import JsonObject, JsonValue, read_only
+from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.io.atomic import write_text
 
@@ -77,7 +78,12 @@ class ResolvedScene:
         return {"json": self.json, "base_dir": self.base_dir}
 
     def save(self, path: PathLike) -> None:
-        """Write the scene to a file."""
+        """Write the scene to a file; a note names arrays in memory, which the file cannot hold."""
+        if "snowshed-arrays-" in self.json:
+            issue_note(
+                f"{path}: the scene was made from arrays in memory, whose files end with this "
+                "process; a run keeps them beside its results"
+            )
         write_text(path, self.json.rstrip() + "\n")
 
 

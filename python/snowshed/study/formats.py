@@ -99,7 +99,7 @@ def to_dataset(table: pd.DataFrame) -> xarray.Dataset:
 
 
 def _writer(file: Path, form: Optional[str]) -> Callable[[pd.DataFrame, Path], None]:
-    form = form or SUFFIXES.get(file.suffix, f"of {file.name}")
+    form = form or SUFFIXES.get(file.suffix, file.suffix or file.name)
     if form not in WRITERS:
         raise InputError(
             f"{file}: unknown format {form!r}; allowed: {', '.join(WRITERS)}, "

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Optional
 from snowshed._core import InputError
 from snowshed.base.formatting import number_in
 from snowshed.base.messages import quoted
+from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.io.csv_table import TableRow, read_text_table
 from snowshed.snow.stack.quantities import QUANTITIES
@@ -22,6 +23,7 @@ POSITIVE_QUANTITIES = ("height", "length")
 KEYS = ("tilt_deg", "event")
 ROUND = "round"
 MAX_TILT = 90.0  # degrees; a tilt must be smaller
+UNUSUAL_LENGTH = 3.0  # m; stacks of experiments are lower and shorter
 MAX_DISTANCE = 100.0  # m, of all measured lengths and positions
 MAX_LENGTH_DEVIATIONS = (
     3.0  # largest difference between length and tail - head, in standard deviations
@@ -98,6 +100,21 @@ class Measurement:
     value: float
     uncertainty: float
     line: int = 0
+
+    def __post_init__(self) -> None:
+        where = f"{self.quantity} after event {self.event} at {self.tilt:g} degrees"
+        if not (math.isfinite(self.value) and 0.0 < self.uncertainty < math.inf):
+            raise InputError(
+                f"{where}: {self.value:g} m with an uncertainty of {self.uncertainty:g} m; needed "
+                "are finite numbers, and a positive uncertainty"
+            )
+        if abs(self.value) > UNUSUAL_LENGTH:
+            issue_note(f"{where}: {self.value:g} m is unusual; is it in centimetres?")
+        if self.uncertainty > abs(self.value) and self.quantity in POSITIVE_QUANTITIES:
+            issue_note(
+                f"{where}: its uncertainty of {self.uncertainty:g} m is larger than the value of "
+                f"{self.value:g} m; is it in another unit, or in percent?"
+            )
 
 
 def measurements_template() -> str:

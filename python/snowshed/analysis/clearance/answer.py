@@ -17,7 +17,12 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.clearance.grid_error import GridError, recorded_grid_error
-from snowshed.analysis.clearance.panel_design import MARGIN, PanelDesign, SnowRanges
+from snowshed.analysis.clearance.panel_design import (
+    MARGIN,
+    PanelDesign,
+    SnowRanges,
+    check_base,
+)
 from snowshed.analysis.clearance.panel_snow import PanelSnow, mean_months
 from snowshed.analysis.clearance.seasons import SeasonCase, SeasonOutcome, cases_of
 from snowshed.analysis.clearance.statistics import CauseShare, Level, RequiredHeights
@@ -330,6 +335,7 @@ def required_clearance(
     if not candidates or not 0.0 < candidates[0] <= candidates[-1] <= 100.0:
         raise InputError(f"heights: {candidates}; needed: at least one from 0 to 100 m")
     ranges = ranges or SnowRanges()
+    check_base(scene or {})
     values = ranges.draw(len(winters))
     cases = cases_of(design, winters, values, settings or SeasonSettings(), scene or {})
     check_rows(design.rows, cases[0].panel_scene(candidates[0]).data)

@@ -214,6 +214,34 @@ class SnowRanges:
         return positions
 
 
+#: Values of the scene that a caller cannot give, and why.
+SET_BY_SEARCH: Mapping[str, str] = {
+    "panel.height": "the search sets it",
+    "panel.length": "`slope_length=` sets it",
+    "panel.tilt": "`tilt=` sets it",
+    "panel.friction": "it is drawn from `ranges=`",
+    "seeding.seed": "it is drawn",
+}
+
+
+def check_base(base: Mapping[str, Any]) -> None:
+    """Raise InputError at values of the scene that the search or the ranges set.
+
+    Examples
+    --------
+    >>> check_base({"numerics.dx": 0.05})
+    >>> check_base({"panel.height": 2.0})
+    Traceback (most recent call last):
+    snowshed._core.InputError: scene: panel.height: the search sets it; leave it out
+    """
+    for path, value in base.items():
+        if isinstance(value, Mapping):
+            inner = next(iter(value), "dx")
+            raise InputError(f"scene: {path}: give dotted paths, such as {path}.{inner}")
+        if path in SET_BY_SEARCH:
+            raise InputError(f"scene: {path}: {SET_BY_SEARCH[path]}; leave it out")
+
+
 def season_settings(
     design: PanelDesign, base: SeasonSettings, values: Mapping[str, float], dx: float
 ) -> SeasonSettings:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Optional
 
@@ -90,9 +90,8 @@ def print_results(results: Results) -> None:
 
 
 def print_summary(summary: Summary, folder: Path) -> None:
-    """Print the rows of a summary, its notes, and the names of the main files."""
+    """Print the rows of a summary, and the names of the main files; the run issued its notes."""
     print_rows(summary.TITLE, summary.lines())
-    print_notes(getattr(summary, "notes", ()))
     PlainConsole(soft_wrap=True).print(f"results, {summary.OPENED} in {folder}")
 
 
@@ -103,10 +102,3 @@ def print_rows(title: str, rows: Mapping[str, str]) -> None:
     for name, value in rows.items():
         table.add_row(name, value)
     PlainConsole().print(table)
-
-
-def print_notes(notes: Iterable[str]) -> None:
-    """Print the notes of a result."""
-    console = PlainConsole(soft_wrap=True)
-    for note in notes:
-        console.note(note)

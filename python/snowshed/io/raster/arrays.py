@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 #: Names of the axes of a DataArray to the east and to the north.
 EAST, NORTH = ("x", "east", "easting"), ("y", "north", "northing")
+METRES = ("m", "metre", "metres", "meter", "meters")
 REGULAR = 1e-6  # largest deviation of a distance between coordinates, relative to a cell
 
 
@@ -38,12 +39,23 @@ def raster_of(array: xarray.DataArray) -> Raster:
     >>> raster.heights.tolist(), raster.north, raster.cell
     ([[2.0, 3.0], [0.0, 1.0]], 5.0, 10.0)
     """
+    if not hasattr(array, "dims") or not hasattr(array, "coords") or hasattr(array, "data_vars"):
+        raise InputError(
+            f"terrain: a value of type {type(array).__name__}; allowed: a path, a Raster, or a "
+            "DataArray of xarray"
+        )
+    unit = str(array.attrs.get("units", "m"))
+    if unit not in METRES:
+        raise InputError(f"terrain: its units are {unit!r}; convert them to metres")
     squeezed = array.squeeze(drop=True)
     names = [str(name) for name in squeezed.dims]
     east = next((name for name in names if name in EAST), None)
     north = next((name for name in names if name in NORTH), None)
     if len(names) != 2 or east is None or north is None:
         raise InputError(f"terrain: its dimensions are {', '.join(names)}; needed: y and x")
+    for name in (north, east):
+        if name not in squeezed.coords:
+            raise InputError(f"terrain: has no coordinates {name}")
     ordered = squeezed.transpose(north, east).sortby([north, east])
     x, y = (np.asarray(ordered[name], dtype=float) for name in (east, north))
     cell = _spacing(x, east)

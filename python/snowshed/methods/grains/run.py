@@ -81,6 +81,8 @@ class GrainsRun(MethodRun):
             sample_notes=self.sample_notes,
         )  # fmt: skip
         summary.write(self.folder)
+        for note in summary.notes:
+            record_note(self.sequence, note)
         write_text(self.folder / CONTACTS, self.contacts.text())
         self.write_energies(facts, history=False)  # the curve has the energies over time
         seal_files(self.sequence, self.folder, CURVE, GrainsSummary.FILE, CONTACTS)

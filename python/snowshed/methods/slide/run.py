@@ -39,7 +39,7 @@ from snowshed.methods.slide.validity import (
     validity_notes,
 )
 from snowshed.running.method_run import Cell, MethodRun, summary_rows
-from snowshed.running.sequence import seal_files
+from snowshed.running.sequence import record_note, seal_files
 from snowshed.scene.terrain_grid import release_outlines
 
 
@@ -67,6 +67,8 @@ class SlideRun(MethodRun):
         else:
             _write_rasters(self.folder, self.maps, str(terrain.get("crs", "")))
         self.summary.write(self.folder)
+        for note in self.summary.notes:
+            record_note(self.sequence, note)
         self.write_energies(facts)
         seal_files(self.sequence, self.folder, SlideSummary.FILE)
         self.sequence.rewrite_record()

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 def slide(
     terrain: Union[PathLike, Raster, xarray.DataArray],
     release: object,
-    folder: PathLike,
+    folder: Optional[PathLike] = None,
     *,
     thickness: Optional[float] = None,
     max_time: Optional[float] = None,
@@ -40,7 +40,8 @@ def slide(
         Polygons of the release areas: GeoPackage, shapefile or GeoJSON; shapely polygons, or a
         GeoDataFrame.
     folder
-        The results folder; new or empty. A copy of a GeoTIFF is written beside it.
+        The results folder; new or empty. A copy of a GeoTIFF is written beside it. None: a
+        temporary folder, which is removed with the results.
     thickness
         Thickness of the released snow, normal to the ground [m], instead of the file's.
     max_time
@@ -91,6 +92,11 @@ def slide(
     ...     results.summary.ended
     'time_limit'
     """
+    if folder is None:
+        scene = slide_scene(terrain, release, thickness=thickness, settings=settings)
+        if max_time is not None:
+            scene.set("events.max_time", max_time)
+        return run(scene, progress=progress, pictures=pictures)
     target = Path(folder)
     with copies_removed_on_failure(target):
         scene = slide_scene(

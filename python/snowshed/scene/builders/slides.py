@@ -40,11 +40,7 @@ MAX_TIME = 400.0  # s, as in AvaFrame
 MIN_THICKNESS = 0.01  # m, smallest thickness of snow for a slide
 MAX_THICKNESS = 10.0  # m, largest plausible thickness of snow, as in the core
 #: Arguments that name the layer of a file.
-LAYER_OPTIONS = {
-    "release": "`layer=`",
-    "entrainment": "`entrainment_layer=`",
-    "resistance": "`resistance_layer=`",
-}
+LAYER_OPTIONS = {part: f"`layers['{part}']=`" for part in ("release", "entrainment", "resistance")}
 
 
 def slide_scene(
@@ -147,7 +143,11 @@ def slide_scene(
             max_slope=max_slope,
             notes="\n".join(notes) or None,
             release=rings,
-            entrainment=[_snow_area(area, entrained_thickness, most) for area in eroded] or None,
+            entrainment=[
+                _snow_area(area, entrained_thickness, most, argument="entrained_thickness")
+                for area in eroded
+            ]
+            or None,
             resistance=[
                 ResistanceArea(name=area.name, outline=area.outline, holes=_holes(area))
                 for area in held
@@ -261,13 +261,17 @@ def _release_areas(
 
 
 def _snow_area(
-    area: MapArea, thickness: Optional[float], most: float, depth: Optional[Raster] = None
+    area: MapArea,
+    thickness: Optional[float],
+    most: float,
+    depth: Optional[Raster] = None,
+    argument: str = "thickness",
 ) -> Area:
     snow = thickness if thickness is not None else area.thickness
     if depth is not None:  # the scene's raster has priority
         snow = float(np.nanmax(depth.heights))
     if snow is None:
-        raise InputError(f"{area.name}: the file gives no thickness; give one (`thickness=`)")
+        raise InputError(f"{area.name}: the file gives no thickness; give one (`{argument}=`)")
     if snow < MIN_THICKNESS:
         raise InputError(
             f"{area.name}: {snow:g} m of snow; at least {MIN_THICKNESS:g} m are needed"

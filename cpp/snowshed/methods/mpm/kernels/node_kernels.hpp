@@ -242,7 +242,9 @@ struct NodeKernels {
     if (!law.coefficient) return T(law.friction);
     double area = 1;
     for (int d = 1; d < D; ++d) area *= double(step.dx);
-    return T(law.coefficient(double(speed), double(impulse) / (double(step.dt) * area)));
+    const double given = law.coefficient(double(speed), double(impulse) / (double(step.dt) * area));
+    // No friction is negative. What is not finite reaches the particles, whose check finds it.
+    return given >= 0 ? T(given) : std::numeric_limits<T>::quiet_NaN();
   }
 
   /// Returns the largest pull that a contact can cancel in a step, as a negative push (N s). A
@@ -305,7 +307,8 @@ struct NodeKernels {
     const T due = decayed > T(0) ? decayed : T(0);
     const T friction = coefficient(step, law, std::sqrt(slip_squared), due) *
                        step.friction_shares[c.obstacle] * due;
-    const T slip_share = slip_impulse > friction ? friction / slip_impulse : T(1);
+    const T slip_share =
+        slip_impulse > friction ? friction / slip_impulse : (friction >= T(0) ? T(1) : friction);
     for (int d = 0; d < D; ++d) node[d] = after[d] = pushed[d] - slip_share * slip[d];
     if constexpr (energy) {
       const NormalSplit split_before(before, c.normal), split_free(free, c.normal),

@@ -1,0 +1,162 @@
+"""Mistakes that were silent once: each is an error or a note now."""
+
+import ctypes
+
+import numpy as np
+import pytest
+
+import snowshed
+from snowshed import InputError, Scene, Simulation, SimulationError, SnowshedNote
+from snowshed.analysis.calibration.measurements import Measurement
+from snowshed.analysis.clearance.panel_design import check_base
+from snowshed.running import LAW_PROTOTYPES, Laws
+from snowshed.scene import slide_scene
+
+always = LAW_PROTOTYPES["friction"](lambda speed, stress: 0.3)
+
+
+def terrain(**attributes):
+    xarray = pytest.importorskip("xarray")
+    heights = np.repeat([np.linspace(60.0, 0.0, 41)], 21, axis=0)
+    axes = {"y": 5.0 * np.arange(21), "x": 5.0 * np.arange(41)}
+    return xarray.DataArray(heights, axes, ("y", "x"), attrs=attributes)
+
+
+def polygon():
+    return pytest.importorskip("shapely.geometry").box(20, 30, 60, 70)
+
+
+@pytest.mark.parametrize(
+    ("base", "message"),
+    [
+        ({"panel.height": 3.0}, "panel.height: the search sets it"),
+        ({"panel.tilt": 20}, "`tilt=` sets it"),
+        ({"numerics": {"dx": 0.2}}, r"give dotted paths, such as numerics\.dx"),
+    ],
+)
+def test_a_clearance_refuses_what_it_varies_itself(base, message):
+    with pytest.raises(InputError, match=message):
+        check_base(base)
+
+
+def test_a_record_of_a_run_with_laws_needs_them_again(tiny, tmp_path):
+    laws = Laws("rough", friction={"panel": always})
+    with pytest.warns(SnowshedNote):
+        snowshed.run(tiny.with_({"events.count": 1}), tmp_path / "out", laws=laws, pictures=False)
+    with pytest.raises(InputError, match="made with the laws 'rough'; give them"):
+        snowshed.run(tmp_path / "out/run.json")
+
+
+def test_a_law_with_another_result_is_refused():
+    single = ctypes.CFUNCTYPE(ctypes.c_float, ctypes.c_double, ctypes.c_double)
+    with pytest.raises(InputError, match="has other arguments"):
+        Laws("single", friction={"panel": single(lambda speed, stress: 0.1)})
+
+
+@pytest.mark.parametrize("value", [float("nan"), -0.5])
+def test_a_coefficient_that_is_none_ends_the_run(tiny, value):
+    law = LAW_PROTOTYPES["friction"](lambda speed, stress: value)
+    with pytest.warns(SnowshedNote):
+        simulation = Simulation(tiny, laws=Laws("wrong", friction={"panel": law}))
+    with pytest.raises(SimulationError, match="no longer finite"):
+        simulation.run()
+
+
+def test_the_friction_of_a_sticky_obstacle_is_noted(tiny):
+    laws = Laws("sticky", friction={"ground": always})
+    with pytest.warns(SnowshedNote, match='friction of "ground" is not used'):
+        Simulation(tiny, laws=laws)
+
+
+def test_the_limits_of_a_slide_are_notes(tmp_path):
+    with pytest.warns(SnowshedNote, match="still moving at the time limit"):
+        results = snowshed.slide(terrain(), polygon(), tmp_path / "out", thickness=0.5,
+                                 max_time=1, pictures=False)  # fmt: skip
+    assert any("time limit" in note for note in results.run["notes"])
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda a: a.assign_attrs(units="ft"), "its units are 'ft'"),
+        (lambda a: a.drop_vars(["x", "y"]), "has no coordinates y"),
+        (lambda a: a.values, "a value of type ndarray"),
+    ],
+)
+def test_terrain_of_unknown_scale_is_refused(change, message):
+    with pytest.raises(InputError, match=message):
+        slide_scene(change(terrain()), polygon(), thickness=0.5)
+
+
+def test_measured_stacks_in_centimetres_or_percent_are_noted():
+    with pytest.warns(SnowshedNote, match="is it in centimetres"):
+        Measurement(50, 1, 1, "height", 4.2, 0.3)
+    with pytest.warns(SnowshedNote, match="larger than the value"):
+        Measurement(50, 1, 1, "height", 0.05, 5.0)
+    with pytest.raises(InputError, match="a positive uncertainty"):
+        Measurement(50, 1, 1, "height", 0.05, 0.0)
+
+
+def test_a_saved_scene_says_that_its_arrays_end_with_the_process(tmp_path):
+    scene = slide_scene(terrain(), polygon(), thickness=0.5).resolve()
+    with pytest.warns(SnowshedNote, match="made from arrays in memory"):
+        scene.save(tmp_path / "scene.json")
+
+
+def test_velocities_along_y_are_refused_in_2d(tiny):
+    simulation = Simulation(tiny)
+    simulation.begin_event()
+    with pytest.raises(InputError, match="y is not zero in 2D"):
+        simulation.add_velocity((0, -1, 0))
+
+
+def test_a_truth_value_is_no_time(tiny):
+    simulation = Simulation(tiny)
+    with pytest.raises(InputError, match="until: False"):
+        simulation.run(until=simulation.at_rest)
+
+
+def test_snow_added_outside_an_event_or_far_too_heavy_is_noted(tiny):
+    simulation = Simulation(tiny)
+    with pytest.warns(SnowshedNote, match="no event is running"):
+        simulation.add_snow([[0.6, 0.5]])
+    with pytest.warns(SnowshedNote, match="is it that of all particles"):
+        simulation.add_snow([[0.6, 0.8]], mass=2.0)
+
+
+def test_nothing_is_saved_before_the_first_event(tiny, tmp_path):
+    with pytest.raises(SimulationError, match="no event has begun"):
+        Simulation(tiny).save(tmp_path / "checkpoint.bin")
+
+
+def test_methods_without_a_stack_say_so():
+    scene = slide_scene(terrain(), polygon(), thickness=0.5)
+    with pytest.raises(InputError, match='the snow of "slide" makes no stack'):
+        Simulation(scene).measure()
+
+
+@pytest.mark.parametrize("argument", ["ageing", "laws", "progress"])
+def test_arguments_of_a_wrong_type_are_refused_before_the_run(tiny, tmp_path, argument):
+    with pytest.raises(InputError, match=f"{argument}: "):
+        snowshed.run(tiny, tmp_path / "out", **{argument: {"a": 1}})
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_thickness_that_is_missing_names_its_argument():
+    with pytest.raises(InputError, match=r"give one .`entrained_thickness=`"):
+        slide_scene(terrain(), polygon(), thickness=0.5, entrainment=polygon())
+
+
+def test_a_slide_without_a_folder_is_removed_with_its_results():
+    with pytest.warns(SnowshedNote):
+        results = snowshed.slide(terrain(), polygon(), thickness=0.5, max_time=1, pictures=False)
+    folder = results.folder
+    assert folder.is_dir()
+    del results
+    assert not folder.exists()
+
+
+def test_unusual_speeds_of_rest_are_noted():
+    scene = Scene.preset("lab-50").with_({"dimension": 2, "events.rest_speed": 20})
+    with pytest.warns(SnowshedNote, match="/events/rest_speed: 20 m/s is unusual"):
+        Simulation(scene)
