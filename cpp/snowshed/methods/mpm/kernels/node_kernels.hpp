@@ -243,7 +243,7 @@ struct NodeKernels {
     double area = 1;
     for (int d = 1; d < D; ++d) area *= double(step.dx);
     const double given = law.coefficient(double(speed), double(impulse) / (double(step.dt) * area));
-    // No friction is negative. What is not finite reaches the particles, whose check finds it.
+    // No friction is negative. A value that is not finite is found by the check of the particles.
     return given >= 0 ? T(given) : std::numeric_limits<T>::quiet_NaN();
   }
 
