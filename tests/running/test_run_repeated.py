@@ -1,6 +1,7 @@
 """Runs without a folder, over an earlier run, and from a run.json alone."""
 
 import json
+import logging
 import shutil
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 import snowshed
 from snowshed import InputError, Results, Scene, SnowshedNote
 from snowshed.base.build import build_id
+from snowshed.results import InlineView
 from snowshed.running import Ageing, Interval
 
 TINY = Scene.preset("lab-50").with_(
@@ -128,3 +130,20 @@ def test_results_show_their_table_in_notebooks(tmp_path):
     results = snowshed.run(TINY, tmp_path / "out")
     html = results._repr_html_()
     assert "height_m" in html and "data:image/png;base64" in html and "note:" in html
+
+
+def test_the_moving_view_is_shown_in_a_cell(tmp_path):
+    results = snowshed.run(TINY, tmp_path / "out", pictures=False)
+    html = InlineView(results)._repr_html_()
+    assert html.startswith("<iframe srcdoc=") and "&lt;canvas" in html
+    assert InlineView(tmp_path / "out").page == InlineView(results).page
+    assert not (tmp_path / "out/view.html").exists()
+
+
+def test_the_course_of_a_run_is_logged(tmp_path, caplog):
+    with caplog.at_level(logging.INFO, logger="snowshed"):
+        snowshed.run(TINY, tmp_path / "out", pictures=False)
+    texts = [record.getMessage() for record in caplog.records]
+    assert sum(text.startswith("event ") for text in texts) == 2
+    assert texts[-1] == f"finished in {tmp_path / 'out'}"
+    assert any(text.startswith("note: ") for text in texts)

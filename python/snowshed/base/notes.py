@@ -13,6 +13,8 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from types import FrameType
 
+from snowshed.base.log import LOGGER
+
 
 class SnowshedNote(UserWarning):
     """A fact that the reader of a result should know; the program has no fault."""
@@ -33,6 +35,7 @@ def issue_note(text: str) -> None:
     >>> notes
     ['the raster is in feet; it was converted to metres']
     """
+    LOGGER.info("note: %s", text)
     warnings.warn(text, SnowshedNote, caller_level())
 
 

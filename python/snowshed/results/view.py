@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Optional
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 
@@ -64,6 +66,34 @@ def write_view(results: PathLike, page: Optional[PathLike] = None) -> Path:
     film = run.film
     write_view_page(file, film, view_content(run, film))
     return file
+
+
+class InlineView:
+    """The moving view of a run for notebooks, which show it as the value of a cell.
+
+    Parameters
+    ----------
+    results
+        The results of a run, or their folder.
+    height
+        Height of the view, pixels.
+
+    Raises
+    ------
+    InputError
+        As `write_view`.
+    """
+
+    def __init__(self, results: Union[Results, PathLike], *, height: int = 640) -> None:
+        folder = results.folder if isinstance(results, Results) else results
+        with TemporaryDirectory() as temporary:
+            page = write_view(folder, Path(temporary) / PAGE)
+            self.page = page.read_text(encoding="utf-8")
+        self.height = height
+
+    def _repr_html_(self) -> str:
+        page = escape(self.page, quote=True)
+        return f'<iframe srcdoc="{page}" width="100%" height="{self.height}"></iframe>'
 
 
 def shown_results(folder: PathLike) -> Results:

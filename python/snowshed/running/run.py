@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Optional
 
 import snowshed._core as _core
 from snowshed.base.interrupt import Interrupted, InterruptRequest, deferred_interrupts
+from snowshed.base.log import LOGGER
 from snowshed.base.machine import machine_facts
 from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
@@ -29,6 +30,7 @@ from snowshed.running.laws import Laws
 from snowshed.running.method_run import MethodRun, RunOptions
 from snowshed.running.recorded_run import recorded_run
 from snowshed.running.sequence import open_sequence, record_note, run_sequence
+from snowshed.scene.resolved import ResolvedScene
 from snowshed.scene.scene import SceneLike, resolve_scene
 
 if TYPE_CHECKING:
@@ -129,6 +131,7 @@ def run(
     replaced = replaced_results(folder) if overwrite else nullcontext()
     with replaced, kept_inputs(resolved, folder) as resolved:
         sequence = open_sequence(resolved, folder, resume=resume, laws=laws)
+    LOGGER.info("%s %s in %s", "resuming" if resume else "running", _title(resolved), folder)
     with sequence, deferred_interrupts() as interrupt:
         method_run: MethodRun = method.run_class()(sequence, resolved, Path(folder), options)
         method_run.begin()
@@ -141,9 +144,14 @@ def run(
             method_run.interrupted()
             raise
         method_run.finish()
+    LOGGER.info("finished in %s", folder)
     if pictures:
         method_run.draw()
     return Results.of_run(folder, resolved)
+
+
+def _title(scene: ResolvedScene) -> str:
+    return str(scene.data.get("title") or f"a scene of the method {method_of(scene.data).name}")
 
 
 def _check_types(**arguments: tuple[object, type]) -> None:
@@ -252,6 +260,8 @@ class _Observer:
     def event_ended(self, facts: dict[str, Any]) -> None:
         """Let the method write the results of the event."""
         self.method_run.event_ended(facts)
+        LOGGER.info("event %d ended (%s) after %.4g s", facts["event"], facts["ended"],
+                    facts["sim_time_s"])  # fmt: skip
         self._report_progress(facts["sim_time_s"], 1.0)
 
     def before_checkpoint(self) -> None:

@@ -18,6 +18,7 @@ from snowshed._core import InputError
 from snowshed.base.build import build_id
 from snowshed.base.formatting import plural
 from snowshed.base.interrupt import InterruptRequest, deferred_interrupts
+from snowshed.base.log import LOGGER
 from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.base.pool.pool import available_cores
@@ -352,6 +353,7 @@ class _Session:
 
     def _store(self, outcome: RunOutcome) -> None:
         self.store.record(outcome)
+        LOGGER.info("run %s %s", outcome.hash[:12], outcome.status)
         self.notes.update(outcome.notes)
         _remove(self._folder(outcome.hash))
         self._count(outcome.hash, outcome.status)
