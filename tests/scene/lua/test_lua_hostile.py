@@ -68,7 +68,7 @@ SCRIPTS = {
     "exit": ("_G.os.exit(0)", 1, "os is not available"),
     "file": ("\n\nlocal f = io.open('/etc/passwd')", 3, "io is not available"),
     "change io": ("io.open = print", 1, "io is not available"),
-    "module": ("require 'os'", 1, "require is not available"),
+    "module": ("require 'os'", 1, "require: there is no os.lua beside the script"),
     "loaded modules": ("local o = package.loaded.os", 1, "package is not available"),
     "text as code": ("load('while true do end')()", 1, "load is not available"),
     "bytecode": ("string.dump(print)", 1, "string.dump is not available"),

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Optional
+from typing import Any, Optional
 
 import click
 
@@ -17,6 +18,7 @@ from snowshed.cli.run_scene import run_scene
 from snowshed.io.folders import check_empty
 from snowshed.scene.lua.builder import LuaRun
 from snowshed.scene.lua.loading import load_lua
+from snowshed.scene.resolved import ResolvedScene
 
 
 @click.command()
@@ -28,11 +30,13 @@ from snowshed.scene.lua.loading import load_lua
     type=PATH,
     help="Write the scene to this file; if the scripts name runs, write a folder with their files.",
 )
+@click.option("--threads", type=click.IntRange(0, 4096), help="Threads; 0: all.")
 @partial(run_options, required=False)
 def lua(
     init: Path,
     update: Optional[Path],
     file: Optional[Path],
+    threads: Optional[int],
     folder: Optional[Path],
     resume: bool,
     dry_run: bool,
@@ -45,6 +49,8 @@ def lua(
     if file is None and folder is None and not dry_run:
         raise click.UsageError("give -o DIR to run the scene, or --to-json FILE to write it")
     runs = _load(init, update, quiet=quiet)
+    if threads is not None:
+        runs = [replace(run, scene=_with_threads(run.scene, threads)) for run in runs]
     if file is not None:
         _save_all(runs, file)
     if dry_run:
@@ -61,6 +67,12 @@ def _load(init: Path, update: Optional[Path], *, quiet: bool) -> list[LuaRun]:
         say(line, err=True)
 
     return load_lua(init, update, echo=None if quiet else echo)
+
+
+def _with_threads(scene: ResolvedScene, threads: int) -> ResolvedScene:
+    data: dict[str, Any] = scene.copied_data()
+    data["numerics"]["threads"] = threads
+    return ResolvedScene.from_data(data, scene.base_dir)
 
 
 def _save_all(runs: Sequence[LuaRun], path: Path) -> None:

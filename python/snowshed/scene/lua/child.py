@@ -60,7 +60,11 @@ def _load_host(lua: Any, request: dict[str, Any]) -> Any:
     ]
     plain_data, host = loaded
     named = (lua.table_from(request[key]) for key in ("words", "shapes", "limits"))
-    return host(plain_data(), *named)
+    modules = {
+        name: lua.table_from({"number": module["number"], "text": _to_lua(module["text"])})
+        for name, module in request["modules"].items()
+    }
+    return host(plain_data(), *named, lua.table_from(modules))
 
 
 def _drop_rights(limits: dict[str, Any]) -> None:

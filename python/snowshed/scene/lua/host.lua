@@ -1,15 +1,16 @@
 -- Runs scripts that can only compute and call the vocabulary.
 --
 -- A script sees only the tables made here. These functions are left out on purpose:
---   io, os, debug, package, require, load, dofile, collectgarbage: they reach out of the sandbox;
+--   io, os, debug, package, load, dofile, collectgarbage: they reach out of the sandbox;
 --   pcall, coroutine: they could catch the error of an exceeded limit, or run without its hook;
 --   setmetatable, getmetatable: finalisers and __close run without the hook;
 --   string.find, match, gmatch, gsub, table.move: one call may take forever, and hooks do not run
 --   inside a call.
 --
--- Arguments: the result of plain_data.lua, the words, the shapes and the limits.
+-- Arguments: the result of plain_data.lua, the words, the shapes, the limits, and the modules that
+-- `require` finds: number and text by name.
 
-local encode_list, words, shapes, limits = ...
+local encode_list, words, shapes, limits, modules = ...
 
 local clock, concat, create, error = os.clock, table.concat, coroutine.create, error
 local format, getinfo, load, next = string.format, debug.getinfo, load, next
@@ -221,7 +222,7 @@ end
 local FORBIDDEN_TABLES = { "io", "os", "debug", "package", "coroutine", "utf8", "python" }
 local FORBIDDEN_FUNCTIONS = {
   "collectgarbage", "dofile", "getfenv", "getmetatable", "load", "loadfile", "loadstring",
-  "module", "pcall", "rawequal", "rawget", "rawlen", "rawset", "require", "setfenv",
+  "module", "pcall", "rawequal", "rawget", "rawlen", "rawset", "setfenv",
   "setmetatable", "warn", "xpcall",
 }
 
@@ -229,6 +230,28 @@ local ALLOWED_FUNCTIONS = {
   "_VERSION", "assert", "error", "ipairs", "select", "tonumber", "type",
 }
 local ALLOWED_OF_STRING = { "byte", "char", "len", "lower", "reverse", "sub", "upper" }
+
+local results = {} -- of modules, by name
+
+-- Runs the script of a name once, and returns its result.
+local function require_module(name)
+  local module = modules[name]
+  if type(name) ~= "string" or not module then
+    error(format("require: there is no %s.lua beside the script", tostring(name)), 0)
+  end
+  if results[name] == nil then
+    results[name] = true -- a module that requires itself sees this
+    local chunk, message = load(module.text, "=script" .. module.number, "t", env)
+    if not chunk then
+      error(message, 0)
+    end
+    local result = chunk()
+    if result ~= nil then
+      results[name] = result
+    end
+  end
+  return results[name]
+end
 
 local function forbid()
   for _, name in next, FORBIDDEN_TABLES do
@@ -246,7 +269,7 @@ local function fill_environment()
     env[name] = _G[name]
   end
   env._G, env.pairs, env.print, env.unpack = env, sorted_pairs, print_later, unpack
-  env.next, env.tostring = sorted_next, tostring
+  env.next, env.tostring, env.require = sorted_next, tostring, require_module
   env.string = restricted("string", string, ALLOWED_OF_STRING)
   env.string.rep, env.string.format = bounded_rep, format_without_addresses
   env.table = restricted("table", table, { "pack", "unpack" })

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Optional
 
@@ -13,6 +13,8 @@ from snowshed.scene.lua.builder import Builder, LuaRun
 from snowshed.scene.lua.limits import LuaLimits
 from snowshed.scene.lua.sandbox import Script, ScriptLine, run_sandboxed
 from snowshed.scene.lua.vocabulary import SHAPES, WORDS, apply
+
+MAX_MODULES = 50  # scripts that others may require
 
 
 def load_lua(
@@ -27,7 +29,7 @@ def load_lua(
     Parameters
     ----------
     init
-        The initialisation script. Files that scripts name are found in its folder.
+        The initialisation script. Files that scripts name or ``require`` are found in its folder.
     update
         A script that runs after it, in the same state; its values override earlier ones.
     echo
@@ -61,13 +63,27 @@ def load_lua(
     """
     limits = limits or LuaLimits()
     scripts = [_read(Path(file), limits) for file in (init, update) if file is not None]
-    calls = run_sandboxed(scripts, WORDS, SHAPES, limits, echo)
+    calls = run_sandboxed(scripts, WORDS, SHAPES, limits, echo, _modules(scripts, init, limits))
     builder = Builder(Path(init).parent)
     for call in calls:
         apply(call, builder)
     if not builder.runs:
         builder.request_run("", ScriptLine(scripts[-1].name, 0))
     return builder.runs
+
+
+def _modules(scripts: Sequence[Script], init: PathLike, limits: LuaLimits) -> list[Script]:
+    """Return the other scripts in the folder of `init`, if any script requires one."""
+    if not any("require" in script.text for script in scripts):
+        return []
+    names = {Path(script.name).resolve() for script in scripts}
+    files = sorted(path for path in Path(init).parent.glob("*.lua") if path.resolve() not in names)
+    if len(files) > MAX_MODULES:
+        raise InputError(
+            f"{Path(init).parent}: {len(files)} scripts beside {Path(init).name}; `require` allows "
+            f"{MAX_MODULES}"
+        )
+    return [_read(file, limits) for file in files]
 
 
 def _read(file: Path, limits: LuaLimits) -> Script:

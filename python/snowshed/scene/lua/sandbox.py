@@ -57,6 +57,7 @@ def run_sandboxed(
     shapes: Mapping[str, str],
     limits: Optional[LuaLimits] = None,
     echo: Optional[Callable[[str], None]] = None,
+    modules: Sequence[Script] = (),
 ) -> list[Call]:
     """Run scripts one after the other in one Lua state.
 
@@ -72,6 +73,8 @@ def run_sandboxed(
         Limits of the scripts. [default: `LuaLimits()`]
     echo
         Called with every line that the scripts print, even if they fail after that.
+    modules
+        Scripts that others may ``require`` by the stem of their file.
 
     Returns
     -------
@@ -96,9 +99,13 @@ def run_sandboxed(
         "words": list(functions),
         "shapes": dict(shapes),
         "limits": asdict(limits),
+        "modules": {
+            Path(module.name).stem: {"number": number, "text": module.text}
+            for number, module in enumerate(modules, start=len(scripts) + 1)
+        },
     }
-    names = [script.name for script in scripts]
-    answer = _ask(json.dumps(request), names, limits)
+    names = [script.name for script in (*scripts, *modules)]
+    answer = _ask(json.dumps(request), names[: len(scripts)], limits)
     if echo is not None:
         for line in answer["printed"]:
             echo(_printable(line))
