@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import snowshed
-from snowshed import InputError, Scene, Simulation, SimulationError, SnowshedNote
+from snowshed import InputError, Scene, Simulation, SimulationError, SnowshedNote, Study
 from snowshed.analysis.calibration.measurements import Measurement
 from snowshed.analysis.clearance.panel_design import check_base
 from snowshed.running import LAW_PROTOTYPES, Laws
@@ -160,3 +160,25 @@ def test_unusual_speeds_of_rest_are_noted():
     scene = Scene.preset("lab-50").with_({"dimension": 2, "events.rest_speed": 20})
     with pytest.warns(SnowshedNote, match="/events/rest_speed: 20 m/s is unusual"):
         Simulation(scene)
+
+
+def test_a_release_smaller_than_a_cell_is_noted():
+    tiny_area = pytest.importorskip("shapely.geometry").box(20, 30, 21, 31)
+    with pytest.warns(SnowshedNote, match="smaller than a cell of the terrain"):
+        slide_scene(terrain(), tiny_area, thickness=0.5)
+
+
+def test_impossible_speeds_are_refused(tiny):
+    simulation = Simulation(tiny)
+    simulation.begin_event()
+    with pytest.raises(InputError, match="changes: faster than 10000 m/s"):
+        simulation.add_velocity((0, 1e9))
+    with pytest.raises(InputError, match="velocity: faster than 10000 m/s"):
+        simulation.add_snow([[0.6, 0.5]], velocity=(0, 1e9))
+
+
+def test_a_study_that_replaces_another_says_so(tiny, tmp_path):
+    short = tiny.with_({"events": {"count": 1, "max_time": 0.05}})
+    Study.product(short, {"panel.tilt": [40]}).run(tmp_path / "store", jobs=1)
+    with pytest.warns(SnowshedNote, match="replaces a study of that name"):
+        Study.product(short, {"panel.friction": [0.2]}).run(tmp_path / "store", jobs=1)

@@ -29,6 +29,7 @@ Ended = Literal["rest", "time_limit", "reached"]
 Until = Union[Literal["rest"], float, Callable[["Simulation"], bool]]
 OnStep = Callable[["Simulation"], object]
 
+MAX_SPEED = 1e4  # m/s, as in scenes
 MASS_RATIO = 10.0  # masses that differ more from those of seeded particles are noted
 MAX_STEPS = 64  # steps between two checks for Ctrl-C
 CHECK_INTERVAL = 0.1  # s of wall time between checks while the core runs to rest
@@ -315,6 +316,8 @@ class Simulation(ReadsParticles):
                 f"mass: {heavy:.3g} kg for each particle is {heavy / seeded:.3g} times that of "
                 "seeded snow; is it that of all particles?"
             )
+        if np.abs(speed).max() > MAX_SPEED:
+            raise InputError(f"velocity: faster than {MAX_SPEED:g} m/s")
         with issuing_notes(self._core):
             self._core.add_snow(given, heavy, tuple(speed.tolist()), kind)
 
@@ -342,6 +345,8 @@ class Simulation(ReadsParticles):
         is_single = rows.ndim == 1
         count = 1 if is_single else self.particle_count
         vectors = points("changes", rows[None] if is_single else rows, self.dimension, count)
+        if np.abs(vectors).max(initial=0.0) > MAX_SPEED:
+            raise InputError(f"changes: faster than {MAX_SPEED:g} m/s")
         self._core.add_velocity(np.broadcast_to(vectors, (self.particle_count, 3)))
 
     def _seeded_mass(self, snow: Snow) -> float:

@@ -92,6 +92,11 @@ def compute_runs(
     """
     resources = Resources(jobs, threads, scheduler)
     with Store.create(folder) as store:
+        if study in store.studies() and store.axes(study) != list(axes):
+            issue_note(
+                f"{study}: replaces a study of that name with other parameters; its results stay "
+                "in the store"
+            )
         aside = store.register(
             study, axes, runs, keep_particles=keep_particles, same_version=same_version
         )

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
+import numpy as np
+
 from snowshed._core import InputError
 from snowshed.analysis.calibration.comparison import (
     SimulatedStacks,
@@ -18,6 +20,7 @@ from snowshed.analysis.calibration.misfit import RANKING_QUANTITIES, rank_sets, 
 from snowshed.analysis.calibration.posterior import STEPS, Posterior, outputs_of, sample_posterior
 from snowshed.analysis.calibration.surrogate import EXTRA, Surrogate
 from snowshed.base.extras import require
+from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.io.atomic import replacing
 from snowshed.io.csv_table import write_csv
@@ -25,6 +28,9 @@ from snowshed.snow.stack.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     import pandas as pd
+
+#: Share of the runs' variance that a surrogate should explain.
+MIN_EXPLAINED_VARIANCE = 0.5
 
 
 @dataclass(frozen=True)
@@ -60,6 +66,35 @@ class Calibration:
         ranges["best_set"] = [float(self.best[path]) for path in ranges["parameter"]]
         return ranges
 
+    @property
+    def notes(self) -> list[str]:
+        """Notes on the limits of the result, a sentence each."""
+        notes = []
+        if self.stacks.pending:
+            notes.append(
+                f"{self.stacks.pending} runs of the study are not computed yet: ranks and "
+                "ranges omit them (`snowshed study resume` computes them)"
+            )
+        missing = len(self.stacks.sets) - len(self.ranked)
+        if missing:
+            notes.append(f"{missing} parameter sets lack measured stacks and are not ranked")
+        if not self.posterior.converged:
+            notes.append(
+                "the Markov chains have not converged: the ends of the ranges are uncertain"
+            )
+        accuracy = self.posterior.surrogate.accuracy()
+        poor = accuracy[accuracy["explained"] < MIN_EXPLAINED_VARIANCE]
+        if len(poor):
+            notes.append(
+                f"the surrogate explains less than half of the variance of {len(poor)} of "
+                f"{len(accuracy)} measured stacks, so they constrain the snow weakly "
+                "(surrogate.csv)"
+            )
+        for number, quantity in enumerate(self.posterior.quantities):
+            median = float(np.median(self.posterior.discrepancy[:, number]))
+            notes.append(f"error of the model in {quantity}: about {100 * median:.0f} % (median)")
+        return notes
+
 
 def calibrate(
     measurements: Sequence[Measurement],
@@ -94,9 +129,12 @@ def calibrate(
     comparison = compare_stacks(stacks, measurements)
     ranked = rank_sets(stacks, comparison)
     surrogate = Surrogate.fitted(stacks, outputs_of(used))
-    return Calibration(
+    calibration = Calibration(
         stacks, comparison, ranked, sample_posterior(surrogate, used, steps=steps, seed=seed)
     )
+    for note in calibration.notes:
+        issue_note(note)
+    return calibration
 
 
 def _select_measurements(

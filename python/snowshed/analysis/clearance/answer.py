@@ -30,6 +30,7 @@ from snowshed.analysis.clearance.winters import Winter
 from snowshed.base.arrays import Floats
 from snowshed.base.formatting import plural
 from snowshed.base.json_values import JsonValue
+from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
 from snowshed.season.rows import check_rows, snow_stays_on_a_row
@@ -336,6 +337,9 @@ def required_clearance(
         raise InputError(f"heights: {candidates}; needed: at least one from 0 to 100 m")
     ranges = ranges or SnowRanges()
     check_base(scene or {})
+    own = settings is not None and settings.friction != SeasonSettings().friction
+    if own and "friction" in ranges.spans:
+        issue_note("`settings=`: its friction is not used, because `ranges=` draw it")
     values = ranges.draw(len(winters))
     cases = cases_of(design, winters, values, settings or SeasonSettings(), scene or {})
     check_rows(design.rows, cases[0].panel_scene(candidates[0]).data)

@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from snowshed.analysis.calibration.report import Calibration
 
 BEST_SETS = 5  # number of printed parameter sets
-MIN_EXPLAINED_VARIANCE = 0.5  # share of the runs' variance that a surrogate should explain
 OPEN_RANGES = {
     "below": "open below",
     "above": "open above",
@@ -106,7 +105,7 @@ def calibrate(
 
 
 def print_calibration(calibration: Calibration) -> None:
-    """Print the ranking, the ranges, and notes on their limits."""
+    """Print the ranking and the ranges; notes on their limits were issued."""
     console = wide_console()
     console.print(_ranking(calibration))
     console.print(_ranges(calibration))
@@ -116,8 +115,6 @@ def print_calibration(calibration: Calibration) -> None:
     console.print(f" chains: ESS {sample_size:.0f} or more, r_hat {largest_r_hat:.3f} or less")
     if any(calibration.ranges["open"]):
         console.print(" open, undecided: the range continues beyond the grid")
-    for warning in warnings(calibration):
-        console.print(f" note: {warning}")
 
 
 def _ranking(calibration: Calibration) -> Table:
@@ -156,31 +153,3 @@ def _ranges(calibration: Calibration) -> Table:
 
 def _interval(row: Any, level: str, scale: float) -> str:
     return " to ".join(f"{row[f'{end}_{level}'] / scale:.3g}" for end in ("lower", "upper"))
-
-
-def warnings(calibration: Calibration) -> list[str]:
-    """Return notes on the limits of a calibration."""
-    import numpy as np
-
-    notes = []
-    if calibration.stacks.pending:
-        notes.append(
-            f"{calibration.stacks.pending} runs of the study are not computed yet: ranks and "
-            "ranges omit them (`snowshed study resume` computes them)"
-        )
-    missing = len(calibration.stacks.sets) - len(calibration.ranked)
-    if missing:
-        notes.append(f"{missing} parameter sets lack measured stacks and are not ranked")
-    if not calibration.posterior.converged:
-        notes.append("the Markov chains have not converged: the ends of the ranges are uncertain")
-    accuracy = calibration.posterior.surrogate.accuracy()
-    poor = accuracy[accuracy["explained"] < MIN_EXPLAINED_VARIANCE]
-    if len(poor):
-        notes.append(
-            f"the surrogate explains less than half of the variance of {len(poor)} of "
-            f"{len(accuracy)} measured stacks, so they constrain the snow weakly (surrogate.csv)"
-        )
-    for number, quantity in enumerate(calibration.posterior.quantities):
-        median = float(np.median(calibration.posterior.discrepancy[:, number]))
-        notes.append(f"error of the model in {quantity}: about {100 * median:.0f} % (median)")
-    return notes
