@@ -23,6 +23,6 @@ venv/bin/snowshed self-test
 venv/bin/snowshed panel --preset lab-50 --dim 2 --dx 0.02 --events 1 --quiet -o panel
 venv/bin/snowshed-run panel/scene.json --quiet -o executable
 venv/bin/snowshed slide --example --max-time 2 --quiet -o slide
-venv/bin/snowshed grains example --quiet -o grains || venv/bin/snowshed grains --help > /dev/null
-ls panel/events.csv executable/run.json slide/slide.json
+venv/bin/snowshed grains example --quiet -o grains
+ls panel/events.csv executable/run.json slide/slide.json grains/grains.json
 echo "the wheel works"
