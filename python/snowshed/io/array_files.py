@@ -18,11 +18,13 @@ from numpy.typing import NDArray
 
 from snowshed.io.atomic import replacing
 
+FOLDER_PREFIX = "snowshed-arrays-"
+
 
 @cache
 def array_folder() -> Path:
     """Return the folder of this process's files."""
-    folder = Path(mkdtemp(prefix="snowshed-arrays-"))
+    folder = Path(mkdtemp(prefix=FOLDER_PREFIX))
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     return folder
 

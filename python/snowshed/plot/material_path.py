@@ -26,7 +26,7 @@ def point_figure(table: pd.DataFrame, snow: Snow) -> Figure:
     table
         As from `follow_path`.
     snow
-        Its snow, for the yield surface at the start and at the end.
+        The snow of the path. Its yield surface is drawn at the start and at the end.
     """
     with rc_context(STYLE):
         figure = blank_figure(WIDTH, HEIGHT)

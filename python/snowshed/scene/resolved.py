@@ -16,6 +16,7 @@ from snowshed._core import ParsedScene
 from snowshed.base.json_values import JsonObject, JsonValue, read_only
 from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
+from snowshed.io.array_files import FOLDER_PREFIX
 from snowshed.io.atomic import write_text
 
 
@@ -79,7 +80,7 @@ class ResolvedScene:
 
     def save(self, path: PathLike) -> None:
         """Write the scene to a file; a note names arrays in memory, which the file cannot hold."""
-        if "snowshed-arrays-" in self.json:
+        if FOLDER_PREFIX in self.json:
             issue_note(
                 f"{path}: the scene was made from arrays in memory, whose files end with this "
                 "process; a run keeps them beside its results"

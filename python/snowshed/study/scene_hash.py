@@ -21,6 +21,7 @@ from typing import Any, Optional
 import snowshed._core as _core
 from snowshed.io.input_file import read_regular
 from snowshed.running.ageing.ageing import Ageing
+from snowshed.scene.named_files import with_named_files
 from snowshed.scene.scene import ResolvedScene
 from snowshed.study.aged_scene import with_ageing
 
@@ -29,8 +30,6 @@ HASH = re.compile(f"[0-9a-f]{{{HASH_DIGITS}}}")
 WITHOUT_EFFECT = ("title", "output")
 #: Descriptions of terrain files and assumptions about them: a result does not depend on these.
 TERRAIN_WITHOUT_EFFECT = ("notes", "max_slope", "max_thickness")
-#: Keys of a scene whose values are paths of files.
-FILES = ("file", "thickness_file")
 #: Settings are hashed under the name of the first version, so that runs of that version are
 #: recognised; for the same reason a scene of the default method does not name it.
 HASHED_AS = {"courant_factor": "step_factor"}
@@ -134,7 +133,7 @@ def content_hash(scene: Mapping[str, Any]) -> str:
     if content.get("terrain"):
         terrain = content["terrain"].items()
         content["terrain"] = {k: v for k, v in terrain if k not in TERRAIN_WITHOUT_EFFECT}
-    hashed = {"snowshed": _core.version, "scene": _with_file_contents(content)}
+    hashed = {"snowshed": _core.version, "scene": with_named_files(content, _cached_digest)}
     text = json.dumps(hashed, sort_keys=True, separators=(",", ":"))
     return hashlib.sha256(text.encode()).hexdigest()[:HASH_DIGITS]
 
@@ -153,18 +152,6 @@ def _as_version_1(scene: dict[str, Any]) -> dict[str, Any]:
 def _condition_of_version_1(part: dict[str, Any]) -> dict[str, Any]:
     condition = part["condition"]
     return {**part, "condition": CONDITION_HASHED_AS.get(condition, condition)}
-
-
-def _with_file_contents(value: Any) -> Any:
-    """Replace the path under every key of a file by a digest of the file."""
-    if isinstance(value, list):
-        return [_with_file_contents(item) for item in value]
-    if not isinstance(value, dict):
-        return value
-    return {
-        key: _cached_digest(inner) if key in FILES and inner else _with_file_contents(inner)
-        for key, inner in value.items()
-    }
 
 
 def _cached_digest(path: str) -> str:

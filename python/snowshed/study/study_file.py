@@ -17,6 +17,7 @@ from snowshed.io.toml import parse_toml, toml_lines, toml_value
 from snowshed.methods.registry import resolution_path
 from snowshed.scene.accuracy_settings import ACCURACY, FORMER_NAMES, accuracy_of
 from snowshed.scene.components import Snow
+from snowshed.scene.named_files import FILES
 from snowshed.scene.scene import Scene
 from snowshed.study.factors import (
     MAX_COUNT,
@@ -30,7 +31,6 @@ from snowshed.study.factors import (
     logarithmic,
     sobol,
 )
-from snowshed.study.scene_hash import FILES
 from snowshed.study.season_part import SeasonPart
 
 Made = TypeVar("Made")

@@ -71,7 +71,7 @@ def read_areas(
     layer
         Name of the layer of a GeoPackage; None: the only one.
     option
-        Argument that names a layer, for the message if there are several.
+        The argument that selects a layer; an error names it if the file has several.
     with_thickness
         Whether the thickness of snow is read; else it is None.
 

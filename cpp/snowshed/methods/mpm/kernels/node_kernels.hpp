@@ -237,7 +237,7 @@ struct NodeKernels {
     return c.acts ? decay_share(step, sliding_speed) : T(1);
   }
 
-  /// Returns Coulomb's coefficient at a sliding speed, for a normal impulse whose friction is due.
+  /// Returns the coefficient of friction at a sliding speed and a normal impulse of the step.
   static T coefficient(const StepParameters<T>& step, const ContactLaw& law, T speed, T impulse) {
     if (!law.coefficient) return T(law.friction);
     double area = 1;
