@@ -107,6 +107,7 @@ def test_the_example_draws_its_map(tmp_path, drawn):
             "crosses or touches itself",
         ),
         ("numerics.explicit_friction", True, "/numerics/explicit_friction: only in the mode"),
+        ("numerics.artificial_viscosity", 50.0, 'viscosity: only in the mode "compatible"'),
         (
             "panel",
             {"height": 1, "length": 2, "width": 1},

@@ -4,18 +4,23 @@ import numpy as np
 import pytest
 from validation.slide import case_block as slide_block
 from validation.slide import case_dam_break as dam_break
+from validation.slide import case_gully as slide_gully
 from validation.slide import case_parabolic_cap as parabolic_cap
+from validation.slide import case_pool as slide_pool
 from validation.slide import case_rotation as slide_rotation
 from validation.slide.site import Plane, Site, maps_of, rectangle, slide_drive
 
 
-def test_the_exact_dam_break_conserves_mass():
+@pytest.mark.parametrize("columns", ["across_flow", "vertical"])
+def test_the_exact_dam_break_conserves_mass(columns):
     time = 2.0
     s = np.linspace(-20.0, 40.0, 6001)
-    thickness = dam_break.exact_thickness(s, time)
+    thickness = dam_break.exact_thickness(s, time, columns)
     moved = 0.5 * dam_break.PLANE.coulomb(dam_break.FRICTION) * time**2  # mass from above
     assert np.trapezoid(thickness, s) == pytest.approx(20.0 + moved, rel=1e-4)
-    at_front = dam_break.exact_thickness(np.array(dam_break.exact_front(time)), time)
+    at_front = dam_break.exact_thickness(
+        np.array(dam_break.exact_front(time, columns)), time, columns
+    )
     assert at_front == pytest.approx(dam_break.FRONT_THICKNESS)
 
 
@@ -53,3 +58,19 @@ def test_a_wrong_friction_of_the_block_is_detected():
     right = slide_block.measure(settings).measured[1]
     wrong = slide_block.measure({**settings, "friction": 1.02 * slide_block.FRICTION}).measured[1]
     assert abs(right.error) < 0.005 < abs(wrong.error)
+
+
+def test_columns_of_the_wrong_direction_widen_a_stream():
+    settings = {**slide_pool.DEFAULTS, "ground": "gully"}
+    right, wrong = (
+        slide_pool.measure({**settings, "columns": columns}).measured[0].error
+        for columns in ("across_flow", "vertical")
+    )
+    assert abs(right) < 0.05 < wrong
+
+
+def test_long_steps_do_not_change_a_slide_in_a_gully():
+    measured = slide_gully.measure({**slide_gully.DEFAULTS, "time_step": 0.1}).measured
+    assert {m.quantity: abs(m.error) < 0.01 for m in measured} == dict.fromkeys(
+        ("speed", "area", "run_out"), True
+    )

@@ -107,7 +107,7 @@ CASE = Case(
     ),
     description="""
     Half a metre of snow, 30 m long and wide on the map, slides down a plane of 35 degrees for 3 s,
-    without bonds and without artificial viscosity. The distance and the speed of its middle, where
+    without bonds and without mixing. The distance and the speed of its middle, where
     the thickness does not change, are compared. With μ = 1.1 a block that starts down the slope at
     4 m/s must stop after v²/(2 a), and must not move afterwards.
     """,

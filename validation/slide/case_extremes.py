@@ -31,7 +31,7 @@ DEFAULTS: CaseSettings = {
     "cell": 2.0,
     "time_step": 0.01,
     "friction_law": "voellmy",
-    "artificial_viscosity": 100.0,
+    "mixing_rate": 8.0,
     "bonds": True,
 }
 #: Variations of the settings on the slope.
@@ -46,8 +46,8 @@ EXTREMES: tuple[CaseSettings, ...] = (
     {"turbulence": 1e6},
     {"friction": 0.0},
     {"friction": 2.0},
-    {"artificial_viscosity": 0.0},
-    {"artificial_viscosity": 1e6},
+    {"mixing_rate": 0.0},
+    {"mixing_rate": 1000.0},
     {"layer_thickness": 0.01},
     {"layer_thickness": 100.0},
     {"density": 1000.0},

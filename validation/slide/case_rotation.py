@@ -28,7 +28,7 @@ DEFAULTS: CaseSettings = {
     "cell": 2.0,
     "time_step": 0.04,
     "layer_thickness": 0.04,
-    "artificial_viscosity": 100.0,
+    "mixing_rate": 8.0,
     "friction_law": "voellmy",
     "stop_ratio": 0.01,
 }
@@ -127,7 +127,7 @@ CASE = Case(
     source="the results cannot depend on where north is",
     description="""
     A slab 1 m thick breaks loose on a slope of 35 degrees that runs out onto level ground, a plane
-    or a channel, with Voellmy's friction and artificial viscosity. Terrain and release are turned
+    or a channel, with Voellmy's friction and mixing. Terrain and release are turned
     by an angle. The peak fields are turned back and compared with those of the unturned slide over
     the whole map. The norms L1 and L2 of the difference are relative to those of the interpolation
     error, that is the change of a map by bilinear turns there and back.

@@ -55,10 +55,13 @@ class Plane:
         """Tilt in radians."""
         return math.radians(self.tilt)
 
-    @property
-    def normal_gravity(self) -> float:
-        """Component of gravity normal to the plane, m/s2."""
-        return GRAVITY * math.cos(self.angle)
+    def pressing_gravity(self, columns: str) -> float:
+        """Return the gravity with which a layer's thickness drives snow down the fall line, m/s2.
+
+        Columns across the flow are normal to the plane, vertical ones are longer.
+        """
+        cosine = math.cos(self.angle)
+        return GRAVITY * (cosine if columns == "across_flow" else 1 / cosine)
 
 
 @dataclass(frozen=True)
@@ -99,13 +102,13 @@ def slide_drive(
     site
         Ground and snow.
     settings
-        Parameters of `SlideSettings`. By default there are no bonds and no artificial viscosity,
+        Parameters of `SlideSettings`. By default there are no bonds, velocities do not mix,
         friction is Coulomb's, and the slide uses one thread.
     case_settings
         Names of settings that belong to the case, not to the method.
     """
     bare = SlideSettings(
-        bonds=False, artificial_viscosity=0.0, friction_law="coulomb", stop_ratio=0.0, threads=1
+        bonds=False, mixing_rate=0.0, friction_law="coulomb", stop_ratio=0.0, threads=1
     )
     for name, value in settings.items():
         if name not in case_settings:

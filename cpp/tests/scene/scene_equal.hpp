@@ -63,8 +63,8 @@ inline auto tied(const methods::TerrainSpec& s) {
   return std::tie(a, b, c, d, e, f, g, h, i, j);
 }
 inline auto tied(const methods::slide::Settings& s) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u, v, w] = s;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u, v, w);
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u, v, w, x, y] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u, v, w, x, y);
 }
 inline auto tied(const methods::Seeding& s) {
   auto& [a, b, c, d] = s;

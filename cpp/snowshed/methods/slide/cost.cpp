@@ -50,7 +50,7 @@ CostEstimate estimate_cost(const Settings& s, const SceneView& scene, const Area
   CostEstimate cost;
   cost.particles = {particles};
   cost.total_particles = particles;
-  cost.time_step = s.time_step;
+  cost.time_step = longest_step(s);
   // The slide takes longer than a block, because the snow spreads and its last parts creep.
   constexpr double longer_than_block = 1.5;
   const double block = block_travel_time(terrain, s, release, scene.gravity, max_time);
@@ -65,7 +65,8 @@ CostEstimate estimate_cost(const Settings& s, const SceneView& scene, const Area
 std::vector<Feature> features_of(const Settings& s, const SceneView& scene) {
   return {{"cohesive bonds", s.bonds},
           {"turbulent friction (Voellmy)", s.friction_law == FrictionLaw::voellmy},
-          {"artificial viscosity", s.artificial_viscosity > 0},
+          {"artificial viscosity",
+           (s.mode == Mode::compatible ? s.artificial_viscosity : s.mixing_rate) > 0},
           {"entrainment and splitting", !scene.terrain->entrainment.empty()},
           {"resistance areas", !scene.terrain->resistance.empty()},
           {"resampled terrain", s.cell > 0},

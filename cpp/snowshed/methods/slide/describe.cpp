@@ -25,7 +25,12 @@ void describe(SettingsVisitor& v, Settings& s) {
   v.number("resistance", s.resistance, "", non_negative.up_to(1e9),
            "Drag coefficient within resistance areas (forest, buildings)");
   v.number("artificial_viscosity", s.artificial_viscosity, "", non_negative.up_to(1e6),
-           "Strength with which particles are drawn to the mean velocity around them");
+           "AvaFrame's artificial viscosity; in the compatible mode only");
+  v.choice("columns", s.columns,
+           "Direction of the columns of snow that press on the ground; in the improved mode only");
+  v.number("mixing_rate", s.mixing_rate, "1/s", non_negative.up_to(1000.0),
+           "Rate at which particles take over the mean velocity around them; in the improved mode "
+           "only");
   v.flag("bonds", s.bonds, "Cohesive bonds; without them a plain depth-averaged avalanche");
   v.number("max_strain", s.max_strain, "", positive.up_to(10.0),
            "Strain at which a bond breaks, in tension or compression");

@@ -14,6 +14,12 @@ struct EnumNames<slide::Mode> {
 };
 
 template <>
+struct EnumNames<slide::Columns> {
+  static constexpr Named<slide::Columns> list[] = {{slide::Columns::vertical, "vertical"},
+                                                   {slide::Columns::across_flow, "across_flow"}};
+};
+
+template <>
 struct EnumNames<slide::FrictionLaw> {
   static constexpr Named<slide::FrictionLaw> list[] = {{slide::FrictionLaw::voellmy, "voellmy"},
                                                        {slide::FrictionLaw::coulomb, "coulomb"}};

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "snowshed/core/angles.hpp"
+#include "snowshed/methods/slide/columns.hpp"
 #include "snowshed/methods/slide/state.hpp"
 
 namespace snowshed::methods::slide {
@@ -58,8 +59,15 @@ double raised_integral(double n) {
              (std::pow(n, rest) - std::pow(neighbours_at_factor_2, rest));
 }
 
-/// The potential energy of the pressure (kernels/surface_pressure.hpp), J: sum_k m_k g n_z h_k / 2,
-/// because the snow's centre of mass lies h/2 above the ground; raised where neighbours are few.
+double column_factor(const Model& model, const Workspace& work, const Vec3& u, std::size_t i) {
+  const double nz = work.cell_positions.nz[i];
+  return model.settings.columns == Columns::across_flow
+             ? across_flow_column_factor(nz, u.x(), u.y(), u.z())
+             : vertical_column_factor(nz);
+}
+
+/// The potential energy of the pressure (columns.hpp), J: sum_k m_k g f_k h_k / 2, raised where
+/// neighbours are few.
 double pressure_energy(const Model& model, const State& state, const Workspace& work) {
   const double radius = model.terrain.cell();
   const Particles& p = state.particles;
@@ -68,8 +76,8 @@ double pressure_energy(const Model& model, const State& state, const Workspace& 
     const double mass_sum = kernel_mass_sum(p, work.cells, work.cell_positions, i, radius);
     const double neighbours = 10 / (radius * radius * radius) * mass_sum / p.mass[i];
     const double thickness_of_one = p.mass[i] / (pi * radius * radius * model.settings.density);
-    sum += 0.5 * p.mass[i] * model.gravity * work.cell_positions.nz[i] * thickness_of_one *
-           raised_integral(neighbours);
+    sum += 0.5 * p.mass[i] * model.gravity * column_factor(model, work, velocity_at(state, i), i) *
+           thickness_of_one * raised_integral(neighbours);
   }
   return sum;
 }

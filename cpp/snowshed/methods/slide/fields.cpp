@@ -120,10 +120,10 @@ std::size_t SolverImpl::bytes() const {
   state_.particles.for_each_array(
       [&total](const char*, const auto& array) { total += bytes_of(array); });
   const Bonds& bonds = state_.bonds;
-  total +=
-      bytes_of(bonds.first, bonds.second, bonds.rest_length, state_.peaks.thickness,
-               state_.peaks.speed, state_.erodible, workspace_.thickness, workspace_.predicted,
-               workspace_.pressure_force, workspace_.sorted_pressure_factor, workspace_.bond_force);
+  total += bytes_of(bonds.first, bonds.second, bonds.rest_length, state_.peaks.thickness,
+                    state_.peaks.speed, state_.erodible, workspace_.thickness, workspace_.predicted,
+                    workspace_.pressure_force, workspace_.sorted_pressure_factor,
+                    workspace_.sorted_column_mass, workspace_.bond_force);
   const Loads& l = workspace_.loads;
   total += bytes_of(l.ax, l.ay, l.az, l.coulomb_deceleration, l.drag, l.speed);
   CellPositions::for_each_array(workspace_.cell_positions,

@@ -71,7 +71,8 @@ struct View {
 
   // Particles in the order of their cells; in the default mode with z and the factor on the
   // pressure.
-  double *sorted_x, *sorted_y, *sorted_z, *sorted_mass, *sorted_pressure_factor;
+  double *sorted_x, *sorted_y, *sorted_z, *sorted_mass;
+  double *sorted_pressure_factor, *sorted_column_mass;  // the mass times f of columns.hpp, kg
   const std::uint32_t* sorted_particle;
   const std::uint32_t* cell_begin;  // entries of the cells of a rectangle with a margin, row by row
   int cell_columns, cell_rows;
@@ -86,7 +87,9 @@ struct View {
 
   double time_step, gravity, density;  // s, m/s2, kg/m3
   double friction, friction_drag;      // see BasalFriction
-  double viscosity;                    // artificial
+  double viscosity;                    // artificial; compatible mode
+  double mixed_share;  // default mode: share of the mean velocity that a step takes over
+  bool across_flow;    // whether columns are normal to the flow, not vertical
   double max_strain, bond_modulus, min_bond_length;
   FrictionScheme scheme;
   double added_speed;  // m/s; AvaFrame adds it where it divides by a speed
@@ -100,7 +103,8 @@ struct Kernels {
   void (*locate)(const View&, std::ptrdiff_t begin, std::ptrdiff_t end);
   /// Mixes velocities with those of the snow around and finds the forces of the ground.
   void (*ground)(const View&, std::ptrdiff_t begin, std::ptrdiff_t end);
-  /// Default mode: finds the factor on the pressure for the particles of a row of cells.
+  /// Default mode: finds the factor on the pressure and the mass of the columns for the particles
+  /// of a row of cells.
   void (*weigh_pressure)(const View&, int row);
   /// Finds the force by the snow's pressure on the particles of a row of cells: along the ground,
   /// or along the map as AvaFrame does it.

@@ -12,6 +12,21 @@
 namespace snowshed::methods::slide {
 namespace {
 
+/// Refuses settings that the mode would ignore.
+void check_mode(const Settings& s) {
+  const Settings usual;
+  const auto check = [&](const char* key, bool is_set, Mode mode) {
+    if (is_set && s.mode != mode)
+      throw InputError(std::string("/numerics/") + key,
+                       std::string("only in the mode \"") + name_of(mode) + "\"");
+  };
+  check("explicit_friction", s.explicit_friction, Mode::compatible);
+  check("artificial_viscosity", s.artificial_viscosity != usual.artificial_viscosity,
+        Mode::compatible);
+  check("columns", s.columns != usual.columns, Mode::improved);
+  check("mixing_rate", s.mixing_rate != usual.mixing_rate, Mode::improved);
+}
+
 class Descriptor final : public DescriptorBase<Descriptor, Settings> {
  public:
   const MethodInfo& info() const override {
@@ -35,8 +50,7 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
       throw InputError("/events/count", show(scene.events.count) + " events; a slide has 1");
     if (!scene.terrain->thickness_file.empty() && settings_.mode == Mode::compatible)
       throw InputError("/terrain/thickness_file", "AvaFrame's com5SnowSlide takes no such raster");
-    if (settings_.explicit_friction && settings_.mode != Mode::compatible)
-      throw InputError("/numerics/explicit_friction", "only in the mode \"compatible\"");
+    check_mode(settings_);
   }
   std::shared_ptr<const MethodInput> read(const SceneView& scene,
                                           const std::filesystem::path& base_dir) const override {

@@ -9,6 +9,9 @@ enum class Mode { improved, compatible };
 /// Laws of friction between snow and ground, see friction.hpp.
 enum class FrictionLaw { voellmy, coulomb };
 
+/// Directions of the snow's columns, along which its weight presses on the ground (improved mode).
+enum class Columns { vertical, across_flow };
+
 /// Settings of the snow slide: depth-averaged particles with cohesive bonds. The defaults are those
 /// of AvaFrame's com5SnowSlide.
 struct Settings {
@@ -19,11 +22,14 @@ struct Settings {
   double layer_thickness = 0.25;  // m, thickness of snow that makes one particle in a cell
 
   FrictionLaw friction_law = FrictionLaw::voellmy;
-  double friction = 0.325;         // Coulomb coefficient mu
-  double turbulence = 58;          // m/s2, Voellmy's xi
-  bool explicit_friction = false;  // compatible mode only
-  double resistance = 30000;       // drag coefficient within the resistance areas
-  double artificial_viscosity = 100;
+  double friction = 0.325;            // Coulomb coefficient mu
+  double turbulence = 58;             // m/s2, Voellmy's xi
+  bool explicit_friction = false;     // compatible mode only
+  double resistance = 30000;          // drag coefficient within the resistance areas
+  double artificial_viscosity = 100;  // compatible mode only
+  // Improved mode only.
+  Columns columns = Columns::vertical;
+  double mixing_rate = 8;  // 1/s, at which particles take over the mean velocity around them
 
   bool bonds = true;
   double max_strain = 0.2;        // largest strain of a bond, in tension or compression
@@ -42,5 +48,9 @@ struct Settings {
   /// The smallest length that the method resolves, m; 0 if the terrain determines it.
   double resolution() const { return cell; }
 };
+
+/// The step of snow without bonds, s: the given one or, in the improved mode, a part of it so short
+/// that particles take over at most a fifth of the mean velocity around them.
+double longest_step(const Settings&);
 
 }  // namespace snowshed::methods::slide

@@ -128,7 +128,7 @@ void SolverImpl::choose_step(State& next, const Workspace& work) const {
                          show_rounded(s.bond_modulus) + " Pa need steps of at most " +
                          show_rounded(max_step) + " s; at most " + show_rounded(max_substeps) +
                          " are taken in place of one");
-  next.step = s.time_step / std::max(1.0, parts);
+  next.step = std::min(longest_step(s), s.time_step / std::max(1.0, parts));
   next.counters.smallest_dt = std::min(next.counters.smallest_dt, next.step);
 }
 

@@ -1,7 +1,13 @@
 #include "snowshed/methods/slide/state.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace snowshed::methods::slide {
 namespace {
+
+/// With twice this share, peak speeds of slides in gullies changed by up to 1.3 %.
+constexpr double max_mixed_share = 0.2;
 
 BorderSlope border_slope(const Settings& s) {
   return s.mode == Mode::compatible ? BorderSlope::level_in_the_south_west : BorderSlope::one_sided;
@@ -32,6 +38,11 @@ std::vector<double> erodible_at_nodes(const Model& model) {
 
 }  // namespace
 
+double longest_step(const Settings& s) {
+  const double share = s.mode == Mode::improved ? s.time_step * s.mixing_rate : 0.0;
+  return s.time_step / std::max(1.0, std::ceil(share / max_mixed_share - 1e-9));
+}
+
 Model::Model(const Settings& s, double g, const geometry::HeightField& field, Areas a, bool keeps)
     : settings(s),
       gravity(g),
@@ -45,7 +56,7 @@ Model::Model(const Settings& s, double g, const geometry::HeightField& field, Ar
 State::State(const Model& model)
     : peaks(std::size_t(model.terrain.columns()) * std::size_t(model.terrain.rows())),
       erodible(erodible_at_nodes(model)),
-      step(model.settings.time_step) {}
+      step(longest_step(model.settings)) {}
 
 void Workspace::reserve_memory(const Model& model, State& state) {
   // Each particle may split.
@@ -66,9 +77,10 @@ void Workspace::reserve_memory(const Model& model, State& state) {
   cells.reserve(most, model.terrain);
   if (!model.compatible()) {
     // Lanes beyond the last particle have the weight 0, which must not be multiplied by infinity.
-    sorted_pressure_factor.resize(now + sorted_padding);
-    std::fill(sorted_pressure_factor.end() - std::ptrdiff_t(sorted_padding),
-              sorted_pressure_factor.end(), 0.0);
+    for (AlignedVector<double>* array : {&sorted_pressure_factor, &sorted_column_mass}) {
+      array->resize(now + sorted_padding);
+      std::fill(array->end() - std::ptrdiff_t(sorted_padding), array->end(), 0.0);
+    }
   }
   fields.reserve(model.terrain, !model.compatible());
   if (model.keeps_energy) energy_recorder.reserve(now);
@@ -96,6 +108,7 @@ void view_model(const Model& model, View& v) {
   v.friction = model.friction.friction;
   v.friction_drag = model.friction.drag;
   v.viscosity = s.artificial_viscosity;
+  v.across_flow = s.columns == Columns::across_flow;
   v.max_strain = s.max_strain;
   v.bond_modulus = s.bond_modulus;
   v.min_bond_length = s.min_bond_length;
@@ -178,7 +191,9 @@ View view_of(const Model& model, State& state, Workspace& work) {
   view_particles(state, v);
   view_bonds(state, work, v);
   v.sorted_pressure_factor = work.sorted_pressure_factor.data();
+  v.sorted_column_mass = work.sorted_column_mass.data();
   v.time_step = state.step;
+  v.mixed_share = state.step * model.settings.mixing_rate;
   return v;
 }
 

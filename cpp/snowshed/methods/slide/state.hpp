@@ -110,7 +110,8 @@ struct Workspace {
   CellPositions cell_positions;
   AlignedVector<double> thickness;  // m, of the snow at the particles
   CellLists cells;
-  AlignedVector<double> sorted_pressure_factor;  // in the order of the cells, see View
+  // In the order of the cells, see View.
+  AlignedVector<double> sorted_pressure_factor, sorted_column_mass;
   GridFields fields;
   BondLists bond_lists;
   Loads loads;

@@ -66,7 +66,7 @@ struct Strip {
     o.gravity = 0;
     o.settings.friction = 0;
     o.settings.friction_law = FrictionLaw::coulomb;
-    o.settings.artificial_viscosity = 0;
+    o.settings.mixing_rate = 0;
     o.settings.time_step = 1e-4;
     o.settings.bond_modulus = modulus;
     slide = make_solver(o);
@@ -118,7 +118,7 @@ struct Roll {
                          rectangle(30.3, 18.3, 70.3, 42.3));
     o.settings.friction_law = FrictionLaw::coulomb;
     o.settings.friction = 0.45;
-    o.settings.artificial_viscosity = 0;
+    o.settings.mixing_rate = 0;
     o.settings.bond_modulus = modulus;
     o.settings.max_strain = max_strain;
     slide = released_slide(o);

@@ -75,7 +75,7 @@ TEST(SlideEnergy, SpreadingTurnsThicknessIntoKineticEnergy) {
   o.settings.friction = 0;
   o.settings.friction_law = FrictionLaw::coulomb;
   o.settings.bonds = false;
-  o.settings.artificial_viscosity = 0;
+  o.settings.mixing_rate = 0;
   o.settings.layer_thickness = 0.05;
   const auto slide = released_slide(o);
   const double before = energies(*slide).at("potential_j");

@@ -34,6 +34,7 @@ TEST(SlideSolver, ABlockWithVoellmyFrictionFollowsItsEquationOfMotion) {
   fine.areas.release = {rectangle(20.3, 18.3, 48.3, 46.3)};
   fine.settings.layer_thickness = 0.02;  // many particles, so that the thickness is even
   fine.settings.bonds = false;           // with bonds the thin rim would hold the middle back
+  fine.settings.mixing_rate = 0;         // so would mixing
   const auto slide = released_slide(fine);
   step(*slide, 150);
   // du/dt = a - b u^2, u = sqrt(a / b) tanh(sqrt(a b) t), in the middle, where h stays 0.5 m.
@@ -57,7 +58,7 @@ TEST(SlideSolver, PeakSpeedMatchesTheSnowAndFadesBeyondItsRim) {
   o.settings.bonds = false;
   o.settings.layer_thickness = 0.1;
   o.settings.friction = 0;
-  o.settings.artificial_viscosity = 0;
+  o.settings.mixing_rate = 0;
   const auto slide = make_solver(o);
   std::vector<ParticleBatch> snow = slide->seed();
   const double speed = 100;  // m/s; pressure hardly changes it within a step
@@ -77,7 +78,7 @@ TEST(SlideSolver, PeakSpeedMatchesTheSnowAndFadesBeyondItsRim) {
 
 TEST(SlideSolver, SnowBelowTheAngleOfFrictionDoesNotMove) {
   Options o = slab(20, 0.6);
-  o.settings.artificial_viscosity = 0;
+  o.settings.mixing_rate = 0;
   const auto slide = released_slide(o);
   const ParticleState before = slide->state();
   step(*slide, 50);
@@ -95,7 +96,7 @@ TEST(SlideSolver, PressureDoesNotMoveTheCenterOfMass) {
   o.settings.friction = 0;
   o.settings.friction_law = FrictionLaw::coulomb;
   o.settings.bonds = false;
-  o.settings.artificial_viscosity = 0;
+  o.settings.mixing_rate = 0;
   const auto slide = released_slide(o);
   step(*slide, 100);
   EXPECT_GT(slide->motion(0).rms_speed, 0.2);  // the snow spreads

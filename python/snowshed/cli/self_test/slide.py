@@ -67,7 +67,7 @@ def _scene(law: Law, file: Path) -> Scene:
     write_ascii_grid(file, Raster(np.tile(1000.0 - fall, (rows, 1)), 0.0, 0.0, CELL))
     numerics = SlideSettings(
         bonds=False,
-        artificial_viscosity=0.0,
+        mixing_rate=0.0,
         friction_law=law,
         friction=FRICTION,
         turbulence=TURBULENCE,

@@ -43,8 +43,14 @@ class SlideSettings(MethodSettings):
         Drag coefficient within resistance areas (forest, buildings). 0 <= value <= 1e+09; default
         30000.
     artificial_viscosity : float
-        Strength with which particles are drawn to the mean velocity around them. 0 <= value <=
-        1e+06; default 100.
+        AvaFrame's artificial viscosity; in the compatible mode only. 0 <= value <= 1e+06; default
+        100.
+    columns : {"vertical", "across_flow"}
+        Direction of the columns of snow that press on the ground; in the improved mode only.
+        Default "vertical".
+    mixing_rate : float
+        Rate at which particles take over the mean velocity around them; in the improved mode only
+        [1/s]. 0 <= value <= 1000; default 8.
     bonds : bool
         Cohesive bonds; without them a plain depth-averaged avalanche. Default True.
     max_strain : float
@@ -82,6 +88,8 @@ class SlideSettings(MethodSettings):
     explicit_friction: Optional[bool] = default(False)
     resistance: Optional[float] = default(30000.0)
     artificial_viscosity: Optional[float] = default(100.0)
+    columns: Optional[Literal["vertical", "across_flow"]] = default("vertical")
+    mixing_rate: Optional[float] = default(8.0)
     bonds: Optional[bool] = default(True)
     max_strain: Optional[float] = default(0.2)
     bond_modulus: Optional[float] = default(50000.0)

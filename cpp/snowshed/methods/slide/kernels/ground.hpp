@@ -19,6 +19,14 @@ SNOWSHED_INLINE PackVec with_artificial_viscosity(const View& s, const PackVec& 
   return Pack(1.0 / (1.0 + f)) * (u + f * v);
 }
 
+/// Default mode: takes over a share of the mean velocity of the surrounding snow. The share is
+/// proportional to the step, so that the motion does not depend on it.
+SNOWSHED_INLINE PackVec mixed_with(const View& s, const PackVec& u, const PackVec& mean_velocity,
+                                   const PackVec& normal) {
+  const PackVec v = mean_velocity - dot(mean_velocity, normal) * normal;
+  return u + broadcast<Pack>(s.mixed_share) * (v - u);
+}
+
 /// Velocities after artificial viscosity, and the positions that they reach without forces.
 struct PackPrediction {
   PackVec velocity, position;
@@ -30,8 +38,11 @@ SNOWSHED_INLINE void predict(const View& s, const Lanes& l, PackPrediction& pred
   const Pack thickness = l.load(s.thickness);
   const Pack h = max(thickness, broadcast<Pack>(min_thickness));
   const PackRecord flow = flow_at(s, stored_position(s, l));
-  const PackVec u = with_artificial_viscosity(s, l.load(s.ux, s.uy, s.uz), {flow.b, flow.c, flow.d},
-                                              l.load(s.nx, s.ny, s.nz), l.load(s.mass), h);
+  const PackVec before = l.load(s.ux, s.uy, s.uz), normal = l.load(s.nx, s.ny, s.nz);
+  const PackVec mean{flow.b, flow.c, flow.d};
+  const PackVec u = s.scheme == FrictionScheme::set_valued
+                        ? mixed_with(s, before, mean, normal)
+                        : with_artificial_viscosity(s, before, mean, normal, l.load(s.mass), h);
   predicted.velocity = u;
   predicted.position = l.load(s.x, s.y, s.z) + broadcast<Pack>(s.time_step) * u;
   l.store(s.speed, length_from(dot(u, u)));

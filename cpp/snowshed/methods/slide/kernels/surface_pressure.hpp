@@ -1,15 +1,17 @@
-// The pressure of the snow around in the default mode: along the ground, not along the map.
+// The pressure of the snow around in the default mode: along the ground, pair by pair.
 //
 // A particle has the thickness h_k = sum_l (m_l / rho) W(r_kl), with the spiky kernel W and the
 // distance r_kl in space, so that h is normal to the ground. Snow has the potential energy
-// sum_k m_k g n_z h_k / 2, with the ground's normal n. The force along the ground follows from it:
-// two particles push each other with opposite forces (Monaghan 2005,
-// doi:10.1088/0034-4885/68/8/R01). Where a particle has so few neighbours that the sum falls short
-// of the integral, its pressure is raised to correct this, at most twofold. The correction depends
-// on h_k alone, so that it has a potential, too.
+// sum_k m_k g f_k h_k / 2, see columns.hpp. Its force along the ground is -m g grad(f h), by sums
+// of pairs (Monaghan 2005, doi:10.1088/0034-4885/68/8/R01). On a plane two particles push each
+// other with opposite forces. The neighbour's f takes the change of f along the ground into
+// account, so that snow with a level surface has no force. Where a particle has so few neighbours
+// that the sum falls short of the integral, its pressure is raised to correct this, at most
+// twofold. The correction depends on h_k alone, so that it has a potential, too.
 #pragma once
 
 #include "snowshed/core/simd_math.hpp"
+#include "snowshed/methods/slide/columns.hpp"
 #include "snowshed/methods/slide/kernels/neighbours.hpp"
 
 SNOWSHED_MODULE_VARIANT_BEGIN(methods::slide)
@@ -44,6 +46,11 @@ SNOWSHED_INLINE void count_neighbours_of(const View& s, std::uint32_t first,
     s.sorted_pressure_factor[first + k] = sums[k] / s.sorted_mass[first + k];
 }
 
+SNOWSHED_INLINE double column_factor(const View& s, std::uint32_t i) {
+  return s.across_flow ? across_flow_column_factor(s.nz[i], s.ux[i], s.uy[i], s.uz[i])
+                       : vertical_column_factor(s.nz[i]);
+}
+
 /// Finds the factor on the pressure for the particles of a row.
 SNOWSHED_INLINE void weigh_row(const View& s, int row) {
   for_each_neighbourhood(s, row,
@@ -55,11 +62,12 @@ SNOWSHED_INLINE void weigh_row(const View& s, int row) {
   constexpr int width = simd_width<double>;
   for (std::ptrdiff_t e = begin; e < end; e += width) {
     const int count = end - e < width ? int(end - e) : width;
-    V nz;
+    V factor;
     for (int lane = 0; lane < width; ++lane)
-      nz[lane] = s.nz[s.sorted_particle[e + (lane < count ? lane : 0)]];
-    store(s.sorted_pressure_factor + e,
-          V(nz * raised_pressure(load(s.sorted_pressure_factor + e, count))), count);
+      factor[lane] = column_factor(s, s.sorted_particle[e + (lane < count ? lane : 0)]);
+    store(s.sorted_column_mass + e, V(factor * load(s.sorted_mass + e, count)), count);
+    store(s.sorted_pressure_factor + e, raised_pressure(load(s.sorted_pressure_factor + e, count)),
+          count);
   }
 }
 
@@ -70,11 +78,11 @@ SNOWSHED_INLINE void surface_pressure_on(const View& s, double factor, std::uint
   V sx[2]{}, sy[2]{}, sz[2]{};
   for_each_neighbour(around, [&](std::uint32_t e, std::uint32_t end) SNOWSHED_INLINE_LAMBDA {
     const Neighbours<V> sources(s, e);
-    const V mass = within(load_beyond<V>(s.sorted_mass + e), e, end);
-    const V theirs = mass * load_beyond<V>(s.sorted_pressure_factor + e);
+    const V mass = within(load_beyond<V>(s.sorted_column_mass + e), e, end);
+    const V raised = load_beyond<V>(s.sorted_pressure_factor + e);
     for (int k = 0; k < count; ++k) {
       const Separation<V> separation(s, first + k, sources);
-      const V pressing = theirs + mass * s.sorted_pressure_factor[first + k];
+      const V pressing = mass * (raised + s.sorted_pressure_factor[first + k]);
       const V w = spiky_gradient(pressing, separation.square(), s.cell);
       sx[k] += w * separation.x;
       sy[k] += w * separation.y;
