@@ -39,6 +39,7 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 import numpy as np
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
 from snowshed.base.paths import PathLike
 from snowshed.io.atomic import write_text
@@ -255,6 +256,7 @@ def _last_known(sums: Mapping[str, str], event: int) -> int:
     return max((int(at) for at in sums if at.isdecimal() and int(at) <= event), default=0)
 
 
+@checked
 def read_events(folder: PathLike) -> pd.DataFrame:
     """Read the table of events from a results folder.
 

@@ -11,6 +11,7 @@ import numpy as np
 
 import snowshed._core as _core
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.extras import require
 from snowshed.base.missing_result import MissingResultError
 from snowshed.base.paths import PathLike
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
 HISTORY = "energy_history.csv"
 
 
+@checked
 class Results(MethodResults):
     """The results folder of a run, as `snowshed.run` and ``snowshed run`` write it.
 

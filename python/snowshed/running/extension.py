@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Optional
 
 import snowshed._core as _core
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
 from snowshed.io.atomic import replacing_folder
@@ -41,6 +42,7 @@ CONTINUED_FILES = (
 )
 
 
+@checked
 def extend_run(
     results: PathLike,
     folder: PathLike,

@@ -15,6 +15,7 @@ from tempfile import mkdtemp
 from typing import TYPE_CHECKING, Any, Optional
 
 import snowshed._core as _core
+from snowshed.base.arguments import checked
 from snowshed.base.interrupt import Interrupted, InterruptRequest, deferred_interrupts
 from snowshed.base.log import LOGGER
 from snowshed.base.machine import machine_facts
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
+@checked
 def run(
     scene: SceneLike,
     folder: Optional[PathLike] = None,
@@ -175,6 +177,7 @@ def _run_in_temporary_folder(scene: SceneLike, **options: Any) -> Results:
     return results
 
 
+@checked
 def run_events(
     scene: SceneLike,
     folder: Optional[PathLike] = None,

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 import snowshed._core as _core
 from snowshed._core import InputError, SimulationError
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import finite, points, positive, whole_number
 from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
@@ -53,6 +54,7 @@ class EventEnd(NamedTuple):
     time: float
 
 
+@checked
 class Simulation(ReadsParticles):
     """A scene being simulated, in memory.
 

@@ -13,6 +13,7 @@ from typing import Any
 
 import snowshed._core as _core
 from snowshed._core import ParsedScene
+from snowshed.base.arguments import checked
 from snowshed.base.json_values import JsonObject, JsonValue, read_only
 from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
@@ -20,6 +21,7 @@ from snowshed.io.array_files import FOLDER_PREFIX
 from snowshed.io.atomic import write_text
 
 
+@checked
 @dataclass(frozen=True)
 class ResolvedScene:
     """A scene that the core has validated and completed.

@@ -17,6 +17,7 @@ from typing import Any, List, Optional, Union, cast
 
 from snowshed._core import InputError
 from snowshed._core import preset as preset_text
+from snowshed.base.arguments import checked
 from snowshed.base.json_values import JsonObject, JsonValue
 from snowshed.base.paths import PathLike
 from snowshed.base.record import MAX_DEPTH, Record, check_instead, check_once, default
@@ -57,6 +58,7 @@ SLIP_CHANGED = (
 )
 
 
+@checked
 @dataclass
 class Scene(Record):
     """A scene under construction; fields that are not given have the core's defaults. SI units.

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Optional, Union
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.running.ageing.ageing import Ageing, Interval
 from snowshed.season.rows import SINGLE_ROW, PanelRows
 from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
@@ -26,6 +27,7 @@ DEGREE_DAY_FACTOR = 4.0
 DAY = 86400.0  # s
 
 
+@checked
 @dataclass(frozen=True)
 class SeasonSettings:
     """The settings of accumulation, release and ageing.

@@ -14,6 +14,7 @@ import numpy as np
 
 import snowshed._core as _core
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats, whole_number
 from snowshed.scene.components import Snow
 
@@ -27,6 +28,7 @@ MAX_ITERATIONS = 50
 ReturnMap = Callable[[float, float, float], "tuple[float, float, float]"]
 
 
+@checked
 def follow_path(
     snow: Snow,
     path: Union[pd.DataFrame, Mapping[str, Sequence[float]]],

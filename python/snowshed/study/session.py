@@ -15,6 +15,7 @@ from typing import Optional
 
 import snowshed._core as _core
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.build import build_id
 from snowshed.base.formatting import plural
 from snowshed.base.interrupt import InterruptRequest, deferred_interrupts
@@ -109,6 +110,7 @@ def compute_runs(
         _compute(store, [study], resources, retry_failed, progress)
 
 
+@checked
 def resume(
     folder: PathLike,
     study: Optional[str] = None,

@@ -11,6 +11,7 @@ from typing import Optional
 import numpy as np
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats, Integers
 from snowshed.base.paths import PathLike
 from snowshed.snow.stack.quantities import Measure, measure_named
@@ -135,6 +136,7 @@ def is_input(name: object) -> bool:
     return isinstance(name, str) and PATH.fullmatch(name) is not None and name != SEED
 
 
+@checked
 def read_rows(
     file: PathLike,
     measure: str = "stack",
@@ -171,6 +173,7 @@ def read_rows(
         raise InputError(f"{file}: {error}") from None
 
 
+@checked
 def stack_rows(inputs: Floats, height: Floats, length: Floats) -> StackRows:
     """Return rows from arrays; stacks with the same inputs make one row.
 

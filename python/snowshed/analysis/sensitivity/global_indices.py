@@ -16,6 +16,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.analysis.sensitivity.sampling import EXTRA, LEVELS, problem
 from snowshed.analysis.sensitivity.stored import TARGETS, StudyRuns
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Booleans, Floats
 from snowshed.base.extras import require
 from snowshed.study.factors import SEED
@@ -30,6 +31,7 @@ MIN_BLOCKS = 2  # blocks
 SAME_STEP = 1e-3  # relative difference of equal steps: files hold rounded numbers
 
 
+@checked
 def sobol_indices(stored: StudyRuns) -> pd.DataFrame:
     """Return first-order and total Sobol indices per parameter and event.
 
@@ -70,6 +72,7 @@ def sobol_indices(stored: StudyRuns) -> pd.DataFrame:
     return _index_table(stored, design, analyze)
 
 
+@checked
 def morris_effects(stored: StudyRuns) -> pd.DataFrame:
     """Return Morris's elementary effects per parameter and event.
 

@@ -17,6 +17,7 @@ import numpy as np
 
 import snowshed._core as _core
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Booleans, Floats
 from snowshed.base.json_values import JsonObject
 from snowshed.base.messages import shortened
@@ -37,6 +38,7 @@ class Interval(NamedTuple):
     temperature: float
 
 
+@checked
 @dataclass(frozen=True)
 class Ageing:
     """The ageing of a stack before each event.

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.methods.grains.sample_folder import LABELS, find_sample
 from snowshed.methods.grains.settings import GrainsSettings
@@ -18,6 +19,7 @@ MAX_TIME = 1e4  # s; the stages end before
 NPY = ".npy"
 
 
+@checked
 def grains_scene(
     labels: PathLike,
     voxel_size: Optional[float] = None,

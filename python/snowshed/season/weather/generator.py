@@ -16,7 +16,9 @@ from datetime import datetime, timedelta
 import numpy as np
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Booleans
+from snowshed.season.weather.columns import check_given_rows
 from snowshed.season.weather.row import MAX_SNOWFALL, Weather
 from snowshed.season.weather.source import SnowSource
 
@@ -49,6 +51,7 @@ class MonthClimate:
     snow_shift: float = 0.0
 
 
+@checked
 @dataclass(frozen=True)
 class Climate:
     """The winters of a station.
@@ -77,8 +80,9 @@ class Climate:
         Raises
         ------
         InputError
-            If no month with snow has enough days.
+            If a row cannot be weather, or no month with snow has enough days.
         """
+        check_given_rows(days, "days")
         days = [day for day in days if day.source is not SnowSource.MISSING]
         snows = np.array([day.snowfall >= MIN_SNOWFALL for day in days])
         temperatures = np.array([day.temperature for day in days])

@@ -30,6 +30,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Booleans, Floats, column, finite, flags, points, positive
 from snowshed.snow.stack.connected_components import largest_body
 from snowshed.snow.stack.support import supports
@@ -119,6 +120,7 @@ class StackMeasure(Extent):
         return self.mass / self.volume if self.volume else np.nan
 
 
+@checked
 def levelled_positions(positions: Floats, ground_tilt_deg: float) -> Floats:
     """Turn positions about y so that tilted ground becomes z = 0 (A.4.4).
 
@@ -146,6 +148,7 @@ def levelled_positions(positions: Floats, ground_tilt_deg: float) -> Floats:
     return levelled
 
 
+@checked
 def measure_stack(
     positions: ArrayLike,
     masses: ArrayLike,
