@@ -154,6 +154,8 @@ def _fits_one(value: object, kind: object) -> bool:
         return not isinstance(value, (str, bytes, Mapping)) and value is not None
     if origin.__name__ == "Callable":
         return callable(value)
+    if origin is Mapping:
+        return hasattr(value, "keys")  # also a DataFrame
     if issubclass(origin, Iterable) and not issubclass(origin, Mapping) and _is_plain(origin):
         return isinstance(value, Iterable) and not isinstance(value, (str, bytes, Mapping))
     return isinstance(value, origin)
@@ -184,7 +186,7 @@ _WORDS: Mapping[object, str] = {
 
 
 def _words(kind: object) -> str:
-    """Return a type in words."""
+    """Return a type as a text."""
     origin = typing.get_origin(kind) or kind
     if kind in _WORDS or origin in _WORDS:
         return _WORDS.get(kind) or _WORDS[origin]

@@ -163,6 +163,12 @@ class RunFolder:
         self.ageings = Table(self.folder / "ageing.csv", AGEING_COLUMNS)
         self.energies = Table(self.folder / ENERGY)
 
+    @property
+    def names(self) -> frozenset[str]:
+        """The names of these files."""
+        held = (part for part in vars(self).values() if part is not self.folder)
+        return frozenset((part.path if isinstance(part, Table) else part).name for part in held)
+
     def write_ageing(self, ageing: Mapping[str, Any]) -> None:
         """Record the ageing of the stack between the events."""
         write_text(self.ageing, json.dumps(ageing, indent=2) + "\n")

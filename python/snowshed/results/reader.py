@@ -167,12 +167,7 @@ class Results(MethodResults):
         return with_origin(dataset, self._origin)
 
     def particle_table(self, event: Optional[int] = None) -> pd.DataFrame:
-        """Return the particles after an event as a table; it needs no xarray.
-
-        Parameters
-        ----------
-        event
-            Its number, from 1; None: the last event.
+        """Return the particles after an event, as for `particles`, as a table; needs no xarray.
 
         Returns
         -------
@@ -186,12 +181,8 @@ class Results(MethodResults):
         """Return mass, velocity and density at the nodes of the grid after an event.
 
         They are computed from the stored particles, for runs by the material point method. With
-        APIC the share of the affine velocities is missing; `Simulation.grid` includes it.
-
-        Parameters
-        ----------
-        event
-            Its number, from 1; None: the last event.
+        APIC the share of the affine velocities is missing; `Simulation.grid` includes it. The event
+        is chosen as for `particles`.
 
         Returns
         -------

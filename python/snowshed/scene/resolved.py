@@ -76,6 +76,12 @@ class ResolvedScene:
         """Return a copy of the data, which callers may change."""
         return copy.deepcopy(dict(self.data))
 
+    def with_threads(self, threads: int) -> ResolvedScene:
+        """Return the scene with another number of threads, which does not change its results."""
+        data: dict[str, Any] = self.copied_data()
+        data["numerics"]["threads"] = threads
+        return ResolvedScene.from_data(data, self.base_dir)
+
     def __getstate__(self) -> dict[str, str]:
         """Return the pickled state: the text without its parsed forms."""
         return {"json": self.json, "base_dir": self.base_dir}

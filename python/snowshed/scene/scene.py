@@ -352,8 +352,12 @@ class Scene(Record):
         self, values: Mapping[str, object], names: dict[int, dict[str, str]], prefix: str = ""
     ) -> None:
         """Set values; `names` collects the fields that were set, by record and name."""
+        settings = any(path.partition(".")[0] == SETTINGS_KEY for path in values)
+        if not prefix and settings and values.get(NAME_KEY, self.method) != self.method:
+            self.assign(SETTINGS_KEY, None)  # those of the other method, which new ones replace
         for path, value in sorted(
-            values.items(), key=lambda item: not self._adopts(prefix + item[0])
+            values.items(),
+            key=lambda at: (at[0] != NAME_KEY, not self._adopts(prefix + at[0])),
         ):
             with locate(self, prefix + path) as (record, key, where):
                 field = record.field_of(key, where)

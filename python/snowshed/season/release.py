@@ -6,14 +6,14 @@ import math
 from dataclasses import dataclass
 
 from snowshed.base.arguments import checked
-from snowshed.season.weather.columns import COLUMNS, Column
+from snowshed.season.weather.columns import COLUMNS, MeasuredColumn
 
 _RANGES = {
-    "load": Column(0.0, 1e5, "kg/m2"),
-    "tilt": Column(0.0, 90.0, "degrees"),
+    "load": MeasuredColumn(0.0, 1e5, "kg/m2"),
+    "tilt": MeasuredColumn(0.0, 90.0, "degrees"),
     "friction": COLUMNS["friction"],
     "adhesion": COLUMNS["adhesion_pa"],
-    "gravity": Column(0.0, 1000.0, "m/s2"),
+    "gravity": MeasuredColumn(0.0, 1000.0, "m/s2"),
 }
 
 

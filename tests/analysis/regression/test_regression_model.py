@@ -216,7 +216,7 @@ def test_panels_outside_the_data_are_refused_unless_forced(file, question, messa
         ({"events": 0}, "events: 0 is outside the allowed range"),
         ({"events": 1.5}, "events: 1.5 is not a whole number"),
         ({"height": None}, "height: missing; needed are height, length, tilt, events"),
-        ({"height": "tall"}, "height: neither a number nor an array of numbers"),
+        ({"height": "tall"}, "height: not an array of numbers"),
         ({"height": [[2, 3]]}, r"height: shape \(1, 2\); must be a number or a sequence"),
         ({"height": []}, "no panels"),
         ({"height": [2, 3], "tilt": [40, 50, 60]}, "tilt: 3 values, but height has 2"),

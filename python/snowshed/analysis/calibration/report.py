@@ -74,7 +74,7 @@ class Calibration:
         if self.stacks.pending:
             notes.append(
                 f"{self.stacks.pending} runs of the study are not computed yet: ranks and "
-                "ranges omit them (`snowshed study resume` computes them)"
+                "ranges omit them (`snowshed.study.resume` computes them)"
             )
         missing = len(self.stacks.sets) - len(self.ranked)
         if missing:

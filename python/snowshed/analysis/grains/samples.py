@@ -74,7 +74,9 @@ class LabelledSample:
         sample = find_sample(path, LABELS)
         size = sample.voxel_size if voxel_size is None else voxel_size
         if size is None:
-            raise InputError(f"{sample.file}: how large is a voxel? Give its edge in m (--voxel)")
+            raise InputError(
+                f"{sample.file}: the edge of a voxel is not known; give it in m (`voxel_size=`)"
+            )
         positive("voxel size", size)
         opened = open_npy(sample.file)
         if opened.dtype.kind not in "iu":

@@ -12,7 +12,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
-from snowshed.base.arrays import Floats, Integers
+from snowshed.base.arrays import Floats, Integers, number_array
 from snowshed.base.paths import PathLike
 from snowshed.snow.stack.quantities import Measure, measure_named
 from snowshed.study.factors import SEED
@@ -193,8 +193,8 @@ def stack_rows(inputs: Floats, height: Floats, length: Floats) -> StackRows:
     """
     import pandas as pd
 
-    inputs = np.asarray(inputs, float)
-    height, length = np.asarray(height, float), np.asarray(length, float)
+    inputs = number_array("inputs", inputs)
+    height, length = number_array("height", height), number_array("length", length)
     alike = pd.DataFrame(inputs).groupby(list(range(inputs.shape[1])), sort=False)
     row, repetition = alike.ngroup().to_numpy(), alike.cumcount().to_numpy()
     first = repetition == 0

@@ -208,7 +208,7 @@ def _check_blocks(
     if len(points) % size or len(points) == 0:
         raise InputError(
             f"its {len(points)} points are not {design}: with {points.shape[1]} inputs, their "
-            f"number is a multiple of {size}; see `snowshed sensitivity --method`"
+            f"number is a multiple of {size}; see `method=`"
         )
     for start in range(0, len(points), size):
         if not is_block(np.diff(points[start : start + size], axis=0) != 0):

@@ -23,7 +23,7 @@ from snowshed.base.json_values import JsonObject
 from snowshed.base.messages import shortened
 from snowshed.running.ageing.columns import SnowColumns
 from snowshed.scene.resolved import snows_of
-from snowshed.snow.relations.relation import choose
+from snowshed.snow.relations.relation import check_choice
 from snowshed.snow.relations.settling import SETTLING_LAWS, settled_densities
 from snowshed.snow.relations.sintering import SINTERING_LAWS
 
@@ -72,12 +72,10 @@ class Ageing:
     strength_age: float = 24.0
 
     def __post_init__(self) -> None:
-        if self.settling is not None:
-            choose(self.settling, SETTLING_LAWS, "settling")
-        if self.sintering is not None:
-            choose(self.sintering, SINTERING_LAWS, "sintering")
+        check_choice("settling", self.settling, SETTLING_LAWS)
+        check_choice("sintering", self.sintering, SINTERING_LAWS)
         if not 0.0 < self.strength_age < np.inf:
-            raise InputError(f"strength age: {self.strength_age} hours; must be positive")
+            raise InputError(f"strength_age: {self.strength_age} hours; must be positive")
 
     @classmethod
     def from_data(cls, data: object, where: str) -> Ageing:

@@ -73,7 +73,7 @@ def grains_scene(
     file = sample.file
     size = voxel_size if voxel_size is not None else sample.voxel_size
     if size is None:
-        raise InputError(f"{file}: the edge of a voxel is not known; give it (--voxel) in m")
+        raise InputError(f"{file}: the edge of a voxel is not known; give it in m (`voxel_size=`)")
     if file.suffix.lower() != NPY:
         raise InputError(
             f"{file}: not an NPY file, which must hold integers, 0 for air (numpy.save)"

@@ -15,7 +15,7 @@ from snowshed.season.weather.row import MAX_SNOWFALL, Weather
 
 
 @dataclass(frozen=True)
-class Column:
+class MeasuredColumn:
     """The unit and the range of a column."""
 
     low: float
@@ -39,16 +39,18 @@ class Column:
             )
 
 
-COLUMNS: Mapping[str, Column] = {
-    "snowfall_m": Column(
+COLUMNS: Mapping[str, MeasuredColumn] = {
+    "snowfall_m": MeasuredColumn(
         0.0, MAX_SNOWFALL, "m", required=True, filled=True, hint="; is it in cm, mm or inches?"
     ),
-    "temperature_c": Column(-90.0, 40.0, "degrees C", required=True, filled=True),
-    "density_kg_m3": Column(10.0, 700.0, "kg/m3"),
-    "friction": Column(0.0, 10.0, ""),
-    "adhesion_pa": Column(0.0, 1e6, "Pa"),
-    "snow_depth_m": Column(0.0, 15.0, "m", hint="; is it in cm, mm or inches?"),
-    "irradiance_w_m2": Column(-20.0, 2000.0, "W/m2"),  # night offsets of sensors are negative
+    "temperature_c": MeasuredColumn(-90.0, 40.0, "degrees C", required=True, filled=True),
+    "density_kg_m3": MeasuredColumn(10.0, 700.0, "kg/m3"),
+    "friction": MeasuredColumn(0.0, 10.0, ""),
+    "adhesion_pa": MeasuredColumn(0.0, 1e6, "Pa"),
+    "snow_depth_m": MeasuredColumn(0.0, 15.0, "m", hint="; is it in cm, mm or inches?"),
+    "irradiance_w_m2": MeasuredColumn(
+        -20.0, 2000.0, "W/m2"
+    ),  # night offsets of sensors are negative
 }
 ALLOWED = ("date", *COLUMNS)
 #: The column of each number of a `Weather`.
@@ -98,6 +100,6 @@ def check_given_rows(rows: Sequence[object], name: str = "the season") -> list[W
                 raise InputError(f"{where}, {field}: {shown(value)}; needed: a number")
             COLUMNS[column].check(value, f"{where}, {field}")
         weather.append(row)
-    places = [TableRow(name, f"row {number}", number, {}) for number in range(1, len(rows) + 1)]
-    check_rows(weather, places, name, snowless=True)
+    positions = [TableRow(name, f"row {number}", number, {}) for number in range(1, len(rows) + 1)]
+    check_rows(weather, positions, name, snowless=True)
     return weather

@@ -26,7 +26,7 @@ from snowshed.io.weather.joined import read_stations
 from snowshed.io.weather.observation import Station
 from snowshed.io.weather.recognise import read_station
 from snowshed.season.weather.checks import NO_SNOW, check_rows, warm_snow
-from snowshed.season.weather.columns import ALLOWED, COLUMNS, Column, check_given_rows
+from snowshed.season.weather.columns import ALLOWED, COLUMNS, MeasuredColumn, check_given_rows
 from snowshed.season.weather.observed import record_of
 from snowshed.season.weather.row import Weather
 from snowshed.season.weather.season_record import SeasonRecord
@@ -213,7 +213,7 @@ def _weather(row: TableRow) -> Weather:
     )
 
 
-def _number(text: str, column: Column, where: str) -> Optional[float]:
+def _number(text: str, column: MeasuredColumn, where: str) -> Optional[float]:
     if not text:
         if column.filled:
             raise InputError(f"{where}: empty; give a number ({column.range_text})")
