@@ -9,7 +9,7 @@ import operator
 import os
 import sys
 import typing
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from pathlib import PurePath
 from typing import Literal, TypeVar, Union
 
@@ -63,6 +63,32 @@ def check_type(name: str, value: object, kind: object) -> None:
         needed = " or ".join(dict.fromkeys(_words(each) for each in _alternatives(kind)))
         given = f"a {type(value).__name__}" if isinstance(value, Mapping) else shown(value)
         raise InputError(f"{name}: {given}; needed: {needed}{_as_call(value, kind)}")
+    if isinstance(value, (list, tuple, dict)):
+        _check_items(name, value, kind)
+
+
+def _check_items(name: str, value: Collection[object], kind: object) -> None:
+    """Check the keys and the items of a dictionary, or the items of a list or tuple."""
+    keyed = isinstance(value, dict)
+    holders = [each for each in _alternatives(kind) if _holds_items(each, keyed=keyed)]
+    if not holders:
+        return
+    keys = tuple(typing.get_args(each)[0] for each in holders)
+    items = tuple(typing.get_args(each)[-1] for each in holders) if keyed else keys
+    for at, item in value.items() if isinstance(value, dict) else enumerate(value):
+        if keyed:
+            check_type(f"a key of {name}", at, Union[keys])
+        check_type(f"{name}[{at!r}]", item, Union[items])
+
+
+def _holds_items(kind: object, *, keyed: bool) -> bool:
+    """Return whether a type is that of dictionaries, or else of sequences, with known items."""
+    origin = typing.get_origin(kind)
+    if not (isinstance(origin, type) and typing.get_args(kind) and _is_plain(origin)):
+        return False
+    if keyed:
+        return issubclass(origin, Mapping)
+    return issubclass(origin, Iterable) and not issubclass(origin, Mapping)
 
 
 def is_flag(value: object) -> bool:
@@ -129,9 +155,25 @@ def _kind_of(parameter: inspect.Parameter, function: Callable[..., object]) -> o
         return object
     names = vars(sys.modules[function.__module__])
     try:
-        return eval(kind, dict(names)) if isinstance(kind, str) else kind
+        return eval(kind, {**_LIBRARIES, **names}) if isinstance(kind, str) else kind
     except (NameError, AttributeError, TypeError):
         return object
+
+
+class _ByName(type):
+    """A class of a library that is not imported, in an annotation; it is known by its name."""
+
+    def __getattr__(cls, name: str) -> _ByName:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return _ByName(name, (), {})
+
+    def __getitem__(cls, item: object) -> _ByName:
+        return cls
+
+
+#: Libraries that only type checkers import, as their modules are called.
+_LIBRARIES = {name: _ByName(name, (), {}) for name in ("pd", "xarray", "xr")}
 
 
 def _alternatives(kind: object) -> tuple[object, ...]:
@@ -145,6 +187,10 @@ def _fits(value: object, kind: object) -> bool:
 def _fits_one(value: object, kind: object) -> bool:
     if kind in _TESTS:
         return _TESTS[kind](value)
+    if isinstance(kind, typing.ForwardRef):
+        kind = eval(kind.__forward_arg__, {**_LIBRARIES})
+    if isinstance(kind, _ByName):
+        return any(own.__name__ == kind.__name__ for own in type(value).__mro__)
     origin = typing.get_origin(kind) or kind
     if origin is Literal:
         return isinstance(value, type(typing.get_args(kind)[0]))
@@ -187,6 +233,8 @@ _WORDS: Mapping[object, str] = {
 
 def _words(kind: object) -> str:
     """Return a type as a text."""
+    if isinstance(kind, typing.ForwardRef):
+        return kind.__forward_arg__.rpartition(".")[2]
     origin = typing.get_origin(kind) or kind
     if kind in _WORDS or origin in _WORDS:
         return _WORDS.get(kind) or _WORDS[origin]

@@ -17,7 +17,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
-from snowshed.base.arrays import Booleans
+from snowshed.base.arrays import Booleans, whole_number
 from snowshed.season.weather.columns import check_given_rows
 from snowshed.season.weather.row import MAX_SNOWFALL, Weather
 from snowshed.season.weather.source import SnowSource
@@ -72,6 +72,11 @@ class Climate:
 
     months: Mapping[int, MonthClimate]
     persistence: float = 0.7
+
+    def __post_init__(self) -> None:
+        for month in self.months:
+            if not 1 <= month <= 12:
+                raise InputError(f"months: {month}; allowed: 1 (January) to 12")
 
     @classmethod
     def fit(cls, days: Sequence[Weather]) -> Climate:
@@ -128,6 +133,7 @@ class Climate:
         first_year
             Year of the first autumn.
         """
+        whole_number("count", count, lowest=1)
         random = np.random.default_rng(seed)
         rows: list[Weather] = []
         for year in range(first_year, first_year + count):
