@@ -106,7 +106,7 @@ def sample(
         ({"count": 1.0}, "count: 1.0; needed: a whole number or None"),
         ({"loud": "no"}, "loud: 'no'; needed: True or False"),
         ({"file": 3}, "file: 3; needed: a text or a path or None"),
-        ({"color": {"red": 1}}, "color: a dict; needed: Color or None"),
+        ({"color": {"red": 1}}, "color: a value of type dict; needed: Color or None"),
         ({"either": True}, "either: True; needed: a text or a number"),
         ({"values": "12"}, "values: '12'; needed: a sequence"),
         ({"values": 12}, "values: 12; needed: a sequence"),
@@ -126,7 +126,8 @@ def test_the_message_names_the_argument_the_value_and_what_is_allowed(arguments,
 
 def test_values_of_the_right_types_pass():
     given = sample(
-        np.float32(2), "a", "b", count=np.int64(3), loud=np.bool_(True), color=Color(), frame=pd.DataFrame(),
+        np.float32(2), "a", "b", count=np.int64(3), loud=np.bool_(True), color=Color(),
+        frame=pd.DataFrame(),
         values=np.ones(2), either=3, table={}, call=print, unknown="x", other=True,
     )  # fmt: skip
     assert given["names"] == ("a", "b")
@@ -138,7 +139,7 @@ def test_settings_as_a_dict_are_refused_with_the_class_that_takes_them():
     with pytest.raises(InputError) as caught:
         snowshed.run_season([], Scene(), "x", settings={"friction": 0.5})
     assert str(caught.value) == (
-        "settings: a dict; needed: SeasonSettings or None, such as SeasonSettings(friction=0.5)"
+        "settings: a value of type dict; needed: SeasonSettings or None, such as SeasonSettings(friction=0.5)"
     )
 
 
@@ -154,12 +155,15 @@ def test_settings_as_a_dict_are_refused_with_the_class_that_takes_them():
         (lambda: run_season(3, Scene(), "x"), "season: 3; needed: a text or a path"),
         (
             lambda: run_season({"date": [1]}, Scene(), "x"),
-            "season: a dict; needed: a text or a path",
+            "season: a value of type dict; needed: a text or a path",
         ),
         (lambda: SeasonPart(3), "weather: 3; needed: a text or a path or DataFrame"),
         (lambda: Ageing({2: [3]}), "pauses[2][0]: 3; needed: Interval"),
         (lambda: Climate({1: 3}), "months[1]: 3; needed: MonthClimate"),
-        (lambda: Study(Scene(), season={"weather": "w"}), "season: a dict; needed: SeasonPart"),
+        (
+            lambda: Study(Scene(), season={"weather": "w"}),
+            "season: a value of type dict; needed: SeasonPart",
+        ),
         (
             lambda: Study.product(Scene(), {"panel.tilt": 40}),
             "axes['panel.tilt']: 40; needed",

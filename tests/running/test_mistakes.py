@@ -2,19 +2,19 @@
 
 import ctypes
 import re
-import shutil
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
+from helpers.interrupted_runs import interrupt_at
 
 import snowshed
 from snowshed import InputError, Scene, Simulation, SimulationError, SnowshedNote, Study
 from snowshed.analysis.calibration import read_simulated_stacks
 from snowshed.analysis.calibration.measurements import Measurement
 from snowshed.analysis.clearance.panel_design import check_base
-from snowshed.running import LAW_PROTOTYPES, Laws, extend_run
+from snowshed.running import LAW_PROTOTYPES, Laws, extend_run, sequence
 from snowshed.scene import grains_scene, slide_scene
 from snowshed.season import SeasonSettings
 from snowshed.study import read_table
@@ -252,14 +252,16 @@ def test_none_as_a_text_is_refused_with_the_value_to_give(name):
         SeasonSettings(**{name: "none"})
 
 
-def test_messages_in_python_name_arguments_and_calls_and_no_options(tiny, finished, tmp_path):
+def test_messages_in_python_name_arguments_and_calls_and_no_options(
+    tiny, finished, tmp_path, monkeypatch
+):
     unfinished = tmp_path / "unfinished"
-    shutil.copytree(finished, unfinished)
-    record = unfinished / "run.json"
-    record.write_text(record.read_text().replace('"finished"', '"interrupted"'))
+    monkeypatch.setattr(sequence, "REPORT_INTERVAL", 0.0)
+    with pytest.raises(snowshed.Interrupted):
+        snowshed.run(tiny, unfinished, pictures=False, progress=interrupt_at(1, 0.05))
     (tmp_path / "grains.npy").touch()
     calls = {
-        "nothing to resume, because it holds no scene.json": lambda: snowshed.run(
+        "nothing to resume; it holds no scene.json": lambda: snowshed.run(
             tiny, tmp_path / "no", resume=True
         ),
         "with `resume=True`, or replace its results with `overwrite=True`": lambda: snowshed.run(

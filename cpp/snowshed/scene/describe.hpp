@@ -413,7 +413,8 @@ void describe(V& v, Scene& s) {
              "Ground from a raster of elevations, with the areas of its snow");
   v.only_for_methods_with(methods::Part::sample);
   v.optional("sample", s.sample, "Segmented snow for a loading test");
-  if (v.shows("loading", s.numerics, methods::Part::sample))  // other scenes, and their hashes, lack it
+  if (v.shows("loading", s.numerics,
+              methods::Part::sample))  // other scenes, and their hashes, lack it
     v.list("loading", s.loading, methods::between(0, max_stages), "Stages of the loading test");
   v.only_for_methods_with(methods::Part::sample);
   v.optional("cone", s.cone, "Cone that the stages \"penetrate\" push in");

@@ -81,8 +81,7 @@ void add_notes_on_snow_of_panel(const Scene& scene, const std::vector<Solid>& so
   const double panel = scene.panel->length;
   if (scene.slab) {
     double thickness = scene.slab->thickness;
-    for (const Layer& layer : scene.slab->layers)
-      thickness = std::max(thickness, layer.thickness);
+    for (const Layer& layer : scene.slab->layers) thickness = std::max(thickness, layer.thickness);
     compare("/slab", thickness, "thick", panel, min_slab_ratio, 1, notes);
     compare("/slab/length", scene.slab->length, "long", panel, 1 / max_panel_ratio, 1, notes);
   }
@@ -108,7 +107,8 @@ void add_notes_on_files(const Scene& scene, const std::filesystem::path& base_di
         is_read ? "; if the file is in another unit, set its \"scale\"" : "; check its unit";
     double largest = 0;  // the largest value of all others
     for (const Solid& other : solids)
-      if (&other != &solid && std::isfinite(other.size)) largest = std::max(largest, other.size);
+      if (&other != &solid && std::isfinite(other.size) && (is_read || other.file.empty()))
+        largest = std::max(largest, other.size);
     if (is_read && solid.size < cell)
       notes.push_back(size + "less than a cell of " + show_briefly(cell) + " m" + question);
     else if (largest > 0 && solid.size > max_size_ratio * largest)

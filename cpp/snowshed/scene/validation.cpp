@@ -1,10 +1,10 @@
-#include "snowshed/methods/registry.hpp"
 #include "snowshed/scene/validation.hpp"
 
 #include <algorithm>
 #include <map>
 #include <set>
 
+#include "snowshed/methods/registry.hpp"
 #include "snowshed/scene/distinct_snows.hpp"
 #include "snowshed/scene/event_bodies.hpp"
 #include "snowshed/scene/locator.hpp"

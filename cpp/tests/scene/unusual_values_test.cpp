@@ -60,6 +60,8 @@ TEST(UnusualValues, AFewOfManyAreShownAndTheRestIsCounted) {
 TEST(UnusualValues, SpeedsBeyondAFallAreNoted) {
   Scene scene = panel_scene(40);
   BodySpec& body = scene.bodies.emplace_back();
+  body.shape.type = "sphere";
+  body.shape.radius = 1;
   body.velocity = {0, 0, -90};
   EXPECT_TRUE(notes_of(scene).empty());
   body.velocity = {90, 0, -90};

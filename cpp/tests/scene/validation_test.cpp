@@ -155,10 +155,10 @@ TEST(SceneParts, AreRefusedByMethodsThatLackThem) {
             "nothing");
   EXPECT_EQ(refused({methods::Part::slab, methods::Part::ground, methods::Part::obstacles,
                      methods::Part::bodies, methods::Part::domain}),
-            R"(/panel: the method "slide" takes no such part; methods that do: mpm)");
+            "/panel" + end);
   EXPECT_EQ(refused({methods::Part::panel, methods::Part::ground, methods::Part::obstacles,
                      methods::Part::bodies, methods::Part::domain}),
-            R"(/slab: the method "slide" takes no such part; methods that do: mpm)");
+            "/slab" + end);
   EXPECT_EQ(refused({methods::Part::panel, methods::Part::slab, methods::Part::obstacles,
                      methods::Part::bodies, methods::Part::domain}),
             "/ground" + end);

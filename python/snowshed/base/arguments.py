@@ -16,6 +16,7 @@ from typing import Literal, TypeVar, Union
 from snowshed._core import InputError
 from snowshed.base.field_type import shown
 from snowshed.base.paths import with_home
+from snowshed.base.record import Record
 
 Checked = TypeVar("Checked", bound=Callable[..., object])
 
@@ -40,7 +41,7 @@ def checked(public: Checked) -> Checked:
     if not isinstance(public, type):
         return typing.cast(Checked, _checking(public))
     for name, member in list(vars(public).items()):
-        own = name == "__init__" and type(public) is type  # records check their fields
+        own = name == "__init__" and not issubclass(public, Record)  # which checks its fields
         if name.startswith("_") and not own:
             continue
         if isinstance(member, (classmethod, staticmethod)):
@@ -61,7 +62,8 @@ def check_type(name: str, value: object, kind: object) -> None:
     """
     if not _fits(value, kind):
         needed = " or ".join(dict.fromkeys(_words(each) for each in _alternatives(kind)))
-        given = f"a {type(value).__name__}" if isinstance(value, Mapping) else shown(value)
+        plain = isinstance(value, (str, int, float, list, tuple, type(None)))
+        given = shown(value) if plain else f"a value of type {type(value).__name__}"
         raise InputError(f"{name}: {given}; needed: {needed}{_as_call(value, kind)}")
     if isinstance(value, (list, tuple, dict)):
         _check_items(name, value, kind)
@@ -97,7 +99,7 @@ def is_flag(value: object) -> bool:
 
 
 def is_number(value: object) -> bool:
-    """Return whether a value is a real number; booleans and texts are none.
+    """Return whether a value is a real number, not a boolean or a text.
 
     Examples
     --------
@@ -112,7 +114,7 @@ def is_number(value: object) -> bool:
 
 
 def is_integer(value: object) -> bool:
-    """Return whether a value is an integer; booleans are none."""
+    """Return whether a value is an integer, not a boolean."""
     try:
         operator.index(value)  # type: ignore[arg-type]
     except TypeError:
@@ -188,7 +190,8 @@ def _fits_one(value: object, kind: object) -> bool:
     if kind in _TESTS:
         return _TESTS[kind](value)
     if isinstance(kind, typing.ForwardRef):
-        kind = eval(kind.__forward_arg__, {**_LIBRARIES})
+        library, _, name = kind.__forward_arg__.partition(".")
+        kind = _ByName(name, (), {}) if library in _LIBRARIES else object
     if isinstance(kind, _ByName):
         return any(own.__name__ == kind.__name__ for own in type(value).__mro__)
     origin = typing.get_origin(kind) or kind
