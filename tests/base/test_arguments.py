@@ -139,7 +139,8 @@ def test_settings_as_a_dict_are_refused_with_the_class_that_takes_them():
     with pytest.raises(InputError) as caught:
         snowshed.run_season([], Scene(), "x", settings={"friction": 0.5})
     assert str(caught.value) == (
-        "settings: a value of type dict; needed: SeasonSettings or None, such as SeasonSettings(friction=0.5)"
+        "settings: a value of type dict; needed: SeasonSettings or None, such as "
+        "SeasonSettings(friction=0.5)"
     )
 
 
