@@ -68,7 +68,7 @@ def test_a_climate_is_not_fitted_to_rows_that_cannot_be_weather():
 def test_a_row_of_another_type_is_refused():
     with pytest.raises(InputError, match="both files and rows"):
         read_season([ROW, "snow.csv"])
-    with pytest.raises(InputError, match=r"row 1: \(2, 0.2\); needed: Weather"):
+    with pytest.raises(InputError, match=r"season\[0\]: \(2, 0.2\); needed: Weather"):
         accumulate([(2, 0.2)], SeasonSettings(), 40.0)
 
 

@@ -76,11 +76,13 @@ def _check_items(name: str, value: Collection[object], kind: object) -> None:
     if not holders:
         return
     keys = tuple(typing.get_args(each)[0] for each in holders)
-    items = tuple(typing.get_args(each)[-1] for each in holders) if keyed else keys
+    every = tuple(kind for each in holders for kind in typing.get_args(each) if kind is not ...)
+    items = tuple(typing.get_args(each)[-1] for each in holders) if keyed else every
     for at, item in value.items() if isinstance(value, dict) else enumerate(value):
         if keyed:
             check_type(f"a key of {name}", at, Union[keys])
-        check_type(f"{name}[{at!r}]", item, Union[items])
+        if type(item) not in items:
+            check_type(f"{name}[{at!r}]", item, Union[items])
 
 
 def _holds_items(kind: object, *, keyed: bool) -> bool:

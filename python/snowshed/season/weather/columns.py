@@ -65,7 +65,9 @@ COLUMN_OF: Mapping[str, str] = {
 }
 
 
-def check_given_rows(rows: Sequence[object], name: str = "the season") -> list[Weather]:
+def check_given_rows(
+    rows: Sequence[object], name: str = "the season", *, ordered: bool = True
+) -> list[Weather]:
     """Return rows made by hand; raises InputError if they cannot be the weather of seasons.
 
     Parameters
@@ -74,6 +76,8 @@ def check_given_rows(rows: Sequence[object], name: str = "the season") -> list[W
         The rows; they may have no snow.
     name
         The argument, for messages.
+    ordered
+        Whether the rows are a season, in order.
 
     Examples
     --------
@@ -100,6 +104,8 @@ def check_given_rows(rows: Sequence[object], name: str = "the season") -> list[W
                 raise InputError(f"{where}, {field}: {shown(value)}; needed: a number")
             COLUMNS[column].check(value, f"{where}, {field}")
         weather.append(row)
+    if not ordered:
+        return weather
     positions = [TableRow(name, f"row {number}", number, {}) for number in range(1, len(rows) + 1)]
     check_rows(weather, positions, name, snowless=True)
     return weather

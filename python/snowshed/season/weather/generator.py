@@ -87,7 +87,7 @@ class Climate:
         InputError
             If a row cannot be weather, or no month with snow has enough days.
         """
-        check_given_rows(days, "days")
+        check_given_rows(days, "days", ordered=False)
         days = [day for day in days if day.source is not SnowSource.MISSING]
         snows = np.array([day.snowfall >= MIN_SNOWFALL for day in days])
         temperatures = np.array([day.temperature for day in days])
