@@ -1,3 +1,4 @@
+import builtins
 import doctest
 import importlib
 import pkgutil
@@ -21,6 +22,15 @@ MODULES = sorted(
 def test_examples_in_docstrings(name):
     module = importlib.import_module(name)
     assert doctest.testmod(module).failed == 0
+
+
+@pytest.mark.skipif(sys.version_info < (3, 10), reason="lists no modules of the standard library")
+def test_no_exported_name_is_that_of_a_standard_module():
+    packages = [m.name for m in pkgutil.walk_packages(snowshed.__path__, "snowshed.") if m.ispkg]
+    for package in ["snowshed", *packages]:
+        exported = getattr(importlib.import_module(package), "__all__", ())
+        assert not set(exported) & {*sys.stdlib_module_names, *dir(builtins)}, package
+    assert snowshed.io.__name__ == "snowshed.io"
 
 
 def test_every_requirement_has_a_module():

@@ -23,6 +23,7 @@ if "OMP_WAIT_POLICY" not in os.environ:
     os.environ.setdefault("GOMP_SPINCOUNT", "2000")
 
 _public, __dir__, __all__ = _lazy.attach_stub(__name__, __file__)
+__all__.remove("io")  # after `from snowshed import *`, `io` stays the standard library's
 
 
 def __getattr__(name: str) -> object:

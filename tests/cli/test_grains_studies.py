@@ -42,7 +42,7 @@ def test_turning_makes_three_samples_of_each(samples, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("sensitivity", "{a}"), "how large is a voxel"),
+        (("sensitivity", "{a}"), "the edge of a voxel is not known"),
         (("sensitivity", "{a}", "{a}", "--voxel", "1e-4"), "two samples are called a"),
         (("sensitivity", "{a}", "--voxel", "1e-4", "--coarser", "3"), "3 times coarser"),
         (("sensitivity", "{a}", "--voxel", "1e-4", "--finer"), "needs coarser above 1"),

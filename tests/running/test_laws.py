@@ -93,7 +93,7 @@ def test_results_and_checkpoints_name_the_laws(tiny, library, tmp_path):
     [
         ({"name": "none"}, "there is none"),
         ({"name": "", "material": 1}, "not a name"),
-        ({"name": "text", "material": "law"}, "material: a value of type str"),
+        ({"name": "text", "material": "law"}, "material: 'law'; needed: "),
         ({"name": "python", "friction": {"panel": lambda v, s: 0.1}}, "friction of panel: a value"),
         ({"name": "null", "body_force": 0}, "body_force: a value of type int"),
     ],

@@ -1,16 +1,32 @@
 """Mistakes that were silent once: each is an error or a note now."""
 
 import ctypes
+import re
+from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
+from helpers.interrupted_runs import interrupt_at
 
 import snowshed
 from snowshed import InputError, Scene, Simulation, SimulationError, SnowshedNote, Study
+from snowshed.analysis.calibration import read_simulated_stacks
 from snowshed.analysis.calibration.measurements import Measurement
 from snowshed.analysis.clearance.panel_design import check_base
-from snowshed.running import LAW_PROTOTYPES, Laws
-from snowshed.scene import slide_scene
+from snowshed.running import LAW_PROTOTYPES, Laws, extend_run, sequence
+from snowshed.scene import grains_scene, slide_scene
+from snowshed.season import SeasonSettings
+from snowshed.study import read_table
+
+
+@pytest.fixture
+def falling(tiny):
+    """The snow of the first event, in motion."""
+    simulation = Simulation(tiny)
+    simulation.begin_event()
+    return simulation
+
 
 always = LAW_PROTOTYPES["friction"](lambda speed, stress: 0.3)
 
@@ -182,3 +198,92 @@ def test_a_study_that_replaces_another_says_so(tiny, tmp_path):
     Study.product(short, {"panel.tilt": [40]}).run(tmp_path / "store", jobs=1)
     with pytest.warns(SnowshedNote, match="replaces a study of that name"):
         Study.product(short, {"panel.friction": [0.2]}).run(tmp_path / "store", jobs=1)
+
+
+def test_coincident_particles_are_refused(falling):
+    points = [[0.3, 0.5], [0.3, 0.51], [0.3, 0.5]]
+    with pytest.raises(InputError, match="indices 0 and 2 are the same place, and 1 of 3"):
+        falling.add_snow(points)
+    falling.add_snow(points[:2])
+
+
+def test_positions_in_a_table_are_read_by_name(falling):
+    added = pd.DataFrame({"z": [0.5, 0.51], "x": [0.3, 0.3]})
+    falling.add_snow(added)
+    assert falling.positions()[-2:] == pytest.approx(np.array([[0.3, 0, 0.5], [0.3, 0, 0.51]]))
+    for columns in (["a", "b"], ["x", "y"], ["x", "old_x"]):
+        with pytest.raises(InputError, match=r"positions: a table with the columns .* needed"):
+            falling.add_snow(added.set_axis(columns, axis=1))
+    with pytest.raises(InputError, match="changes: a table; needed: an array"):
+        falling.add_velocity(added)
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"method": "mps", "numerics": {"spacing": 0.05}},
+        {"numerics": {"spacing": 0.05}, "method": "mps"},
+        {"numerics": snowshed.MpsSettings(spacing=0.05), "method": "mps"},
+        {"numerics.spacing": 0.05, "method": "mps"},
+    ],
+)
+def test_method_and_settings_change_together(tiny, values):
+    changed = tiny.with_(values)
+    assert changed.method == "mps" and changed.numerics == snowshed.MpsSettings(spacing=0.05)
+    assert tiny.with_({"method": "mpm", "numerics.dx": 0.03}).numerics.threads == 1
+    with pytest.raises(
+        InputError, match="takes MpsSettings, not MpmSettings; set numerics to None"
+    ):
+        tiny.with_(method="mps")
+
+
+def test_a_part_that_a_method_does_not_take_is_refused_with_those_that_do():
+    scene = Scene(method="slide", snow=snowshed.Snow(density=200))
+    with pytest.raises(InputError) as caught:
+        scene.resolve()
+    assert str(caught.value) == (
+        '/snow: the method "slide" takes no such part; methods that do: mpm'
+    )
+
+
+@pytest.mark.parametrize("name", ["settling", "sintering", "strength", "thaw"])
+def test_none_as_a_text_is_refused_with_the_value_to_give(name):
+    with pytest.raises(InputError, match=f"{name}: 'none'; allowed: .*, or None"):
+        SeasonSettings(**{name: "none"})
+
+
+def test_messages_in_python_name_arguments_and_calls_and_no_options(
+    tiny, finished, tmp_path, monkeypatch
+):
+    unfinished = tmp_path / "unfinished"
+    monkeypatch.setattr(sequence, "REPORT_INTERVAL", 0.0)
+    with pytest.raises(snowshed.Interrupted):
+        snowshed.run(tiny, unfinished, pictures=False, progress=interrupt_at(1, 0.05))
+    (tmp_path / "grains.npy").touch()
+    calls = {
+        "nothing to resume; it holds no scene.json": lambda: snowshed.run(
+            tiny, tmp_path / "no", resume=True
+        ),
+        "with `resume=True`, or replace its results with `overwrite=True`": lambda: snowshed.run(
+            tiny, finished
+        ),
+        "give it in m (`voxel_size=`)": lambda: grains_scene(tmp_path / "grains.npy"),
+        "start one with `Study.run`": lambda: read_table(tmp_path),
+        "holds no study": lambda: read_simulated_stacks(tmp_path),
+        "unfinished', resume=True)`": lambda: extend_run(unfinished, tmp_path / "new", 1),
+    }
+    for message, call in calls.items():
+        with pytest.raises(InputError) as caught:
+            call()
+        assert message in str(caught.value)
+        assert " --" not in str(caught.value) and "(--" not in str(caught.value)
+
+
+def test_no_message_of_a_function_names_an_option_alone():
+    """Options follow a command; `as_options` makes them of arguments."""
+    package = Path(snowshed.__file__).parent
+    for file in package.rglob("*.py"):
+        if "cli" not in file.parts:
+            code = file.read_text(encoding="utf-8")
+            for message in re.findall(r"raise \w*Error\((.*?)\)\n", code, re.DOTALL):
+                assert not re.search(r"(?<!snowshed) --[a-z]|\(--", message), (file, message)

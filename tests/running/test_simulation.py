@@ -249,7 +249,7 @@ def test_added_snow_falls(tiny):
         ({"mass": np.inf}, "mass: inf; a finite number"),
         ({"velocity": (1, 2, 3, 4)}, r"velocity: an array of shape \(1, 4\)"),
         ({"material_id": 1}, "material_id: 1; the scene's snows are 0 to 0"),
-        ({"material_id": "snow"}, "material_id: 'snow'; an integer"),
+        ({"material_id": "snow"}, "material_id: 'snow'; needed: a whole number"),
     ],
 )
 def test_snow_that_cannot_be_added_changes_nothing(falling, given, message):
@@ -320,13 +320,13 @@ def test_snows_come_from_the_scene(falling):
     ("misuse", "message"),
     [
         (lambda s: s.step(-1), "count: -1; an integer from 0"),
-        (lambda s: s.step(1.5), "count: 1.5; an integer"),
+        (lambda s: s.step(1.5), "count: 1.5; needed: a whole number"),
         (lambda s: s.run(until="sleep"), "until: 'sleep'; allowed: \"rest\""),
         (lambda s: s.run(until=np.nan), "until: nan; a finite number"),
         (lambda s: s.run(until=lambda s: True, every=0), "every: 0; an integer from 1"),
         (
             lambda s: Simulation(3),
-            "scene: a value of type int; allowed: Scene, ResolvedScene, dict, path",
+            "scene: 3; needed: Scene or ResolvedScene or a dict or a text or a path",
         ),
         (lambda s: Simulation({"panle": {}}), "/panle: unknown key"),
     ],

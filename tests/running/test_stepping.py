@@ -20,7 +20,20 @@ def test_iteration_runs_the_remaining_events(tiny):
     ends = list(simulation)
     assert [end.event for end in ends] == [1, 2] and simulation.events_left == 0
     assert all(end.ended in ("rest", "time_limit") and end.time > 0 for end in ends)
-    assert list(simulation) == []
+    with pytest.warns(SnowshedNote, match="all 2 events have ended, and none ran"):
+        assert list(simulation) == []
+
+
+def test_times_that_have_passed_or_lie_beyond_the_limit_are_told(tiny):
+    simulation = Simulation(tiny)
+    assert simulation.run(until=0.05) == "reached"
+    steps = simulation.steps
+    with pytest.warns(SnowshedNote, match=r"until: 0\.05 s has passed, because event 1 is at"):
+        assert simulation.run(until=0.05) == "reached"
+    assert simulation.steps == steps
+    with pytest.warns(SnowshedNote, match=r"until: 1\.2 s is beyond .* events\.max_time = 1 s"):
+        simulation.run(until=1.2)
+    assert simulation.time >= 1.2
 
 
 def test_a_function_is_called_after_each_step_and_changes_nothing_by_itself(tiny):

@@ -79,7 +79,7 @@ def test_a_study_file_names_the_winter(tmp_path, capsys):
             r"season.fricton: unknown key; allowed: weather",
         ),
         ('weather = "winter.csv"\nfriction = "x"', r"season.friction: 'x' is not a number"),
-        ('weather = "winter.csv"\nfriction = 11', r"season: release friction: 11 is outside"),
+        ('weather = "winter.csv"\nfriction = 11', r"season: friction: 11 is outside"),
         ('weather = "winter.csv"\nsettling = 3', r"season.settling: 3 is not a name"),
         ('weather = "winter.csv"\nfriction = 5', r"panel.tilt = 40: no snow slides off"),
     ],

@@ -8,9 +8,9 @@ import pytest
 from study_helpers import outcome, tiny_study
 
 from snowshed import InputError
+from snowshed.io.locks import holding
 from snowshed.study import StudyError, session
 from snowshed.study.database import FILE
-from snowshed.study.locks import holding
 from snowshed.study.owner import release_dead
 from snowshed.study.store import Store
 from snowshed.study.table import read_table

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "snowshed/core/message_format.hpp"
 #include "snowshed/methods/method_choice.hpp"
 
 /// One line for each method, whose folder defines `const MethodDescriptor& descriptor()`.
@@ -40,6 +41,14 @@ std::vector<std::string> method_names() {
   std::vector<std::string> names;
   for (const MethodDescriptor* method : all_methods()) names.emplace_back(method->info().name);
   return names;
+}
+
+std::string takes_no_part(const MethodInfo& method, Part part) {
+  std::string others;
+  for (const MethodDescriptor* other : all_methods())
+    if (other->info().takes.has(part))
+      others += (others.empty() ? "; methods that do: " : ", ") + std::string(other->info().name);
+  return "the method " + quote(method.name) + " takes no such part" + others;
 }
 
 RegisteredMethod::RegisteredMethod(const MethodDescriptor& method) {

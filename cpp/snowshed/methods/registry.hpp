@@ -11,6 +11,9 @@ namespace snowshed::methods {
 /// All methods, with their default settings. The first is the default of scenes.
 const std::vector<const MethodDescriptor*>& all_methods();
 
+/// The error at a part of a scene that a method does not take, with the methods that do.
+std::string takes_no_part(const MethodInfo& method, Part part);
+
 std::vector<std::string> method_names();
 
 /// Adds a method of a program that links the library, as long as this object exists. No method may

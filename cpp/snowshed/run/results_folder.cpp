@@ -81,8 +81,7 @@ ResultsFolder ResultsFolder::create(fs::path folder, const scene::Scene& scene) 
 ResultsFolder ResultsFolder::reopen(fs::path folder, const scene::Scene& scene) {
   const fs::path file = folder / "scene.json";
   if (!with_file_errors([&] { return fs::is_regular_file(file); }))
-    throw InputError(folder.string(),
-                     "nothing to resume; it holds no scene.json (start without --resume)");
+    throw InputError(folder.string(), "nothing to resume; it holds no scene.json");
   const std::string paths = differences(scene::load_scene(file), scene);
   if (!paths.empty())
     throw InputError(folder.string(), "made by another scene, which differs in " + paths +

@@ -21,7 +21,7 @@
 //   method(key, settings_key, member, doc, settings_doc)
 //                                            the name of a method, and the settings of that method
 //   read_method_first(key, member)           before parts that only some methods take
-//   shows(member, part)                      whether to visit a part: does the method take it?
+//   shows(key, member, part)                  whether to visit a part: does the method take it?
 //   only_for_methods_with(part)              before a part: only methods that take it may have it
 //   alias(key, other)                        before a field: another key for the same field
 //   accuracy({key...})                       before fields: those that trade accuracy for time
@@ -142,7 +142,7 @@ void describe(V& v, scene::ShapeSpec& s) {
 
 template <class V>
 void describe(V& v, geometry::MotionSpec& m) {
-  v.vector("velocity", m.velocity, "m/s", methods::allowed::speed, "Velocity");
+  v.vector("velocity", m.velocity, "m/s", methods::allowed::speed.usual(0, 100), "Velocity");
   v.spin("angular_velocity", m.angular_velocity, "rad/s", methods::allowed::speed,
          "Angular velocity about the pivot");
   v.vector("pivot", m.pivot, "m", methods::allowed::coordinate,
@@ -165,7 +165,8 @@ void describe(V& v, scene::ObstacleSpec& o) {
 template <class V>
 void describe(V& v, scene::BodySpec& b) {
   v.object("shape", b.shape, methods::Need::required, "The solid to fill with snow");
-  v.vector("velocity", b.velocity, "m/s", methods::allowed::speed, "Initial velocity");
+  v.vector("velocity", b.velocity, "m/s", methods::allowed::speed.usual(0, 100),
+           "Initial velocity");
   v.integer("event", b.event, methods::non_negative.up_to(1000),
             "Event at whose start it appears, 1 the first; 0: at the start of every event");
   v.optional("snow", b.snow,
@@ -235,7 +236,7 @@ void describe(V& v, methods::AreaSpec& a) {
   v.outline("outline", a.outline, "Corners, in the terrain's coordinates");
   v.list("holes", a.holes, methods::between(0, 1000),
          "Parts within the outline that do not belong to it");
-  v.number("thickness", a.thickness, "m", methods::positive.up_to(100.0).required().usual(0.02, 10),
+  v.number("thickness", a.thickness, "m", methods::positive.up_to(100.0).required().usual(0.02, 4),
            "Thickness of the snow, normal to the ground");
 }
 
@@ -398,7 +399,7 @@ void describe(V& v, Scene& s) {
            "Treatment of a scene that seeds more than 1 % of a body of snow inside an obstacle, "
            "below the ground, outside the domain, or within other snow");
   v.read_method_first("method", s.numerics);
-  if (v.shows(s.numerics, methods::Part::snow))
+  if (v.shows("snow", s.numerics, methods::Part::snow))
     v.object("snow", s.snow, methods::Need::optional, "The material");
   v.only_for_methods_with(methods::Part::panel);
   v.optional("panel", s.panel,
@@ -412,7 +413,8 @@ void describe(V& v, Scene& s) {
              "Ground from a raster of elevations, with the areas of its snow");
   v.only_for_methods_with(methods::Part::sample);
   v.optional("sample", s.sample, "Segmented snow for a loading test");
-  if (v.shows(s.numerics, methods::Part::sample))  // other scenes, and their hashes, lack the list
+  if (v.shows("loading", s.numerics,
+              methods::Part::sample))  // other scenes, and their hashes, lack it
     v.list("loading", s.loading, methods::between(0, max_stages), "Stages of the loading test");
   v.only_for_methods_with(methods::Part::sample);
   v.optional("cone", s.cone, "Cone that the stages \"penetrate\" push in");
@@ -423,7 +425,7 @@ void describe(V& v, Scene& s) {
   v.list("bodies", s.bodies, methods::between(0, 10000), "Further bodies of snow");
   v.only_for_methods_with(methods::Part::domain);
   v.optional("domain", s.domain, "A box with sticky sides; unbounded without it");
-  if (v.shows(s.numerics, methods::Part::seeding))
+  if (v.shows("seeding", s.numerics, methods::Part::seeding))
     v.object("seeding", s.seeding, methods::Need::optional, "Seeding of the snow with particles");
   v.method("method", "numerics", s.numerics, "The numerical method", "The method's settings");
   v.object("events", s.events, methods::Need::optional, "Number of events, and their end");

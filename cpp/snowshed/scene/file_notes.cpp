@@ -15,8 +15,13 @@ namespace {
 
 /// Files in millimetres that are read as metres, or the reverse, are 1000 times too large or small.
 constexpr double max_size_ratio = 300;
+/// A panel in centimetres is 100 times too long beside its snow.
+constexpr double max_panel_ratio = 100;
+/// Thinner slabs on a panel are noted.
+constexpr double min_slab_ratio = 1e-3;
 
 struct Solid {
+  std::string path;
   std::string file;  // empty: of no file
   double size;       // m, its longest edge; infinite or 0 if it has none
 };
@@ -50,15 +55,39 @@ std::vector<Solid> solids_of(const Scene& scene, const std::filesystem::path& ba
                              const std::vector<methods::Obstacle>& obstacles,
                              std::vector<std::string>& notes) {
   std::vector<Solid> solids;
-  if (scene.panel) solids.push_back({"", scene.panel->length});
+  if (scene.panel) solids.push_back({"/panel/length", "", scene.panel->length});
   const std::vector<methods::Obstacle> listed = listed_obstacles(scene, obstacles);
   for (std::size_t i = 0; i < listed.size(); ++i)
-    solids.push_back({file_of(scene.obstacles[i].shape),
+    solids.push_back({"/obstacles/" + std::to_string(i) + "/shape",
+                      file_of(scene.obstacles[i].shape),
                       longest_edge(listed[i].shape->bounds(), scene.dimension)});
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
-    solids.push_back(
-        {file_of(scene.bodies[i].shape), size_of_body(scene.bodies[i], i, scene, base_dir, notes)});
+    solids.push_back({"/bodies/" + std::to_string(i) + "/shape", file_of(scene.bodies[i].shape),
+                      size_of_body(scene.bodies[i], i, scene, base_dir, notes)});
   return solids;
+}
+
+/// A note if snow and panel have sizes that are not of the same unit.
+void compare(const std::string& path, double size, const char* adjective, double panel,
+             double least, double most, std::vector<std::string>& notes) {
+  if (size <= 0 || !std::isfinite(size) || (least * panel <= size && size <= most * panel)) return;
+  notes.push_back(path + ": " + show_briefly(size) + " m " + adjective + " beside a panel of " +
+                  show_briefly(panel) + " m; check the units of both");
+}
+
+void add_notes_on_snow_of_panel(const Scene& scene, const std::vector<Solid>& solids,
+                                std::vector<std::string>& notes) {
+  if (!scene.panel) return;
+  const double panel = scene.panel->length;
+  if (scene.slab) {
+    double thickness = scene.slab->thickness;
+    for (const Layer& layer : scene.slab->layers) thickness = std::max(thickness, layer.thickness);
+    compare("/slab", thickness, "thick", panel, min_slab_ratio, 1, notes);
+    compare("/slab/length", scene.slab->length, "long", panel, 1 / max_panel_ratio, 1, notes);
+  }
+  for (const Solid& solid : solids)
+    if (solid.file.empty() && solid.path.rfind("/bodies", 0) == 0)
+      compare(solid.path, solid.size, "large", panel, 1 / max_panel_ratio, max_panel_ratio, notes);
 }
 
 }  // namespace
@@ -68,20 +97,24 @@ void add_notes_on_files(const Scene& scene, const std::filesystem::path& base_di
                         std::vector<std::string>& notes) {
   const std::vector<Solid> solids = solids_of(scene, base_dir, obstacles, notes);
   const double cell = scene.numerics->resolution();
+  add_notes_on_snow_of_panel(scene, solids, notes);
   for (const Solid& solid : solids) {
-    if (solid.file.empty() || !std::isfinite(solid.size)) continue;
-    const std::string size =
-        solid.file + ": the solid is " + show_briefly(solid.size) + " m" + " large, ";
-    const std::string question = "; if the file is in another unit, set its \"scale\"";
+    if (!std::isfinite(solid.size)) continue;
+    const bool is_read = !solid.file.empty();
+    const std::string size = (is_read ? solid.file : solid.path) + ": the solid is " +
+                             show_briefly(solid.size) + " m" + " large, ";
+    const std::string question =
+        is_read ? "; if the file is in another unit, set its \"scale\"" : "; check its unit";
     double largest = 0;  // the largest value of all others
     for (const Solid& other : solids)
-      if (&other != &solid && std::isfinite(other.size)) largest = std::max(largest, other.size);
-    if (solid.size < cell)
+      if (&other != &solid && std::isfinite(other.size) && (is_read || other.file.empty()))
+        largest = std::max(largest, other.size);
+    if (is_read && solid.size < cell)
       notes.push_back(size + "less than a cell of " + show_briefly(cell) + " m" + question);
     else if (largest > 0 && solid.size > max_size_ratio * largest)
       notes.push_back(size + "and everything else at most " + show_briefly(largest) + " m" +
                       question);
-    else if (largest > max_size_ratio * solid.size)
+    else if (is_read && largest > max_size_ratio * solid.size)
       notes.push_back(size + "and others up to " + show_briefly(largest) + " m" + question);
   }
 }

@@ -1,4 +1,4 @@
-// Notes on oddities of the solids that a scene reads from files.
+// Notes on sizes of a scene's solids that do not fit together, and on oddities of their files.
 #pragma once
 
 #include <filesystem>
@@ -10,10 +10,11 @@
 
 namespace snowshed::scene {
 
-/// Adds notes on solids from meshes, grids and OpenVDB files that are probably in another unit:
-/// they are smaller than a cell, or at least 300 times larger or smaller than everything else in
-/// the scene. Adds notes on changes and assumptions about the files of bodies, too. `obstacles` are
-/// those of build_obstacles, which has noted their files.
+/// Adds notes on solids that are probably in another unit: any that are at least 300 times larger
+/// than everything else in the scene; those from meshes, grids and OpenVDB files also if they are
+/// smaller than a cell, or as much smaller than something else; snow whose size does not fit that
+/// of the panel. Adds notes on changes and assumptions about the files of bodies, too. `obstacles`
+/// are those of build_obstacles, which has noted their files.
 void add_notes_on_files(const Scene& scene, const std::filesystem::path& base_dir,
                         const std::vector<methods::Obstacle>& obstacles,
                         std::vector<std::string>& notes);

@@ -154,6 +154,11 @@ class Reader : public Checker {
     object(settings_key, method, methods::Need::optional, settings_doc);
   }
 
+  bool shows(const char* key, const methods::MethodChoice& method, methods::Part part) {
+    if (!method.takes(part)) foreign_[key] = methods::takes_no_part(method->info(), part);
+    return method.takes(part);
+  }
+
   void alias(const char* key, const char* other) {
     aliases_.push_back(other);
     if (!object_.contains(other)) return;
@@ -190,6 +195,8 @@ class Reader : public Checker {
     known.insert(known.end(), aliases_.begin(), aliases_.end());
     for (const auto& [key, value] : object_.items()) {
       if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+      if (const auto foreign = foreign_.find(key); foreign != foreign_.end())
+        throw InputError(at(key), foreign->second);
       const std::string near = suggestion(key, known);
       throw InputError(at(key),
                        "unknown key" + (near.empty() ? "; allowed: " + quoted_list(keys_) : near));
@@ -201,6 +208,7 @@ class Reader : public Checker {
   std::vector<std::string> keys_;
   std::vector<std::string> aliases_;
   std::map<std::string, std::string> given_alias_;  // alias by the key that it stands for
+  std::map<std::string, std::string> foreign_;      // errors at parts of other methods, by key
   std::optional<InputError> missing_;
 };
 

@@ -127,7 +127,7 @@ class SchemaWriter {
 
   void read_method_first(const char*, methods::MethodChoice&) {}
   /// Every part is described.
-  bool shows(const methods::MethodChoice&, methods::Part part) {
+  bool shows(const char*, const methods::MethodChoice&, methods::Part part) {
     only_for_methods_with(part);
     return true;
   }

@@ -15,7 +15,7 @@ class UnusualValues : public PathVisitor<UnusualValues> {
   UnusualValues(const int& dimension, std::vector<std::string>& notes)
       : PathVisitor("", dimension), notes_(notes) {}
 
-  void number(const char* key, double& value, const char* unit, const methods::Range& range,
+  void number(const char* key, double value, const char* unit, const methods::Range& range,
               const char*) {
     if (range.is_usual(value)) return;
     const std::string in_unit = *unit ? std::string(" ") + unit : "";
@@ -35,7 +35,10 @@ class UnusualValues : public PathVisitor<UnusualValues> {
   void text(const char*, std::string&, const char*) {}
   void file(const char*, std::string&, const char*) {}
   void choice(const char*, const methods::Choice&, const char*) {}
-  void vector(const char*, Vec3&, const char*, const methods::Range&, const char*) {}
+  void vector(const char* key, Vec3& value, const char* unit, const methods::Range& range,
+              const char* doc) {
+    number(key, value.norm(), unit, range, doc);
+  }
   void direction(const char*, Vec3&, const char*) {}
   void axis(const char*, Vec3&, const char*) {}
   void spin(const char*, Vec3&, const char*, const methods::Range&, const char*) {}

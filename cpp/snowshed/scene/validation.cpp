@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "snowshed/methods/registry.hpp"
 #include "snowshed/scene/distinct_snows.hpp"
 #include "snowshed/scene/event_bodies.hpp"
 #include "snowshed/scene/locator.hpp"
@@ -270,21 +271,20 @@ class SceneRules {
 }  // namespace
 
 void check_parts(const Scene& scene, const methods::MethodInfo& method) {
-  const auto check = [&](const auto& part, bool given, bool taken) {
-    if (given && !taken)
-      throw InputError(path_of(scene, part),
-                       "the method " + quote(method.name) + " takes no such part");
+  const auto check = [&](const auto& part, bool given, methods::Part kind) {
+    if (given && !method.takes.has(kind))
+      throw InputError(path_of(scene, part), methods::takes_no_part(method, kind));
   };
-  check(scene.panel, scene.panel.has_value(), method.takes.has(methods::Part::panel));
-  check(scene.slab, scene.slab.has_value(), method.takes.has(methods::Part::slab));
-  check(scene.ground, scene.ground.has_value(), method.takes.has(methods::Part::ground));
-  check(scene.obstacles, !scene.obstacles.empty(), method.takes.has(methods::Part::obstacles));
-  check(scene.bodies, !scene.bodies.empty(), method.takes.has(methods::Part::bodies));
-  check(scene.domain, scene.domain.has_value(), method.takes.has(methods::Part::domain));
-  check(scene.terrain, scene.terrain.has_value(), method.takes.has(methods::Part::terrain));
-  check(scene.sample, scene.sample.has_value(), method.takes.has(methods::Part::sample));
-  check(scene.loading, !scene.loading.empty(), method.takes.has(methods::Part::sample));
-  check(scene.cone, scene.cone.has_value(), method.takes.has(methods::Part::sample));
+  check(scene.panel, scene.panel.has_value(), methods::Part::panel);
+  check(scene.slab, scene.slab.has_value(), methods::Part::slab);
+  check(scene.ground, scene.ground.has_value(), methods::Part::ground);
+  check(scene.obstacles, !scene.obstacles.empty(), methods::Part::obstacles);
+  check(scene.bodies, !scene.bodies.empty(), methods::Part::bodies);
+  check(scene.domain, scene.domain.has_value(), methods::Part::domain);
+  check(scene.terrain, scene.terrain.has_value(), methods::Part::terrain);
+  check(scene.sample, scene.sample.has_value(), methods::Part::sample);
+  check(scene.loading, !scene.loading.empty(), methods::Part::sample);
+  check(scene.cone, scene.cone.has_value(), methods::Part::sample);
 }
 
 void check_rules(const Scene& scene) { SceneRules(scene).check(); }

@@ -74,7 +74,7 @@ class Writer {
   }
 
   void read_method_first(const char*, methods::MethodChoice&) {}
-  bool shows(const methods::MethodChoice& method, methods::Part part) const {
+  bool shows(const char*, const methods::MethodChoice& method, methods::Part part) const {
     return method.takes(part);
   }
   void only_for_methods_with(methods::Part) {}

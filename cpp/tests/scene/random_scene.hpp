@@ -84,7 +84,7 @@ class Randomizer {
     if (chance(0.3)) settings = methods::slide::Settings();
     if (chance(0.2)) settings = methods::grains::Settings();
   }
-  bool shows(const methods::MethodChoice& settings, methods::Part part) {
+  bool shows(const char*, const methods::MethodChoice& settings, methods::Part part) {
     return settings.takes(part);
   }
   void only_for_methods_with(methods::Part) {}

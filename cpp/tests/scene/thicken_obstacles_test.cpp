@@ -1,6 +1,7 @@
 #include "snowshed/scene/thicken_obstacles.hpp"
 
 #include "geometry/mesh_testing.hpp"
+#include "scene/panel_scene.hpp"
 #include "snowshed/methods/mpm/settings.hpp"
 #include "snowshed/methods/mps/settings.hpp"
 #include "snowshed/scene/build_obstacles.hpp"
@@ -135,6 +136,40 @@ TEST(FileNotes, SolidsInAnotherUnitAreNoted) {
     ASSERT_FALSE(small.empty());
     EXPECT_NE(small.back().find("0.002 m large, less than a cell of 0.02 m"), std::string::npos);
   }
+}
+
+TEST(FileNotes, SolidsOfNoFileInAnotherUnitAreNoted) {
+  TempDir dir;
+  Scene scene = panel_scene(40);
+  const auto notes = [&] { return build_surroundings(scene, dir.path()).notes; };
+  scene.obstacles = {obstacle("post", box_spec({5, 0, 1}, {0.2, 0.2, 2}))};
+  EXPECT_TRUE(notes().empty());
+  scene.obstacles = {obstacle("post", box_spec({5000, 0, 1000}, {200, 200, 2000}))};
+  ASSERT_EQ(notes().size(), 1u);
+  EXPECT_EQ(notes()[0],
+            "/obstacles/0/shape: the solid is 2e+03 m large, and everything else at most 2 m; "
+            "check its unit");
+}
+
+TEST(FileNotes, SnowThatDoesNotFitThePanelIsNoted) {
+  TempDir dir;
+  Scene scene = panel_scene(40);
+  const auto notes = [&] { return build_surroundings(scene, dir.path()).notes; };
+  for (const double thickness : {0.001, 2.5}) {
+    scene.slab->thickness = thickness;
+    ASSERT_EQ(notes().size(), 1u) << thickness;
+    EXPECT_NE(notes()[0].find(" m thick beside a panel of 2 m; check the units of both"),
+              std::string::npos);
+  }
+  scene.slab->thickness = 0.1;
+  scene.slab->length = 0.015;
+  EXPECT_EQ(notes().size(), 1u);
+  scene.slab->length = 0;
+  BodySpec& body = scene.bodies.emplace_back();
+  body.shape = box_spec({0, 0, 500}, {250, 1, 1});
+  ASSERT_EQ(notes().size(), 1u);
+  EXPECT_EQ(notes()[0],
+            "/bodies/0/shape: 250 m large beside a panel of 2 m; check the units of both");
 }
 
 TEST(FileNotes, RepairsAreNoted) {

@@ -57,6 +57,29 @@ TEST(UnusualValues, AFewOfManyAreShownAndTheRestIsCounted) {
   EXPECT_EQ(notes.back(), "7 further values are unusual");
 }
 
+TEST(UnusualValues, SpeedsBeyondAFallAreNoted) {
+  Scene scene = panel_scene(40);
+  BodySpec& body = scene.bodies.emplace_back();
+  body.shape.type = "sphere";
+  body.shape.radius = 1;
+  body.velocity = {0, 0, -90};
+  EXPECT_TRUE(notes_of(scene).empty());
+  body.velocity = {90, 0, -90};
+  ASSERT_EQ(notes_of(scene).size(), 1u);
+  EXPECT_EQ(notes_of(scene)[0],
+            "/bodies/0/velocity: 127 m/s is unusual; most values are 0 to 100 m/s, so check its "
+            "unit");
+}
+
+TEST(UnusualValues, ThickReleasesOfSlidesAreNoted) {
+  Scene scene;
+  scene.terrain.emplace().release.emplace_back().thickness = 3;
+  EXPECT_TRUE(notes_of(scene).empty());
+  scene.terrain->release[0].thickness = 5;
+  ASSERT_EQ(notes_of(scene).size(), 1u);
+  EXPECT_EQ(notes_of(scene)[0].find("/terrain/release/0/thickness: 5 m is unusual"), 0u);
+}
+
 TEST(UnusualValues, SettingsOfMethodsAreChecked) {
   Scene scene;
   methods::slide::Settings settings;

@@ -149,7 +149,7 @@ TEST(SceneParts, AreRefusedByMethodsThatLackThem) {
     }
     return std::string("nothing");
   };
-  const std::string end = R"(: the method "slide" takes no such part)";
+  const std::string end = R"(: the method "slide" takes no such part; methods that do: mpm, mps)";
   EXPECT_EQ(refused({methods::Part::panel, methods::Part::slab, methods::Part::ground,
                      methods::Part::obstacles, methods::Part::bodies, methods::Part::domain}),
             "nothing");

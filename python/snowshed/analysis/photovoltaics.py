@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.extras import require
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ MAX_DAYS = 200 * 366  # days of a table of months
 MIN_ANGLE, MAX_ANGLE = 0.1, 89.0  # degrees
 
 
+@checked
 def pile_angle(height: float, area: float) -> float:
     """Return the angle of repose of the pile that Townsend's model should assume, degrees.
 
@@ -48,6 +50,7 @@ def pile_angle(height: float, area: float) -> float:
     return float(np.clip(angle, MIN_ANGLE, MAX_ANGLE))
 
 
+@checked
 def loss_townsend(
     monthly: pd.DataFrame,
     *,
@@ -104,6 +107,7 @@ def loss_townsend(
     return pd.DataFrame(losses, index=monthly.index)
 
 
+@checked
 def coverage_nrel(
     snowfall: pd.Series,
     poa_irradiance: pd.Series,
@@ -137,6 +141,7 @@ def coverage_nrel(
     return covered
 
 
+@checked
 def plane_irradiance(
     global_horizontal: pd.Series,
     latitude: float,
@@ -191,6 +196,7 @@ def plane_irradiance(
     return irradiance
 
 
+@checked
 def blocked_days(season: pd.DataFrame, dx: float) -> pd.Series:
     """Return whether the snow below reaches the lower edge, by day; the index holds the dates.
 
@@ -208,6 +214,7 @@ def blocked_days(season: pd.DataFrame, dx: float) -> pd.Series:
     return pd.Series(reached.to_numpy(), index=days, name="blocked")
 
 
+@checked
 def monthly_table(season: pd.DataFrame, events: pd.DataFrame, dx: float) -> pd.DataFrame:
     """Return the monthly quantities of a season that engineers need.
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.results.folder import read_events
 from snowshed.scene.scene import ResolvedScene
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 RULE_OF_THUMB = 2 / 3  # thesis 5.1: 3D over 2D height, when height and width are comparable
 
 
+@checked
 def dimension_ratio(df3: pd.DataFrame, df2: pd.DataFrame) -> pd.DataFrame:
     """Return the ratio of the stack heights in 3D and 2D, event by event.
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from snowshed._core import InputError
+from snowshed.base.arguments import is_integer, is_number
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -30,7 +31,8 @@ def points(name: str, given: ArrayLike, dimension: int, count: Optional[int] = N
     name
         Name of the argument in messages.
     given : (n, 3), or (n, 2) in 2D
-        Anything that NumPy converts to an array. Two columns are x and z; y is then zero.
+        Anything that NumPy converts to an array. Two columns are x and z; y is then zero. A table
+        is read by the names of its columns: x, y and z, or names that end with ``_x`` and so on.
     dimension
         2 or 3.
     count
@@ -51,7 +53,7 @@ def points(name: str, given: ArrayLike, dimension: int, count: Optional[int] = N
     >>> points("positions", [[0, 1], [2, 3]], dimension=2).tolist()
     [[0.0, 0.0, 1.0], [2.0, 0.0, 3.0]]
     """
-    array = _floats(name, given)
+    array = number_array(name, _by_name(name, given, dimension))
     columns = (2, 3) if dimension == 2 else (3,)
     rows = "n" if count is None else str(count)
     if array.ndim != 2 or array.shape[1] not in columns or count not in (None, len(array)):
@@ -78,7 +80,7 @@ def column(name: str, given: ArrayLike, count: int, *, non_negative: bool = Fals
     >>> column("masses", [1, 2], 2).tolist()
     [1.0, 2.0]
     """
-    array = _floats(name, given)
+    array = number_array(name, given)
     if array.shape != (count,):
         raise _wrong_shape(name, array, f"({count},), a number for each particle")
     _check_finite(name, array)
@@ -142,7 +144,7 @@ def finite(name: str, given: float) -> float:
     30.0
     """
     try:
-        number = math.nan if isinstance(given, (bool, np.bool_)) else float(given)
+        number = float(given) if is_number(given) else math.nan
     except (TypeError, ValueError, OverflowError):
         number = math.nan
     if not math.isfinite(number):
@@ -150,7 +152,24 @@ def finite(name: str, given: float) -> float:
     return number
 
 
-def _floats(name: str, given: ArrayLike) -> Floats:
+def number_array(name: str, given: ArrayLike) -> Floats:
+    """Return numbers as an array in double precision.
+
+    Raises
+    ------
+    InputError
+        If some are texts, booleans or dates, or `given` is a table, whose columns have an order.
+
+    Examples
+    --------
+    >>> number_array("height", [1, 2]).tolist()
+    [1.0, 2.0]
+    >>> number_array("height", "2")
+    Traceback (most recent call last):
+    snowshed._core.InputError: height: not an array of numbers: values of type <U1
+    """
+    if hasattr(given, "columns"):
+        raise InputError(f"{name}: a table; needed: an array, such as one of its columns")
     try:
         array = np.asarray(given)
         if array.dtype.kind in "bcSUmM":
@@ -158,6 +177,26 @@ def _floats(name: str, given: ArrayLike) -> Floats:
         return np.asarray(array, dtype=np.float64, order="C")
     except (TypeError, ValueError, OverflowError) as error:
         raise InputError(f"{name}: not an array of numbers: {error}") from None
+
+
+def _by_name(name: str, given: ArrayLike, dimension: int) -> ArrayLike:
+    """Return the coordinates of a table as an array; anything else as it is."""
+    titles = [str(title) for title in getattr(given, "columns", ())]
+    if not hasattr(given, "columns"):
+        return given
+    columns = {
+        axis: [title for title in titles if title == axis or title.endswith(f"_{axis}")]
+        for axis in "xyz"
+    }
+    if dimension == 2 and not columns["y"]:
+        del columns["y"]
+    if any(len(matching) != 1 for matching in columns.values()):
+        raise InputError(
+            f"{name}: a table with the columns {', '.join(titles)}; needed: the columns x, y and "
+            "z, or position_x, position_y and position_z"
+        )
+    table: Any = given
+    return np.column_stack([np.asarray(table[title]) for (title,) in columns.values()])
 
 
 def _check_finite(name: str, array: Floats) -> None:
@@ -180,10 +219,7 @@ def whole_number(name: str, given: int, *, lowest: int) -> int:
     >>> whole_number("count", 3, lowest=0)
     3
     """
-    try:
-        number = operator.index(given)
-    except TypeError:
-        number = lowest - 1
+    number = operator.index(given) if is_integer(given) else lowest - 1
     if number < lowest:
         raise InputError(f"{name}: {given!r}; an integer from {lowest} is needed")
     return number

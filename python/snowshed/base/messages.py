@@ -26,6 +26,15 @@ _OPTIONS = {
     "layers['resistance']": "resistance-layer",
     "slope_length": "slope-length",
     "ranges": "range",
+    "voxel_size": "voxel",
+}
+#: Calls in messages, and the commands that do the same.
+_RESUMING = re.compile(r"`snowshed\.run\('([^'`]*)', '([^'`]*)', resume=True\)`")
+#: A clause that commands leave out, because they have no such option.
+_OVERWRITING = re.compile(r",( [^,]*), or replace its results with `overwrite=True`")
+_COMMANDS = {
+    "`Study.run`": "`snowshed study run`",
+    "`snowshed.study.resume`": "`snowshed study resume`",
 }
 FORMULA = ("=", "+", "-", "@", "\t", "\r")  # beginnings of cells that spreadsheets compute
 
@@ -78,8 +87,28 @@ def as_options(text: str) -> str:
     'give --max-thickness, or resume it with --resume'
     >>> as_options("`threshold=0.5` takes all numbers above 0 for ice")
     '--threshold 0.5 takes all numbers above 0 for ice'
+    >>> as_options("take another, resume it with `resume=True`, or replace its results with "
+    ...            "`overwrite=True`")
+    'take another, or resume it with --resume'
+    >>> as_options("resume it with " + resuming_call("out/scene.json", "out"))
+    'resume it with: snowshed run out/scene.json -o out --resume'
     """
+    text = _OVERWRITING.sub(r", or\1", text)
+    text = _RESUMING.sub(r": snowshed run \1 -o \2 --resume", text).replace(" : ", ": ")
+    for call, command in _COMMANDS.items():
+        text = text.replace(call, command)
     return _ARGUMENT.sub(_option, text)
+
+
+def resuming_call(scene: object, folder: object) -> str:
+    """Return the call that resumes a run, for messages.
+
+    Examples
+    --------
+    >>> resuming_call("out/scene.json", "out")
+    "`snowshed.run('out/scene.json', 'out', resume=True)`"
+    """
+    return f"`snowshed.run({str(scene)!r}, {str(folder)!r}, resume=True)`"
 
 
 def _option(argument: re.Match[str]) -> str:

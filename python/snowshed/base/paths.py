@@ -1,4 +1,4 @@
-"""Types of file names."""
+"""Names of files and folders."""
 
 from __future__ import annotations
 
@@ -8,6 +8,17 @@ from typing import Union
 from snowshed._core import InputError
 
 PathLike = Union[str, os.PathLike[str]]
+
+
+def with_home(path: str) -> str:
+    """Return the name of a file or folder, with the user's home in place of a leading ``~``.
+
+    Examples
+    --------
+    >>> with_home("runs/a~"), with_home("~/runs") == os.path.join(os.path.expanduser("~"), "runs")
+    ('runs/a~', True)
+    """
+    return os.path.expanduser(path)  # noqa: PTH111 - a name without a home stays as it is
 
 
 def utf8_path(path: PathLike) -> str:

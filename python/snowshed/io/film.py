@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import snowshed._core as _core
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats, Integers
 from snowshed.base.messages import printable, shortened
 from snowshed.base.paths import PathLike
@@ -87,6 +88,7 @@ class FilmFrame:
     codes: NDArray[np.int32]
 
 
+@checked
 class Film:
     """A film, read frame by frame.
 

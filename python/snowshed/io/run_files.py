@@ -13,6 +13,7 @@ from typing import Any
 
 from snowshed._core import InputError
 from snowshed.base.json_values import JsonValue
+from snowshed.base.messages import resuming_call
 from snowshed.io.csv_table import Table
 from snowshed.io.input_file import read_regular
 from snowshed.io.json_file import read_object
@@ -91,7 +92,7 @@ def _check_file(path: Path, mark: Any, *, finished: bool) -> None:
     if not isinstance(mark, dict):
         raise InputError(
             f"{path}: not complete: {RECORD} holds no checksum of it. Write it again "
-            f"with: snowshed run {path.parent / 'scene.json'} -o {path.parent} --resume"
+            f"with {resuming_call(path.parent / 'scene.json', path.parent)}"
         )
     content = read_regular(path)
     length = mark.get("bytes")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from snowshed.base.arguments import checked
 from snowshed.io.atomic import replacing
 
 if TYPE_CHECKING:
@@ -45,6 +46,7 @@ STYLE: dict[Any, Any] = {
 }
 
 
+@checked
 def blank_figure(width: float, height: float) -> Figure:
     """Return an empty figure that needs no screen.
 
@@ -81,6 +83,7 @@ def mute_frame(axes: Axes) -> None:
     axes.set_axisbelow(True)
 
 
+@checked
 def save_figure(figure: Figure, path: Path, *, dpi: int = 160) -> None:
     """Write a figure to a file, whole or not at all."""
     with replacing(path) as beside:

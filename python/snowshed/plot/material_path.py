@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib import rc_context
 
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
 from snowshed.plot.figure_style import COLOURS, INK, STYLE, blank_figure
 from snowshed.scene.components import Snow
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 WIDTH, HEIGHT = 9.0, 4.0  # inches
 
 
+@checked
 def point_figure(table: pd.DataFrame, snow: Snow) -> Figure:
     """Draw the stresses over the first strain, and the path in the plane of p and q.
 

@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from snowshed._core import Simulation
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
 from snowshed.methods.registry import resolution_of
 from snowshed.plot.caption import scene_caption
@@ -24,6 +25,7 @@ WIDTH = 9.0  # inches
 SAMPLES = (900, 500)  # of the obstacles, along x and z
 
 
+@checked
 def scene_figure(scene: SceneLike) -> Figure:
     """Draw a scene in the plane y = 0, with the snow of its first event in place.
 

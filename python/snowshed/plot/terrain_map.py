@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.colors import LightSource
 
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Booleans, Floats
 from snowshed.io.raster.raster import Raster
 
@@ -45,6 +46,7 @@ def coordinates(ground: Raster) -> tuple[Floats, Floats]:
     return east, north
 
 
+@checked
 def focus(ground: Raster, shown: Booleans, outlines: Sequence[Outline]) -> Extent:
     """Return the part of a terrain around a shown area and outlines, with a margin."""
     west, east, south, north = extent(ground)
@@ -69,6 +71,7 @@ def panel_size(part: Extent, area: float = 45.0) -> tuple[float, float]:
     return width, width / ratio
 
 
+@checked
 def draw_terrain(axes: Axes, ground: Raster, part: Extent, *, labels: bool = True) -> None:
     """Draw a light hillshade, on which colours stay readable, and contours."""
     ground = _cropped(ground, part)
@@ -100,6 +103,7 @@ def draw_values(axes: Axes, ground: Raster, values: Floats, **look: Any) -> Axes
     return axes.imshow(values, origin="lower", extent=extent(ground), **drawn)
 
 
+@checked
 def draw_outlines(axes: Axes, outlines: Sequence[Outline], label: str = "release") -> None:
     """Draw the outlines of areas."""
     for number, outline in enumerate(outlines):

@@ -11,6 +11,7 @@ import numpy as np
 
 import snowshed._core as _core
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.extras import require
 from snowshed.base.notes import issue_note
 from snowshed.io.film import Film, FilmFrame
@@ -69,6 +70,7 @@ def _check_end(film: Film, record: Mapping[str, Any]) -> None:
         raise InputError(f"{film.path}: damaged: it does not end where the run ended")
 
 
+@checked
 def film_dataset(film: Film, every: int = 1) -> xarray.Dataset:
     """Return a film as a Dataset.
 

@@ -39,6 +39,7 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 import numpy as np
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
 from snowshed.base.paths import PathLike
 from snowshed.io.atomic import write_text
@@ -162,6 +163,12 @@ class RunFolder:
         self.ageings = Table(self.folder / "ageing.csv", AGEING_COLUMNS)
         self.energies = Table(self.folder / ENERGY)
 
+    @property
+    def names(self) -> frozenset[str]:
+        """The names of these files."""
+        held = (part for part in vars(self).values() if part is not self.folder)
+        return frozenset((part.path if isinstance(part, Table) else part).name for part in held)
+
     def write_ageing(self, ageing: Mapping[str, Any]) -> None:
         """Record the ageing of the stack between the events."""
         write_text(self.ageing, json.dumps(ageing, indent=2) + "\n")
@@ -255,6 +262,7 @@ def _last_known(sums: Mapping[str, str], event: int) -> int:
     return max((int(at) for at in sums if at.isdecimal() and int(at) <= event), default=0)
 
 
+@checked
 def read_events(folder: PathLike) -> pd.DataFrame:
     """Read the table of events from a results folder.
 

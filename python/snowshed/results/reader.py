@@ -11,6 +11,7 @@ import numpy as np
 
 import snowshed._core as _core
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.extras import require
 from snowshed.base.missing_result import MissingResultError
 from snowshed.base.paths import PathLike
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
 HISTORY = "energy_history.csv"
 
 
+@checked
 class Results(MethodResults):
     """The results folder of a run, as `snowshed.run` and ``snowshed run`` write it.
 
@@ -165,12 +167,7 @@ class Results(MethodResults):
         return with_origin(dataset, self._origin)
 
     def particle_table(self, event: Optional[int] = None) -> pd.DataFrame:
-        """Return the particles after an event as a table; it needs no xarray.
-
-        Parameters
-        ----------
-        event
-            Its number, from 1; None: the last event.
+        """Return the particles after an event, as for `particles`, as a table; needs no xarray.
 
         Returns
         -------
@@ -184,12 +181,8 @@ class Results(MethodResults):
         """Return mass, velocity and density at the nodes of the grid after an event.
 
         They are computed from the stored particles, for runs by the material point method. With
-        APIC the share of the affine velocities is missing; `Simulation.grid` includes it.
-
-        Parameters
-        ----------
-        event
-            Its number, from 1; None: the last event.
+        APIC the share of the affine velocities is missing; `Simulation.grid` includes it. The event
+        is chosen as for `particles`.
 
         Returns
         -------

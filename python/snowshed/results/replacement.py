@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import os
 import shutil
 from collections.abc import Iterator
@@ -12,19 +11,17 @@ from pathlib import Path
 from snowshed._core import InputError
 from snowshed.base.paths import PathLike
 from snowshed.io.atomic import LEFTOVER
+from snowshed.io.locks import is_held
+from snowshed.results.folder import RunFolder
 
 #: Entries of a results folder, of runs by any method.
-ENTRIES = frozenset(
-    (
-        *("ageing.csv", "ageing.json", "checkpoint.bin", "contacts.csv", "conversions.csv"),
-        *("curve.csv", "energy.csv", "energy.png", "energy_history.csv", "events.csv", "film.bin"),
-        *("flow", "forces.csv", "forces.png", "grains.json", "grains.png", "growth.png"),
-        *("largest_loads.csv", "loads.csv", "loads.html", "object_loads.csv", "outline.csv"),
-        *("particles", "particles.pvd", "peaks", "peaks.npz", "pressures", "run.json"),
-        *("scene.json", "slide.html", "slide.json", "slide.png", "snapshots", "solids.vtp"),
-        *("stack.png", "states", "view.html"),
-    )
-)
+ENTRIES = RunFolder("").names | {
+    "contacts.csv", "curve.csv", "energy.png", "energy_history.csv", "film.bin", "flow",
+    "forces.csv", "forces.png", "grains.json", "grains.png", "largest_loads.csv",
+    "loads.csv", "loads.html", "object_loads.csv", "particles", "particles.pvd", "peaks",
+    "peaks.npz", "pressures", "slide.html", "slide.json", "slide.png", "snapshots",
+    "solids.vtp", "states", "view.html",
+}  # fmt: skip
 
 
 @contextmanager
@@ -67,10 +64,5 @@ def _check(folder: Path, names: set[str]) -> None:
             f"{folder}: not overwritten, because it holds other files than those of a run: "
             f"{', '.join(foreign[:5])}"
         )
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:
-        raise InputError(f"{folder}: in use: a run writes into this folder") from None
-    finally:
-        os.close(handle)
+    if is_held(folder):
+        raise InputError(f"{folder}: in use: a run writes into this folder")

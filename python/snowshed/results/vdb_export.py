@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.io.vdb.writing import WrittenVdb, write_vdb
 from snowshed.io.vtk.vtp import read_particles
@@ -28,6 +29,7 @@ class Exported:
     content: WrittenVdb
 
 
+@checked
 def export_folder(
     folder: PathLike,
     output: Optional[PathLike] = None,

@@ -11,6 +11,7 @@ from typing import Any, Optional
 import numpy as np
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.extras import require
 from snowshed.base.messages import suggestion
 from snowshed.base.paths import PathLike
@@ -34,6 +35,7 @@ DPI = 100
 COLOURS_OF_GIF = 128
 
 
+@checked
 def write_video(
     results: PathLike,
     video: PathLike,

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 
+from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.io.film import Film
 from snowshed.io.run_files import read_run_record
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 PAGE = "view.html"
 
 
+@checked
 def write_view(results: PathLike, page: Optional[PathLike] = None) -> Path:
     """Write the moving view of a results folder as one page, and return its path.
 
@@ -68,6 +70,7 @@ def write_view(results: PathLike, page: Optional[PathLike] = None) -> Path:
     return file
 
 
+@checked
 class InlineView:
     """The moving view of a run for notebooks, which show it as the value of a cell.
 

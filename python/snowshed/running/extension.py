@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any, Optional
 
 import snowshed._core as _core
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
+from snowshed.base.messages import resuming_call
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
 from snowshed.io.atomic import replacing_folder
@@ -41,6 +43,7 @@ CONTINUED_FILES = (
 )
 
 
+@checked
 def extend_run(
     results: PathLike,
     folder: PathLike,
@@ -109,8 +112,8 @@ def extend_run(
     status = earlier.read_run().get("status")
     if status != "finished":
         raise InputError(
-            f"{results}: not finished ({status}); first resume it with: snowshed run "
-            f"{earlier.scene} -o {results} --resume"
+            f"{results}: not finished ({status}); first resume it with "
+            f"{resuming_call(earlier.scene, results)}"
         )
     longer = extended_scene(scene, events, snow=snow, thickness=thickness)
     check_empty(folder)

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from typing import Any, Callable, Optional, Union
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 
 _DOUBLES = ctypes.POINTER(ctypes.c_double)
 _FLOATS = ctypes.POINTER(ctypes.c_float)
@@ -53,6 +54,7 @@ _FUNCTION: type = ctypes.CFUNCTYPE(None).__mro__[1]
 Compiled = Union[int, Callable[..., object]]
 
 
+@checked
 @dataclass(frozen=True)
 class Laws:
     """Laws of one's own for a simulation by the material point method.

@@ -15,12 +15,14 @@ from tempfile import mkdtemp
 from typing import TYPE_CHECKING, Any, Optional
 
 import snowshed._core as _core
+from snowshed.base.arguments import checked
 from snowshed.base.interrupt import Interrupted, InterruptRequest, deferred_interrupts
 from snowshed.base.log import LOGGER
 from snowshed.base.machine import machine_facts
 from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Progress, Reporter
+from snowshed.io.folders import check_empty
 from snowshed.methods.registry import method_of
 from snowshed.results.reader import Results
 from snowshed.results.replacement import replaced_results
@@ -36,7 +38,13 @@ from snowshed.scene.scene import SceneLike, resolve_scene
 if TYPE_CHECKING:
     import pandas as pd
 
+NOT_EMPTY = (
+    "; choose a new folder, resume the run with `resume=True`, or replace its results with "
+    "`overwrite=True`"
+)
 
+
+@checked
 def run(
     scene: SceneLike,
     folder: Optional[PathLike] = None,
@@ -105,9 +113,6 @@ def run(
     ...     results.events.event.tolist()
     [1]
     """
-    _check_types(ageing=(ageing, Ageing), laws=(laws, Laws))
-    if progress is not None and not callable(progress):
-        raise _core.InputError("progress: give a function that gets a Progress")
     if folder is None:
         if resume or overwrite:
             raise _core.InputError("folder: missing; resume and overwrite need it")
@@ -127,6 +132,8 @@ def run(
         )
     if resume and overwrite:
         raise _core.InputError("resume, overwrite: give one of the two")
+    if not resume and not overwrite:
+        check_empty(folder, NOT_EMPTY)
     options = RunOptions(resume, ageing, pictures, compact)
     replaced = replaced_results(folder) if overwrite else nullcontext()
     with replaced, kept_inputs(resolved, folder) as resolved:
@@ -154,15 +161,6 @@ def _title(scene: ResolvedScene) -> str:
     return str(scene.data.get("title") or f"a scene of the method {method_of(scene.data).name}")
 
 
-def _check_types(**arguments: tuple[object, type]) -> None:
-    """Raise InputError at an argument that is neither None nor of its type."""
-    for name, (value, kind) in arguments.items():
-        if value is not None and not isinstance(value, kind):
-            raise _core.InputError(
-                f"{name}: a value of type {type(value).__name__}; allowed: {kind.__name__}"
-            )
-
-
 def _run_in_temporary_folder(scene: SceneLike, **options: Any) -> Results:
     """Run a scene in a folder that is removed with its results."""
     folder = mkdtemp(prefix="snowshed-")
@@ -175,6 +173,7 @@ def _run_in_temporary_folder(scene: SceneLike, **options: Any) -> Results:
     return results
 
 
+@checked
 def run_events(
     scene: SceneLike,
     folder: Optional[PathLike] = None,

@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike
 
 import snowshed._core as _core
 from snowshed._core import InputError, SimulationError
-from snowshed.base.arrays import finite, points, positive, whole_number
+from snowshed.base.arguments import checked
+from snowshed.base.arrays import finite, number_array, points, positive, whole_number
 from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.methods.registry import method_of
@@ -19,6 +20,7 @@ from snowshed.results.provenance import present_origin, with_origin
 from snowshed.running.laws import Laws, addresses_of
 from snowshed.running.particle_reading import ReadsParticles
 from snowshed.running.sequence import issuing_notes
+from snowshed.running.stepping_checks import note_on_mass, note_on_time, refuse_coincident
 from snowshed.scene.components import Snow
 from snowshed.scene.resolved import snows_of
 from snowshed.scene.scene import ResolvedScene, SceneLike, resolve_scene
@@ -30,7 +32,6 @@ Until = Union[Literal["rest"], float, Callable[["Simulation"], bool]]
 OnStep = Callable[["Simulation"], object]
 
 MAX_SPEED = 1e4  # m/s, as in scenes
-MASS_RATIO = 10.0  # masses that differ more from those of seeded particles are noted
 MAX_STEPS = 64  # steps between two checks for Ctrl-C
 CHECK_INTERVAL = 0.1  # s of wall time between checks while the core runs to rest
 
@@ -53,6 +54,7 @@ class EventEnd(NamedTuple):
     time: float
 
 
+@checked
 class Simulation(ReadsParticles):
     """A scene being simulated, in memory.
 
@@ -204,6 +206,8 @@ class Simulation(ReadsParticles):
             raise SimulationError(f"all {self.event} events have ended; begin_event adds another")
         if not self.event_running:
             self.begin_event()
+        if not (isinstance(until, str) or callable(until)):
+            note_on_time(until, self.event, self.time, self._max_time)
         if on_step is not None:
             return self._run_stepwise(until, steps, on_step)
         if isinstance(until, str):
@@ -252,6 +256,11 @@ class Simulation(ReadsParticles):
 
     def __iter__(self) -> Iterator[EventEnd]:
         """Run the remaining events one after another, and yield the end of each."""
+        if not (self.event_running or self.events_left):
+            issue_note(
+                f"all {self.event} events have ended, and none ran; make the simulation again to "
+                "repeat them"
+            )
         while self.event_running or self.events_left:
             ended = self.run()
             yield EventEnd(self.event, ended, self.time)
@@ -273,7 +282,8 @@ class Simulation(ReadsParticles):
         Parameters
         ----------
         positions : (n, 3), or (n, 2) in 2D
-            Positions, m; two columns are x and z.
+            Positions, m; two columns are x and z. A table is read by its columns x, y and z. No
+            two may coincide.
         mass
             Mass of each particle, kg (per metre of width in 2D). None: as the scene seeds this
             snow, its density times the volume of a cell over ``seeding.particles_per_voxel``.
@@ -308,14 +318,13 @@ class Simulation(ReadsParticles):
         if not self.event_running:
             issue_note("no event is running: the added snow moves with the next event")
         given = points("positions", positions, self.dimension)
-        speed = points("velocity", np.atleast_2d(np.asarray(velocity)), self.dimension, 1)[0]
+        refuse_coincident(given)
+        speed = points(
+            "velocity", np.atleast_2d(number_array("velocity", velocity)), self.dimension, 1
+        )[0]
         seeded = self._seeded_mass(snows[kind])
         heavy = seeded if mass is None else positive("mass", mass)
-        if not seeded / MASS_RATIO <= heavy <= seeded * MASS_RATIO:
-            issue_note(
-                f"mass: {heavy:.3g} kg for each particle is {heavy / seeded:.3g} times that of "
-                "seeded snow; is it that of all particles?"
-            )
+        note_on_mass(heavy, seeded)
         if np.abs(speed).max() > MAX_SPEED:
             raise InputError(f"velocity: faster than {MAX_SPEED:g} m/s")
         with issuing_notes(self._core):
@@ -341,7 +350,7 @@ class Simulation(ReadsParticles):
         InputError
             If the shape is wrong, or a value is not finite.
         """
-        rows = np.asarray(changes)
+        rows = number_array("changes", changes)
         is_single = rows.ndim == 1
         count = 1 if is_single else self.particle_count
         vectors = points("changes", rows[None] if is_single else rows, self.dimension, count)

@@ -1,8 +1,7 @@
 """The components of a scene, field by field as the core reads them.
 
 A field that was not given reads as the core's default, or as None if it has no default. Writing
-None takes a value back. Vectors are (x, y, z), in 2D (x, z). The tables of attributes are those of
-the JSON Schema (``snowshed schema``).
+None takes a value back. Vectors are (x, y, z), in 2D (x, z). Tables follow ``snowshed schema``.
 """
 
 from __future__ import annotations
@@ -14,6 +13,7 @@ from pathlib import Path
 from typing import ClassVar, List, Literal, Optional, Union
 
 from snowshed._core import InputError, snow_preset
+from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.base.record import Alias, FieldsByField, Record, default
 from snowshed.io.json_file import read_object
@@ -25,13 +25,13 @@ Pattern = Literal["regular", "jittered", "poisson"]
 Between = Literal["carry", "reseed"]
 MisplacedSnow = Literal["refuse", "allow"]
 
-#: Key of a snow's file under which it says where it comes from.
-PROVENANCE = "provenance"
+PROVENANCE = "provenance"  # key under which a snow's file says where it comes from
 
 #: Corners (x, y) of an area on the map, m.
 Outline = Sequence[Sequence[float]]
 
 
+@checked
 @dataclass
 class Snow(Record):
     """Cohesive Modified Cam-Clay snow (thesis 1.2.5-1.2.7), or a purely elastic body.

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.base.record import Record, default
 from snowshed.io.array_files import array_file
@@ -19,6 +20,7 @@ from snowshed.io.array_files import array_file
 LoadingKind = Literal["compress", "unload", "stretch", "shear", "isotropic", "penetrate", "hold"]
 
 
+@checked
 @dataclass
 class Sample(Record):
     """Segmented snow to be loaded.

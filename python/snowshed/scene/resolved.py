@@ -13,6 +13,7 @@ from typing import Any
 
 import snowshed._core as _core
 from snowshed._core import ParsedScene
+from snowshed.base.arguments import checked
 from snowshed.base.json_values import JsonObject, JsonValue, read_only
 from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
@@ -20,6 +21,7 @@ from snowshed.io.array_files import FOLDER_PREFIX
 from snowshed.io.atomic import write_text
 
 
+@checked
 @dataclass(frozen=True)
 class ResolvedScene:
     """A scene that the core has validated and completed.
@@ -73,6 +75,12 @@ class ResolvedScene:
     def copied_data(self) -> JsonObject:
         """Return a copy of the data, which callers may change."""
         return copy.deepcopy(dict(self.data))
+
+    def with_threads(self, threads: int) -> ResolvedScene:
+        """Return the scene with another number of threads, which does not change its results."""
+        data: dict[str, Any] = self.copied_data()
+        data["numerics"]["threads"] = threads
+        return ResolvedScene.from_data(data, self.base_dir)
 
     def __getstate__(self) -> dict[str, str]:
         """Return the pickled state: the text without its parsed forms."""

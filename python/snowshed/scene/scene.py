@@ -17,8 +17,9 @@ from typing import Any, List, Optional, Union, cast
 
 from snowshed._core import InputError
 from snowshed._core import preset as preset_text
+from snowshed.base.arguments import checked
 from snowshed.base.json_values import JsonObject, JsonValue
-from snowshed.base.paths import PathLike
+from snowshed.base.paths import PathLike, with_home
 from snowshed.base.record import MAX_DEPTH, Record, check_instead, check_once, default
 from snowshed.io.input_file import read_input
 from snowshed.io.json_text import loads
@@ -39,6 +40,7 @@ from snowshed.scene.components import (
     Terrain,
 )
 from snowshed.scene.loading import Cone, LoadingStage, Sample
+from snowshed.scene.named_files import with_named_files
 from snowshed.scene.output import Output
 from snowshed.scene.resolved import ResolvedScene
 from snowshed.scene.scene_html import scene_html
@@ -57,6 +59,7 @@ SLIP_CHANGED = (
 )
 
 
+@checked
 @dataclass
 class Scene(Record):
     """A scene under construction; fields that are not given have the core's defaults. SI units.
@@ -350,9 +353,11 @@ class Scene(Record):
         self, values: Mapping[str, object], names: dict[int, dict[str, str]], prefix: str = ""
     ) -> None:
         """Set values; `names` collects the fields that were set, by record and name."""
-        for path, value in sorted(
-            values.items(), key=lambda item: not self._adopts(prefix + item[0])
-        ):
+        settings = any(path.partition(".")[0] == SETTINGS_KEY for path in values)
+        if not prefix and settings and values.get(NAME_KEY, self.method) != self.method:
+            self.assign(SETTINGS_KEY, None)  # those of the other method, which new ones replace
+        for path in sorted(values, key=lambda at: (at != NAME_KEY, not self._adopts(prefix + at))):
+            value = values[path]
             with locate(self, prefix + path) as (record, key, where):
                 field = record.field_of(key, where)
                 if isinstance(value, Mapping) and record.record_type(key):
@@ -379,7 +384,8 @@ class Scene(Record):
             Naming the JSON path, the error, and the allowed values.
         """
         self._warn_of_slip()
-        return ResolvedScene.parse(json.dumps(self.to_data()), self._base_dir)
+        data = with_named_files(self.to_data(), with_home)
+        return ResolvedScene.parse(json.dumps(data), self._base_dir)
 
     def _warn_of_slip(self) -> None:
         """Warn of the new meaning of "slip" for one release, except in scenes of version 1."""

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.base.record import Record
 from snowshed.io.array_files import array_file
@@ -31,6 +32,7 @@ ShapeType = Literal[
 ]
 
 
+@checked
 @dataclass
 class Shape(Record):
     """A solid; use the constructors, which ask for what their type needs. Lengths in metres.

@@ -6,11 +6,13 @@ from collections.abc import Mapping
 from typing import Any
 
 import snowshed._core as _core
+from snowshed.base.arguments import checked
 from snowshed.io.raster.raster import Raster
 from snowshed.scene.components import Outline
 from snowshed.scene.scene import SceneLike, resolve_scene
 
 
+@checked
 def slide_terrain(scene: SceneLike) -> Raster:
     """Return the elevations at the nodes of a slide's grid.
 

@@ -7,11 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Optional
 
+from snowshed.base.arguments import checked
 from snowshed.running.ageing.ageing import Ageing, Interval
 from snowshed.season.release import SnowBalance, snow_balance
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.settling_column import SnowColumn
 from snowshed.season.weather.checks import check_one_season
+from snowshed.season.weather.columns import check_given_rows
 from snowshed.season.weather.row import Weather
 from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
 
@@ -51,6 +53,7 @@ class WinterDay:
     slab_thickness: float = 0.0
 
 
+@checked
 def accumulate(
     season: Sequence[Weather], settings: SeasonSettings, tilt: float, gravity: float = 9.81
 ) -> list[WinterDay]:
@@ -74,7 +77,8 @@ def accumulate(
     Raises
     ------
     InputError
-        If more than a year passes from one row to the next.
+        If a row cannot be weather, more than a year passes from one row to the next, or the tilt
+        is not that of a panel.
 
     Examples
     --------
@@ -84,6 +88,7 @@ def accumulate(
     >>> round(day.load), round(day.balance.driving), round(day.balance.resisting), day.event
     (10, 85, 84, 1)
     """
+    check_given_rows(season)
     check_one_season(season)
     slope = math.cos(math.radians(tilt)) if tilt < 90.0 else 0.0  # nothing lies on a fence
     snow = SnowColumn(load_factor=gravity * slope)

@@ -12,8 +12,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Optional
 
+from snowshed.base.arguments import checked
 from snowshed.season.settings import DAY, SeasonSettings
 from snowshed.season.settling_column import SnowColumn
+from snowshed.season.weather.columns import check_given_rows
 from snowshed.season.weather.row import Weather
 from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
 
@@ -24,6 +26,7 @@ MAX_INTERPOLATED_DAYS = 61
 COVER_DENSITY = 300.0
 
 
+@checked
 def natural_cover(
     season: Sequence[Weather], settings: SeasonSettings, gravity: float = 9.81
 ) -> list[float]:
@@ -39,6 +42,11 @@ def natural_cover(
     gravity
         Gravity, m/s2.
 
+    Raises
+    ------
+    InputError
+        If a row cannot be weather.
+
     Examples
     --------
     >>> from datetime import datetime
@@ -48,6 +56,7 @@ def natural_cover(
     >>> [round(depth, 2) for depth in natural_cover(rows, SeasonSettings())]
     [0.4, 0.31, 0.1]
     """
+    check_given_rows(season)
     if settings.cover == "none":
         return [0.0] * len(season)
     if not isinstance(settings.cover, str):

@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
 from snowshed.io.atomic import write_text
@@ -73,6 +74,7 @@ class SeasonResult:
     panels: Sequence[Sequence[Sequence[float]]]
 
 
+@checked
 def run_season(
     season: Season,
     scene: SceneLike,

@@ -5,6 +5,17 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from snowshed.base.arguments import checked
+from snowshed.season.weather.columns import COLUMNS, MeasuredColumn
+
+_RANGES = {
+    "load": MeasuredColumn(0.0, 1e5, "kg/m2"),
+    "tilt": MeasuredColumn(0.0, 90.0, "degrees"),
+    "friction": COLUMNS["friction"],
+    "adhesion": COLUMNS["adhesion_pa"],
+    "gravity": MeasuredColumn(0.0, 1000.0, "m/s2"),
+}
+
 
 @dataclass(frozen=True)
 class SnowBalance:
@@ -19,6 +30,7 @@ class SnowBalance:
         return self.driving > self.resisting
 
 
+@checked
 def snow_balance(
     load: float, tilt: float, friction: float, adhesion: float, gravity: float = 9.81
 ) -> SnowBalance:
@@ -41,11 +53,19 @@ def snow_balance(
     gravity
         Gravity, m/s2.
 
+    Raises
+    ------
+    InputError
+        If a value is outside its range.
+
     Examples
     --------
     >>> snow_balance(10.0, 40.0, 0.7, 0.0).releases, snow_balance(10.0, 30.0, 0.7, 0.0).releases
     (True, False)
     """
+    for name, value in (("load", load), ("tilt", tilt), ("friction", friction),
+                        ("adhesion", adhesion), ("gravity", gravity)):  # fmt: skip
+        _RANGES[name].check(value, name)
     weight = load * gravity
     slope = math.radians(tilt)
     return SnowBalance(weight * math.sin(slope), friction * weight * math.cos(slope) + adhesion)

@@ -8,11 +8,13 @@ from dataclasses import dataclass
 from typing import Optional, Union
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.running.ageing.ageing import Ageing, Interval
 from snowshed.season.rows import SINGLE_ROW, PanelRows
 from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
-from snowshed.snow.relations.relation import choose
+from snowshed.snow.relations.relation import check_choice, choose
 from snowshed.snow.relations.settling import SETTLING_LAWS, SettlingLaw
+from snowshed.snow.relations.sintering import SINTERING_LAWS
 from snowshed.snow.relations.strength import TENSILE_STRENGTH
 
 COVERS = ("weather", "none")  # or a depth
@@ -26,6 +28,7 @@ DEGREE_DAY_FACTOR = 4.0
 DAY = 86400.0  # s
 
 
+@checked
 @dataclass(frozen=True)
 class SeasonSettings:
     """The settings of accumulation, release and ageing.
@@ -89,20 +92,20 @@ class SeasonSettings:
     rows: PanelRows = SINGLE_ROW
 
     def __post_init__(self) -> None:
-        _check("release friction", self.friction, 0.0, 10.0, "")
+        _check("friction", self.friction, 0.0, 10.0, "")
         _check("adhesion", self.adhesion, 0.0, 1e6, "Pa")
         _check("catch", self.catch, 0.0, 1.0, "")
-        choose(self.density, NEW_SNOW_DENSITY, "density of new snow")
-        if self.strength is not None:
-            choose(self.strength, TENSILE_STRENGTH, "strength")
+        choose(self.density, NEW_SNOW_DENSITY, "density")
+        check_choice("strength", self.strength, TENSILE_STRENGTH)
+        check_choice("settling", self.settling, SETTLING_LAWS)
+        check_choice("sintering", self.sintering, SINTERING_LAWS)
+        check_choice("thaw", self.thaw, THAWS)
         if not isinstance(self.cover, str):
             _check("cover", self.cover, 0.0, 10.0, "m")
         elif self.cover not in COVERS:
             raise InputError(f"cover: {self.cover!r}; allowed: weather, none, a depth in m")
-        _check("pool below", self.pool_below, 0.0, 10.0, "m")
-        _check("melt factor", self.melt_factor, 0.0, 100.0, "kg/m2 per day and degree")
-        if self.thaw is not None and self.thaw not in THAWS:
-            raise InputError(f"thaw: {self.thaw!r}; allowed: {', '.join(THAWS)}, none")
+        _check("pool_below", self.pool_below, 0.0, 10.0, "m")
+        _check("melt_factor", self.melt_factor, 0.0, 100.0, "kg/m2 per day and degree")
         self.ageing({})
 
     def ageing(self, pauses: Mapping[int, Sequence[Interval]]) -> Ageing:

@@ -14,7 +14,8 @@ import numpy as np
 
 import snowshed._core as _core
 from snowshed._core import InputError
-from snowshed.base.arrays import Floats, whole_number
+from snowshed.base.arguments import checked
+from snowshed.base.arrays import Floats, number_array, whole_number
 from snowshed.scene.components import Snow
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ MAX_ITERATIONS = 50
 ReturnMap = Callable[[float, float, float], "tuple[float, float, float]"]
 
 
+@checked
 def follow_path(
     snow: Snow,
     path: Union[pd.DataFrame, Mapping[str, Sequence[float]]],
@@ -96,7 +98,7 @@ def _targets(
     path: Union[pd.DataFrame, Mapping[str, Sequence[float]]], dimension: int
 ) -> tuple[list[str], Floats]:
     """Return the kind of each direction's column, and the points (n, dimension)."""
-    given = {str(name): np.asarray(values, dtype=float) for name, values in path.items()}
+    given = {str(name): number_array(str(name), values) for name, values in path.items()}
     kinds, values = [], []
     for direction in range(1, dimension + 1):
         names = [f"{kind}_{direction}" for kind in (STRAIN, STRESS)]

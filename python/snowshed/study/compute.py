@@ -18,12 +18,12 @@ from snowshed.base.build import build_id
 from snowshed.base.interrupt import Interrupted
 from snowshed.base.notes import SnowshedNote
 from snowshed.base.progress import Progress, Reporter
+from snowshed.io.locks import holding
 from snowshed.methods.registry import method_of
 from snowshed.results.folder import RunFolder
 from snowshed.running.run import run
 from snowshed.scene.resolved import ResolvedScene, scene_data
 from snowshed.study.aged_scene import split_ageing
-from snowshed.study.locks import holding
 from snowshed.study.outcome import RunOutcome, RunTask
 from snowshed.study.scene_hash import content_hash
 
@@ -105,8 +105,7 @@ def _run_or_resume(task: RunTask, folder: Path, report: Optional[Reporter]) -> N
         except InputError:
             pass
     shutil.rmtree(folder, ignore_errors=True)
-    data["numerics"]["threads"] = task.threads
-    scene = ResolvedScene.from_data(data)
+    scene = ResolvedScene.from_data(data).with_threads(task.threads)
     run(scene, folder, **options)
 
 

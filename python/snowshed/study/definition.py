@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
@@ -32,6 +33,7 @@ MAX_RUNS = 1_000_000  # runs
 WITHOUT_EFFECT = ("title", "output", "numerics.threads")
 
 
+@checked
 @dataclass(frozen=True)
 class Study:
     """A scene and the parameters that vary in it.

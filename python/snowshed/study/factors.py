@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.messages import shortened
 
 MAX_COUNT = 1_000_000  # values of one factor; more are a mistyped range
@@ -21,6 +22,7 @@ SCALES = ("linear", "log")
 SEED = "seeding.seed"
 
 
+@checked
 @dataclass(frozen=True)
 class Factor:
     """Parameters that vary together, value by value.
@@ -78,6 +80,7 @@ def _plain(values: Sequence[object]) -> Sequence[object]:
 Part = Sequence[Factor]
 
 
+@checked
 def axis(path: str, values: Sequence[object]) -> Factor:
     """Return the factor of a single parameter.
 
@@ -89,6 +92,7 @@ def axis(path: str, values: Sequence[object]) -> Factor:
     return Factor({path: values})
 
 
+@checked
 def linear(
     start: float, stop: float, *, step: Optional[float] = None, count: Optional[int] = None
 ) -> list[float]:
@@ -131,6 +135,7 @@ def linear(
     return [_without_rounding(start + i * step) for i in range(math.floor(steps) + 1)]
 
 
+@checked
 def logarithmic(start: float, stop: float, count: int) -> list[float]:
     """Return `count` values (at least 2) from `start` to `stop` in constant ratio.
 
@@ -151,6 +156,7 @@ def logarithmic(start: float, stop: float, count: int) -> list[float]:
     return [_without_rounding(start * math.exp(ratio * i / (count - 1))) for i in range(count)]
 
 
+@checked
 @dataclass(frozen=True)
 class Span:
     """An interval that is sampled, evenly in the value (linear) or in its logarithm (log)."""
@@ -175,6 +181,7 @@ class Span:
         return _without_rounding(self.low * (self.high / self.low) ** fraction)
 
 
+@checked
 def latin_hypercube(spans: Mapping[str, Span], count: int, *, seed: int = 1) -> Factor:
     """Return a Latin hypercube sample: each of `count` slices of each span is used once.
 
@@ -201,6 +208,7 @@ def latin_hypercube(spans: Mapping[str, Span], count: int, *, seed: int = 1) -> 
     return _sample("LatinHypercube", spans, count, seed)
 
 
+@checked
 def sobol(spans: Mapping[str, Span], count: int, *, seed: int = 1) -> Factor:
     """Return points of a scrambled Sobol sequence; `count` is a power of two.
 

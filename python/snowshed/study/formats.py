@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional, cast
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.extras import require
 from snowshed.base.paths import PathLike
 from snowshed.base.units import unit_of_column
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 SUFFIXES = {".csv": "csv", ".parquet": "parquet", ".nc": "netcdf"}
 
 
+@checked
 def export(
     folder: PathLike,
     file: PathLike,
@@ -69,6 +71,7 @@ def write_table(
         write(table, beside)
 
 
+@checked
 def to_dataset(table: pd.DataFrame) -> xarray.Dataset:
     """Return a study's table as an xarray Dataset with the dimensions run and event.
 

@@ -10,8 +10,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from snowshed.io.locks import holding
 from snowshed.study.errors import StudyError
-from snowshed.study.locks import holding, is_owner, owner_lives
+from snowshed.study.locks import is_owner, owner_lives
 from snowshed.study.store import Store
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.results.event_particles import EventParticles
 from snowshed.results.folder import measured_columns
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 Measuring = Callable[[EventParticles], Mapping[str, object]]
 
 
+@checked
 def remeasure(
     folder: PathLike,
     study: Optional[str] = None,

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.scene.scene import ResolvedScene
 from snowshed.season.accumulation import accumulate, stack_ageing
@@ -27,6 +28,7 @@ WEATHER = "weather"
 SEASON_PATHS = ("slab.thickness", "slab.layers", "events.count", "bodies")
 
 
+@checked
 @dataclass(frozen=True)
 class SeasonPart:
     """A winter, with the settings for gathering and release of its snow.

@@ -15,6 +15,7 @@ from typing import Optional
 
 import snowshed._core as _core
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.build import build_id
 from snowshed.base.formatting import plural
 from snowshed.base.interrupt import InterruptRequest, deferred_interrupts
@@ -23,10 +24,11 @@ from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.base.pool.pool import available_cores
 from snowshed.base.progress import Progress, Reporter
+from snowshed.io.locks import is_held
 from snowshed.study import cost_estimate
 from snowshed.study.errors import StudyError, StudyInterrupted
 from snowshed.study.local import LocalWorkers
-from snowshed.study.locks import is_held, is_owner
+from snowshed.study.locks import is_owner
 from snowshed.study.outcome import RunOutcome, RunTask
 from snowshed.study.owner import ownership, release_dead
 from snowshed.study.scene_hash import RunKey, is_hash
@@ -109,6 +111,7 @@ def compute_runs(
         _compute(store, [study], resources, retry_failed, progress)
 
 
+@checked
 def resume(
     folder: PathLike,
     study: Optional[str] = None,
@@ -207,7 +210,7 @@ def _check_version(store: Store, pending: Sequence[StoredRun]) -> None:
         if run.version != _core.version:
             raise InputError(
                 f"{store.folder}: its runs are for snowshed {run.version}, but this is "
-                f"{_core.version}; start the study again with `snowshed study run`, "
+                f"{_core.version}; start the study again with `Study.run`, "
                 "which computes all its runs with this version"
             )
 
@@ -222,8 +225,7 @@ def _adopt(store: Store, study: str, *, same_version: bool) -> None:
     if not same_version:
         raise InputError(
             f"{store.folder}: its runs are for another build of snowshed {_core.version}; "
-            "`same_version=True` goes on with this one, and `snowshed study run` computes all runs "
-            "with it"
+            "`same_version=True` goes on with this one, and `Study.run` computes all runs with it"
         )
     runs = [RunKey(run.hash, run.scene) for run in store.runs(study)]
     store.register(study, store.axes(study), runs, same_version=True)

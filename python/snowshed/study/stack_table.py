@@ -256,7 +256,9 @@ class StackTable:
         frame = frame.dropna(subset=list(quantities))
         frame = _as_numbers(frame, [*self.axes, "seed", "event"])
         if frame.empty:
-            raise InputError("none of its runs is computed yet; see `snowshed study status`")
+            raise InputError(
+                "none of its runs is computed yet; `snowshed.study.resume` computes them"
+            )
         return frame
 
     def varying(self, paths: Sequence[str], purpose: str) -> list[str]:
@@ -293,7 +295,7 @@ class StackTable:
             if len(values) > 1:
                 raise InputError(
                     f"{name}: the rows have different values ({', '.join(values[:6])}), but it is "
-                    f"not an input; select rows with --where {name}={values[0]}"
+                    f"not an input; select rows with `where=`, such as {name}={values[0]}"
                 )
             common[name] = values[0]
         return common

@@ -21,6 +21,7 @@ from snowshed._core import InputError
 from snowshed.base.build import build_id
 from snowshed.base.paths import PathLike
 from snowshed.io.json_file import check_values, parse_object
+from snowshed.io.locks import holding
 from snowshed.study import checksums
 from snowshed.study.database import (
     FILE,
@@ -31,7 +32,6 @@ from snowshed.study.database import (
     transaction,
     translate_errors,
 )
-from snowshed.study.locks import holding
 from snowshed.study.other_builds import set_aside
 from snowshed.study.outcome import RunOutcome
 from snowshed.study.scene_hash import HASH_DIGITS, RunKey, is_hash
@@ -41,7 +41,7 @@ WITHOUT_CHECKSUM = (
     "without its checksum: damaged, or added by an earlier version of snowshed after this one had "
     "opened the store"
 )
-NO_STUDY = "holds no study; start one with `snowshed study run`"
+NO_STUDY = "holds no study; start one with `Study.run`"
 
 
 @dataclass(frozen=True)

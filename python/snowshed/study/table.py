@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Optional
 
+from snowshed.base.arguments import checked
 from snowshed.base.messages import shortened
 from snowshed.base.paths import PathLike
 from snowshed.io.json_file import is_number
@@ -27,6 +28,7 @@ FAILED = "failed"  # value of the column `ended` for the event at which a run fa
 RUN_TIMING = tuple(TIMING)
 
 
+@checked
 def read_table(
     folder: PathLike, study: Optional[str] = None, *, timing: bool = False
 ) -> pd.DataFrame:

@@ -32,6 +32,13 @@ def test_questions_outside_the_data_have_an_objection(question, message):
     assert message in objection
 
 
+def test_many_events_outside_the_data_have_one_objection():
+    questions = np.column_stack([np.arange(1, 51), np.tile([2, 2, 40], (50, 1))])
+    assert DOMAIN.objections(questions) == [
+        "event 6 to 50 is outside the data, which reach from 1 to 5"
+    ]
+
+
 def test_every_exceeded_range_is_named():
     assert len(DOMAIN.objections(np.array([9, 9, 99, 89]))) == 4
 

@@ -216,8 +216,8 @@ def test_panels_outside_the_data_are_refused_unless_forced(file, question, messa
         ({"events": 0}, "events: 0 is outside the allowed range"),
         ({"events": 1.5}, "events: 1.5 is not a whole number"),
         ({"height": None}, "height: missing; needed are height, length, tilt, events"),
-        ({"height": "tall"}, "height: neither a number nor an array of numbers"),
-        ({"height": [[2, 3]]}, r"height: shape \(1, 2\); must be a number or a sequence"),
+        ({"height": "tall"}, "height: 'tall'; needed: a number"),
+        ({"height": [[2, 3]]}, r"height\[0\]: \[2, 3\]; needed: a number"),
         ({"height": []}, "no panels"),
         ({"height": [2, 3], "tilt": [40, 50, 60]}, "tilt: 3 values, but height has 2"),
         ({"height": [2, -1]}, "panel 1, height: -1 is not a positive length"),
@@ -281,7 +281,7 @@ def test_panels_outside_the_data_are_named_and_marked(file):
         (lambda t: t.set_axis([7, 7]), "index must be unique; it holds 7 twice"),
         (lambda t: t[["tilt", *t]], "column 'tilt' occurs twice"),
         (lambda t: t.assign(height=[2, np.nan]), "panel 1, height: nan is not a positive length"),
-        (lambda t: t.to_numpy(), "panels: ndarray is not a DataFrame; give arrays as height"),
+        (lambda t: t.to_numpy(), "panels: a value of type ndarray; needed: DataFrame"),
     ],
 )
 def test_tables_without_valid_panels_are_refused(file, change, message):

@@ -160,10 +160,10 @@ def test_without_laws_or_time_nothing_changes(tmp_path, finished):
 @pytest.mark.parametrize(
     ("values", "message"),
     [
-        ({"settling": "guess"}, "settling: 'guess' is unknown; allowed: vionnet-2012, essery-2013"),
-        ({"sintering": "guess"}, "sintering: 'guess' is unknown; allowed: van-herwijnen-2013"),
-        ({"strength_age": 0.0}, "strength age: 0.0 hours; must be positive"),
-        ({"strength_age": float("nan")}, "strength age: nan hours; must be positive"),
+        ({"settling": "guess"}, "settling: 'guess'; allowed: vionnet-2012, essery-2013"),
+        ({"sintering": "guess"}, "sintering: 'guess'; allowed: van-herwijnen-2013"),
+        ({"strength_age": 0.0}, "strength_age: 0.0 hours; must be positive"),
+        ({"strength_age": float("nan")}, "strength_age: nan hours; must be positive"),
     ],
 )
 def test_bad_settings_are_refused(values, message):

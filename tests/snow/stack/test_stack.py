@@ -3,7 +3,7 @@ import pandas as pd
 import pytest
 from helpers.piles import ball, cone, triangle
 
-from snowshed import InputError, measure_stack
+from snowshed import InputError, SnowshedNote, measure_stack
 from snowshed.snow import levelled_positions
 from snowshed.snow.stack.trimming import TRIMMINGS
 
@@ -185,7 +185,7 @@ def test_arrays_lists_and_tables_give_the_same_stack():
         ({"exclude": [0, 1]}, "exclude: values of type int64; only booleans"),
         ({"dimension": 4}, "dimension: 4; allowed: 2, 3"),
         ({"dx": 0.0}, "dx: 0; it must be above 0"),
-        ({"dx": "small"}, "dx: 'small'; a finite number"),
+        ({"dx": "small"}, "dx: 'small'; needed: a number"),
         ({"ground_tilt_deg": np.nan}, "ground_tilt_deg: nan; a finite number"),
         ({"trimming": "3D"}, "trimming: '3D' is unknown; allowed: outermost_first, equal_pace"),
     ],
@@ -207,3 +207,29 @@ def test_a_measured_stack_prints_on_one_line():
     measured = measure_stack(heap, np.ones(500), np.full(500, 210.0), dimension=3, dx=0.02)
     assert "\n" not in repr(measured)
     assert f"height {measured.height:.4g} m" in repr(measured)
+
+
+def test_positions_in_millimetres_are_told():
+    with pytest.warns(SnowshedNote, match=r"the particles span .* are the positions in mm"):
+        measure(1000.0 * triangle(1.0, 0.3))
+
+
+@pytest.mark.parametrize("density", [0.2, 2e5])
+def test_densities_in_other_units_are_told(density):
+    with pytest.warns(SnowshedNote, match=r"densities: half of them are .* are they in g/cm3"):
+        measure(triangle(1.0, 0.3), density=density)
+
+
+def test_usual_stacks_have_no_notes(recwarn):
+    measure(triangle(1.0, 0.3))
+    measure(cone(1.0, 0.3), dimension=3)
+    assert [str(note.message) for note in recwarn] == []
+
+
+def test_a_table_of_positions_is_read_by_name():
+    snow = triangle(1.0, 0.3)
+    table = pd.DataFrame(snow[:, ::-1], columns=["z", "y", "x"])
+    assert measure(table).length == measure(snow).length
+    assert measure(table.add_prefix("position_")).length == measure(snow).length
+    with pytest.raises(InputError, match="columns a, b, c; needed: the columns x, y and z"):
+        measure(table.set_axis(["a", "b", "c"], axis=1))

@@ -26,6 +26,7 @@ from snowshed.analysis.accuracy.recorded_stacks import (
     recorded_stacks,
     slab_thickness,
 )
+from snowshed.base.arguments import checked
 from snowshed.base.formatting import number
 from snowshed.running.scene_notes import MIN_CELLS_ACROSS
 from snowshed.scene.scene import ResolvedScene, Scene
@@ -93,6 +94,7 @@ class StackError:
         )
 
 
+@checked
 def stack_error(
     scene: Union[Scene, ResolvedScene],
     measurements: Optional[Iterable[MeasuredSolution]] = None,

@@ -10,6 +10,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.calibration.measurements import Measurement, to_table
+from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.snow.stack.quantities import QUANTITIES
 from snowshed.study.factors import SEED
@@ -46,6 +47,7 @@ class SimulatedStacks:
     pending: int = 0
 
 
+@checked
 def read_simulated_stacks(
     folder: PathLike, study: Optional[str] = None, measure: str = "stack"
 ) -> SimulatedStacks:
@@ -91,6 +93,7 @@ def simulated(frame: pd.DataFrame, measure: str = "stack") -> SimulatedStacks:
     )
 
 
+@checked
 def compare_stacks(stacks: SimulatedStacks, measurements: Sequence[Measurement]) -> pd.DataFrame:
     """Return simulated beside measured values.
 

@@ -9,6 +9,7 @@ from typing import Optional
 from snowshed._core import InputError
 from snowshed.analysis.calibration.measurements import Measurement
 from snowshed.analysis.calibration.parameter_grid import CORNERS, GRID
+from snowshed.base.arguments import checked
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import Scene
 from snowshed.study.definition import Study
@@ -16,6 +17,7 @@ from snowshed.study.definition import Study
 SEEDS = 2
 
 
+@checked
 def calibration_study(
     measurements: Sequence[Measurement], *, quick: bool = False, seeds: Optional[int] = None
 ) -> Study:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.formatting import number_in
 from snowshed.base.messages import quoted
 from snowshed.base.notes import issue_note
@@ -133,6 +134,7 @@ def measurements_template() -> str:
     return "\n".join([TEMPLATE_HEADER + ",".join(COLUMNS), *rows, ""])
 
 
+@checked
 def read_measurements(file: PathLike) -> list[Measurement]:
     r"""Read measured stacks from a CSV file; `measurements_template` describes its content.
 

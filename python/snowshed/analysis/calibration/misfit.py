@@ -9,6 +9,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.analysis.calibration.comparison import SET, SimulatedStacks
 from snowshed.analysis.sensitivity.fixed_parameter import rescaled
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
 
 if TYPE_CHECKING:
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 RANKING_QUANTITIES = ("height", "length")
 
 
+@checked
 def rank_sets(stacks: SimulatedStacks, comparison: pd.DataFrame) -> pd.DataFrame:
     """Score every parameter set, and rank the sets by the mean rescaled RMSE, as section 4.1 does.
 

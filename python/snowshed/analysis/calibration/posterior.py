@@ -28,6 +28,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.analysis.calibration.measurements import Measurement
 from snowshed.analysis.calibration.surrogate import EXTRA, Output, Surrogate
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats, Integers
 from snowshed.base.extras import require
 
@@ -172,6 +173,7 @@ def outputs_of(measurements: Sequence[Measurement]) -> list[Output]:
     )
 
 
+@checked
 def sample_posterior(
     surrogate: Surrogate,
     measurements: Sequence[Measurement],

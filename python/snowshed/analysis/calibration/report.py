@@ -19,6 +19,7 @@ from snowshed.analysis.calibration.measurements import Measurement
 from snowshed.analysis.calibration.misfit import RANKING_QUANTITIES, rank_sets, statistics
 from snowshed.analysis.calibration.posterior import STEPS, Posterior, outputs_of, sample_posterior
 from snowshed.analysis.calibration.surrogate import EXTRA, Surrogate
+from snowshed.base.arguments import checked
 from snowshed.base.extras import require
 from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
@@ -73,7 +74,7 @@ class Calibration:
         if self.stacks.pending:
             notes.append(
                 f"{self.stacks.pending} runs of the study are not computed yet: ranks and "
-                "ranges omit them (`snowshed study resume` computes them)"
+                "ranges omit them (`snowshed.study.resume` computes them)"
             )
         missing = len(self.stacks.sets) - len(self.ranked)
         if missing:
@@ -96,6 +97,7 @@ class Calibration:
         return notes
 
 
+@checked
 def calibrate(
     measurements: Sequence[Measurement],
     stacks: SimulatedStacks,
@@ -161,6 +163,7 @@ def check_libraries() -> None:
     require("corner", EXTRA, "calibration")
 
 
+@checked
 def evaluate_calibration(
     measurements: Sequence[Measurement],
     stored: PathLike,

@@ -27,6 +27,7 @@ from snowshed.analysis.clearance.panel_snow import PanelSnow, mean_months
 from snowshed.analysis.clearance.seasons import SeasonCase, SeasonOutcome, cases_of
 from snowshed.analysis.clearance.statistics import CauseShare, Level, RequiredHeights
 from snowshed.analysis.clearance.winters import Winter
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
 from snowshed.base.formatting import plural
 from snowshed.base.json_values import JsonValue
@@ -65,6 +66,7 @@ class HeightParts:
     margin: float
 
 
+@checked
 @dataclass(frozen=True)
 class ClearanceResult:
     """The height of the lower edge that a panel needs.
@@ -284,6 +286,7 @@ def required_height(outcomes: Sequence[SeasonOutcome]) -> float:
     return below.height + part * (above.height - below.height)
 
 
+@checked
 def required_clearance(
     design: PanelDesign,
     winters: Sequence[Winter],

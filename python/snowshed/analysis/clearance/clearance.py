@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Optional
 from snowshed.analysis.clearance.answer import ClearanceResult, required_clearance
 from snowshed.analysis.clearance.panel_design import PanelDesign, SnowRanges
 from snowshed.analysis.clearance.winters import counted_winters
+from snowshed.base.arguments import checked
 from snowshed.base.json_values import JsonValue
 from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     import pandas as pd  # noqa: F401 - of `Season`
 
 
+@checked
 def clearance(
     weather: Season,
     folder: PathLike,

@@ -12,6 +12,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.analysis.clearance.common_effects import MIN_FREE
 from snowshed.analysis.clearance.grid_error import MIN_CELLS
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
 from snowshed.scene.components import Ground, Panel, Slab
 from snowshed.scene.scene import ResolvedScene, Scene
@@ -92,6 +93,7 @@ def default_ranges() -> dict[str, Span]:
     return {name: span for name, span in ranges.items() if span is not None}
 
 
+@checked
 @dataclass(frozen=True)
 class PanelDesign:
     """A panel whose lower edge needs a height.
@@ -122,6 +124,7 @@ class PanelDesign:
         return float(np.clip(self.slope_length / CELLS, MIN_CELL, MAX_CELL))
 
 
+@checked
 @dataclass(frozen=True)
 class SnowRanges:
     """Ranges of the uncertain snow parameters.

@@ -17,6 +17,7 @@ import numpy as np
 
 from snowshed.analysis.clearance.common_effects import NO_EFFECTS, common_effects
 from snowshed.analysis.clearance.winter_heights import WinterHeights, is_snowy
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
 
 PROBABILITIES = (0.5, 0.9, 0.98)
@@ -83,6 +84,7 @@ class CauseShare:
     high: float
 
 
+@checked
 class RequiredHeights:
     """The required height of a panel as a distribution that is itself uncertain.
 

@@ -6,12 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.notes import issue_note
 from snowshed.season.weather.quality import COVERAGE
 from snowshed.season.weather.row import Weather
 from snowshed.season.weather.season_record import SeasonRecord, WinterList, whole_percent
 
 
+@checked
 @dataclass(frozen=True)
 class Winter:
     """The weather of one winter.
@@ -33,6 +35,7 @@ class Winter:
         return sum(day.snowfall for day in self.days)
 
 
+@checked
 def split_winters(season: Sequence[Weather], coverage: float = COVERAGE) -> list[Winter]:
     """Return the winters with observed snow in many years of weather.
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.grains.variants import BASE
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
 
 if TYPE_CHECKING:
@@ -68,6 +69,7 @@ class LogMean:
         return float(np.exp(self.mean - half)), float(np.exp(self.mean + half))
 
 
+@checked
 def compare_variants(table: pd.DataFrame) -> pd.DataFrame:
     """Return the stresses of each variant relative to the base.
 

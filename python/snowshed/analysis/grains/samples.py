@@ -12,6 +12,7 @@ import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.analysis.tomography.downscaling import downscaled
 from snowshed.analysis.tomography.ice_image import IceImage
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import AnyIntegers, Labels, positive
 from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
@@ -24,6 +25,7 @@ MIN_VOXELS = 6
 MAX_LABEL = 2**31 - 1
 
 
+@checked
 @dataclass(frozen=True)
 class LabelledSample:
     """Labels of grains with the size of their voxels, as a loading test takes them.
@@ -72,7 +74,9 @@ class LabelledSample:
         sample = find_sample(path, LABELS)
         size = sample.voxel_size if voxel_size is None else voxel_size
         if size is None:
-            raise InputError(f"{sample.file}: how large is a voxel? Give its edge in m (--voxel)")
+            raise InputError(
+                f"{sample.file}: the edge of a voxel is not known; give it in m (`voxel_size=`)"
+            )
         positive("voxel size", size)
         opened = open_npy(sample.file)
         if opened.dtype.kind not in "iu":

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from snowshed.analysis.grains.ratios import compare_variants
 from snowshed.analysis.grains.variants import Comparison
+from snowshed.base.arguments import checked
 from snowshed.io.csv_table import write_csv
 
 if TYPE_CHECKING:
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
 TESTS, TABLE, FIGURE = "tests.csv", "sensitivity.csv", "sensitivity.png"
 
 
+@checked
 def evaluate_variants(comparison: Comparison, runs: Path, folder: Path) -> pd.DataFrame:
     """Evaluate the computed variants; write the table and the figure.
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from snowshed._core import InputError
 from snowshed.analysis.grains.samples import LabelledSample
+from snowshed.base.arguments import checked
 from snowshed.methods.grains.settings import GrainsSettings
 from snowshed.scene.builders.grains import grains_scene
 from snowshed.scene.loading import LoadingStage
@@ -131,6 +132,7 @@ SPEEDS = (0.5, 2.0)
 SMALLER_EDGE = 0.5  # edges of the smaller volume, relative to the sample's
 
 
+@checked
 def sensitivity_variants(
     samples: Sequence[LabelledSample],
     folder: Path,

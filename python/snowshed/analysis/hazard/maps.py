@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Optional
 import numpy as np
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
 from snowshed.base.paths import PathLike
 from snowshed.io.raster.raster import Raster
@@ -98,6 +99,7 @@ class HazardMaps:
         return Raster(values, place.east, place.north, place.cell, crs=place.crs)
 
 
+@checked
 def hazard_maps(
     folder: PathLike,
     study: Optional[str] = None,

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 
 
 @dataclass(frozen=True)
@@ -57,6 +58,7 @@ def edge_speed(slide: float, tilt: float, friction: float, gravity: float = 9.81
     return math.sqrt(max(square, 0.0))
 
 
+@checked
 def landing(
     slide: float,
     tilt: float,

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
 
 #: Shares of the snow in tables.
 SHARES = (0.5, 0.1, 0.01)
 
 
+@checked
 def distance_passed_by(share: float, distances: Floats, masses: Floats) -> float:
     """Return the distance beyond which a share of the snow rests, m.
 

@@ -15,6 +15,7 @@ from snowshed.analysis.loads.reach import SHARES, distance_passed_by
 from snowshed.analysis.loads.slope import SnowSlope
 from snowshed.analysis.loads.standards import Rule, RuleInputs, rules
 from snowshed.analysis.loads.structures import WINDOWS, kilo, structure_loads
+from snowshed.base.arguments import checked
 from snowshed.base.formatting import percent
 from snowshed.base.messages import as_options
 from snowshed.io.atomic import write_text
@@ -37,6 +38,7 @@ MAX_UNBALANCED = 0.02
 SAME_SNOW = 0.1
 
 
+@checked
 def write_loads(
     results: Sequence[Results], folder: Path, inputs: Optional[RuleInputs] = None
 ) -> Path:

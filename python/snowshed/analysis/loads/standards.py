@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 
 #: Width over which sliding snow is spread on a lower roof, m (15 ft).
 SPREAD = 4.572
@@ -55,6 +56,7 @@ class Rule:
     source: str
 
 
+@checked
 @dataclass(frozen=True)
 class RuleInputs:
     """Inputs of the rules that no scene contains. None: not given.
@@ -93,6 +95,7 @@ class RuleInputs:
                 )
 
 
+@checked
 def rules(slope_length: float, tilt: float, inputs: RuleInputs) -> list[Rule]:
     """Return the rules for a roof or panel; those without their inputs have no value.
 

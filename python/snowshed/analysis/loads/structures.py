@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from snowshed.base.arguments import checked
+
 if TYPE_CHECKING:
     import pandas as pd
 
@@ -27,6 +29,7 @@ def kilo(value: float) -> str:
     return f"{value / 1000:.3g}" if abs(value) >= 0.5 else "0"
 
 
+@checked
 def structure_loads(loads: pd.DataFrame) -> pd.DataFrame:
     """Return the largest loads on each obstacle over all events.
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from snowshed.analysis.regression.geometry import check_between
 from snowshed.analysis.regression.rows import StackRows, read_rows
+from snowshed.base.arguments import checked
 
 FOLDER = Path(__file__).with_name("data")
 #: Models of the data set's rows, the default of ``snowshed predict``.
@@ -17,6 +18,7 @@ MODEL = FOLDER / "geometry-model.npz"
 MODEL_BETWEEN = "carry"
 
 
+@checked
 def geometry_table(between: str = MODEL_BETWEEN) -> Path:
     """Return the file of the computed rows, a CSV table as ``snowshed study export`` writes it.
 
@@ -34,6 +36,7 @@ def geometry_table(between: str = MODEL_BETWEEN) -> Path:
     return FOLDER / f"geometry-{between}.csv"
 
 
+@checked
 def geometry_rows(between: str = MODEL_BETWEEN, measure: str = "stack") -> StackRows:
     """Return the computed rows.
 

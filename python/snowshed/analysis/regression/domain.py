@@ -54,7 +54,7 @@ class DataDomain:
         ['panel height 3 m is outside the data, which reach from 1 to 2 m']
         """
         questions = np.atleast_2d(questions)
-        objections = [text for question in questions for text in self._range_objections(question)]
+        objections = self._range_objections(questions)
         if not objections:
             # Most events have the same panels, which are checked once.
             cases: dict[tuple[bytes, bytes], tuple[Floats, Floats]] = {}
@@ -66,14 +66,18 @@ class DataDomain:
             ]
         return list(dict.fromkeys(objections))
 
-    def _range_objections(self, question: Floats) -> list[str]:
+    def _range_objections(self, questions: Floats) -> list[str]:
+        """Return an objection to each input that is outside its range in some question."""
         objections = []
         low, high = self.inputs.min(axis=0), self.inputs.max(axis=0)
-        for name, value, least, most in zip(self.names, question, low, high):
+        for name, values, least, most in zip(self.names, questions.T, low, high):
             margin = TOLERANCE * max(1.0, abs(most))
-            if not least - margin <= value <= most + margin:
+            outside = np.unique(values[~((least - margin <= values) & (values <= most + margin))])
+            if len(outside):
                 parameter = label(name)
-                given, end = (parameter.quantity(number, DIGITS) for number in (value, most))
+                given, end = (parameter.quantity(n, DIGITS) for n in (outside[-1], most))
+                if len(outside) > 1:
+                    given = f"{parameter.value(outside[0], DIGITS)} to {given}"
                 reach = f"reach from {parameter.value(least, DIGITS)} to {end}"
                 reach = f"have {end} only" if least == most else reach
                 objections.append(f"{parameter.name} {given} is outside the data, which {reach}")

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from snowshed._core import InputError
 from snowshed.analysis.regression.rows import StackRows
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Integers
 
 Split = tuple[Integers, Integers]
@@ -79,6 +80,7 @@ class ShuffledGroupKFold:
             yield np.flatnonzero(~tested), np.flatnonzero(tested)
 
 
+@checked
 @dataclass(frozen=True)
 class CrossValidation:
     """Rounds of outer folds, each with inner folds.

@@ -7,6 +7,7 @@ from math import ceil, inf
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.scene.accuracy_settings import ACCURACY
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import Scene
@@ -40,6 +41,7 @@ SHARES: Mapping[float, int] = {1.0: 1, 2.0: 3, 4.0: 6, inf: 16}
 DESCRIPTION = "The geometry data set: 122 panels, 5 events each, 610 rows (Tables 5.1.1 and 5.2.1)."
 
 
+@checked
 def geometry_study(
     between: str = "carry",
     *,

@@ -18,6 +18,7 @@ from snowshed.analysis.regression.ensemble import Ensemble
 from snowshed.analysis.regression.rows import INPUTS, TARGETS, is_input
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.spread import INTERVAL_SHARE, SPREAD_SHARE, Spread
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
 from snowshed.base.damage import DAMAGED
 from snowshed.base.paths import PathLike
@@ -101,6 +102,7 @@ class StackModel:
         return [name for name in STORED_KINDS if any(name == kind for _, kind in self.members)]
 
 
+@checked
 def save_model(model: StackModel, file: PathLike) -> None:
     """Write a model; the file appears whole or not at all."""
     arrays: dict[str, Any] = {"inputs": model.inputs}
@@ -132,6 +134,7 @@ def save_model(model: StackModel, file: PathLike) -> None:
         np.savez_compressed(stream, facts=np.array(json.dumps(facts)), **arrays)
 
 
+@checked
 def load_model(file: PathLike) -> StackModel:
     """Read a model. Nothing in the file is executed.
 

@@ -21,7 +21,7 @@ from snowshed.base.pool.pool import Pool, TaskEnd
 from snowshed.base.progress import Progress, Reporter
 from snowshed.io.atomic import remove_leftovers
 from snowshed.io.folders import claim_folder
-from snowshed.study.locks import holding, is_held
+from snowshed.io.locks import holding, is_held
 
 IDENTITY = "regression.json"
 FORMAT = 2  # of stored folds; those of another format are computed again

@@ -18,6 +18,7 @@ from snowshed.analysis.regression.nested import Results, cross_validate
 from snowshed.analysis.regression.rows import TARGETS, StackRows
 from snowshed.analysis.regression.spread import predict_unseen_panels, stack_spread
 from snowshed.analysis.regression.threads import one_thread
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
 from snowshed.base.paths import PathLike
 from snowshed.base.pool.pool import available_cores
@@ -52,6 +53,7 @@ class TargetReport:
     expression: str
 
 
+@checked
 def regress(
     rows: StackRows,
     folder: PathLike,

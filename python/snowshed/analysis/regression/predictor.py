@@ -15,6 +15,7 @@ from snowshed.analysis.regression.model_file import StackModel, load_model
 from snowshed.analysis.regression.questions import Numbers, Questions
 from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.spread import INTERVAL_SHARE, SPREAD_SHARE
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
 from snowshed.base.paths import PathLike
 from snowshed.scene.labels import settings_text
@@ -29,6 +30,7 @@ class OutsideDataError(InputError):
     """A question lies outside the data of the model that should answer it."""
 
 
+@checked
 @dataclass(frozen=True)
 class Prediction:
     """Answers for the events of one or more panels.
@@ -96,6 +98,7 @@ class Prediction:
         return wide.reindex(rows["panel"].unique()).to_numpy(float)
 
 
+@checked
 def predict(
     panels: Optional[pd.DataFrame] = None,
     *,

@@ -10,7 +10,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.regression.rows import INPUTS
-from snowshed.base.arrays import Booleans, Floats, Integers
+from snowshed.base.arrays import Booleans, Floats, Integers, number_array
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -124,10 +124,7 @@ def _panel_rows(columns: Mapping[str, Optional[Numbers]], names: Sequence[str]) 
         value = columns.get(name)
         if value is None:
             raise InputError(f"{name}: missing; needed are {', '.join(names)}")
-        try:
-            arrays[name] = np.asarray(value, dtype=float)
-        except (TypeError, ValueError):
-            raise InputError(f"{name}: neither a number nor an array of numbers") from None
+        arrays[name] = number_array(name, value)
         if arrays[name].ndim > 1:
             raise InputError(f"{name}: shape {arrays[name].shape}; must be a number or a sequence")
     lengths = {name: array.size for name, array in arrays.items() if array.ndim}

@@ -11,7 +11,8 @@ from typing import Optional
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.base.arrays import Floats, Integers
+from snowshed.base.arguments import checked
+from snowshed.base.arrays import Floats, Integers, number_array
 from snowshed.base.paths import PathLike
 from snowshed.snow.stack.quantities import Measure, measure_named
 from snowshed.study.factors import SEED
@@ -135,6 +136,7 @@ def is_input(name: object) -> bool:
     return isinstance(name, str) and PATH.fullmatch(name) is not None and name != SEED
 
 
+@checked
 def read_rows(
     file: PathLike,
     measure: str = "stack",
@@ -171,6 +173,7 @@ def read_rows(
         raise InputError(f"{file}: {error}") from None
 
 
+@checked
 def stack_rows(inputs: Floats, height: Floats, length: Floats) -> StackRows:
     """Return rows from arrays; stacks with the same inputs make one row.
 
@@ -190,8 +193,8 @@ def stack_rows(inputs: Floats, height: Floats, length: Floats) -> StackRows:
     """
     import pandas as pd
 
-    inputs = np.asarray(inputs, float)
-    height, length = np.asarray(height, float), np.asarray(length, float)
+    inputs = number_array("inputs", inputs)
+    height, length = number_array("height", height), number_array("length", length)
     alike = pd.DataFrame(inputs).groupby(list(range(inputs.shape[1])), sort=False)
     row, repetition = alike.ngroup().to_numpy(), alike.cumcount().to_numpy()
     first = repetition == 0

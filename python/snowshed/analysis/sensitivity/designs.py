@@ -9,6 +9,7 @@ from typing import Optional
 from snowshed._core import InputError
 from snowshed.analysis.sensitivity.parameter_values import GROUPS, PAIRS, VALUES
 from snowshed.analysis.sensitivity.sampling import SAMPLERS
+from snowshed.base.arguments import checked
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import Scene
 from snowshed.study.definition import Study
@@ -62,6 +63,7 @@ FULL_SCENE: Mapping[str, object] = {"dimension": 3, "events.count": 3, "numerics
 QUICK_SCENE: Mapping[str, object] = {"dimension": 2, "events.count": 2, "numerics.dx": 0.03}
 
 
+@checked
 def sensitivity_study(
     method: str = "s",
     *,

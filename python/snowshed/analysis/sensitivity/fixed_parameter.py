@@ -11,6 +11,7 @@ from snowshed._core import InputError
 from snowshed.analysis.sensitivity.noise import noise_of
 from snowshed.analysis.sensitivity.parameter_values import GROUPS
 from snowshed.analysis.sensitivity.stored import TARGETS, StudyRuns
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
 
 if TYPE_CHECKING:
@@ -40,6 +41,7 @@ def groups_of(stored: StudyRuns) -> dict[str, list[str]]:
     return {name: paths for name, paths in groups.items() if paths}
 
 
+@checked
 def fixation_table(stored: StudyRuns) -> pd.DataFrame:
     """Return mean and deviation at each value of each parameter, over all values of the others.
 

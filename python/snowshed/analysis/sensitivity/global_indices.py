@@ -16,6 +16,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.analysis.sensitivity.sampling import EXTRA, LEVELS, problem
 from snowshed.analysis.sensitivity.stored import TARGETS, StudyRuns
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Booleans, Floats
 from snowshed.base.extras import require
 from snowshed.study.factors import SEED
@@ -30,6 +31,7 @@ MIN_BLOCKS = 2  # blocks
 SAME_STEP = 1e-3  # relative difference of equal steps: files hold rounded numbers
 
 
+@checked
 def sobol_indices(stored: StudyRuns) -> pd.DataFrame:
     """Return first-order and total Sobol indices per parameter and event.
 
@@ -70,6 +72,7 @@ def sobol_indices(stored: StudyRuns) -> pd.DataFrame:
     return _index_table(stored, design, analyze)
 
 
+@checked
 def morris_effects(stored: StudyRuns) -> pd.DataFrame:
     """Return Morris's elementary effects per parameter and event.
 
@@ -205,7 +208,7 @@ def _check_blocks(
     if len(points) % size or len(points) == 0:
         raise InputError(
             f"its {len(points)} points are not {design}: with {points.shape[1]} inputs, their "
-            f"number is a multiple of {size}; see `snowshed sensitivity --method`"
+            f"number is a multiple of {size}; see `method=`"
         )
     for start in range(0, len(points), size):
         if not is_block(np.diff(points[start : start + size], axis=0) != 0):

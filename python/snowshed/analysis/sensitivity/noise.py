@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from snowshed.analysis.sensitivity.stored import TARGETS, StudyRuns
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
+@checked
 def seeding_noise(stored: StudyRuns) -> pd.DataFrame:
     """Return the deviation between seedings, event by event.
 

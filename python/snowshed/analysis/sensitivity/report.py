@@ -12,6 +12,7 @@ from snowshed.analysis.sensitivity.global_indices import morris_effects, sobol_i
 from snowshed.analysis.sensitivity.noise import seeding_noise
 from snowshed.analysis.sensitivity.single_parameter import local_index
 from snowshed.analysis.sensitivity.stored import StudyRuns, read_study_runs
+from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.io.csv_table import write_csv
 
@@ -28,6 +29,7 @@ EVALUATIONS: Mapping[str, Callable[[StudyRuns], pd.DataFrame]] = {
 NOISE = "noise"
 
 
+@checked
 def evaluate_sensitivity(
     stored: PathLike,
     folder: PathLike,

@@ -11,6 +11,7 @@ from snowshed._core import InputError
 from snowshed.analysis.sensitivity.noise import noise_of
 from snowshed.analysis.sensitivity.parameter_values import PAIRS
 from snowshed.analysis.sensitivity.stored import TARGETS, StudyRuns
+from snowshed.base.arguments import checked
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 STANDARD_ERRORS_95 = 1.96  # standard errors on either side: 95 %
 
 
+@checked
 def local_index(stored: StudyRuns) -> pd.DataFrame:
     """Return S = ((R_a - R_n)/R_n) / ((P_a - P_n)/P_n), equation 3.3.1, per parameter and event.
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Optional
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.study.factors import SEED
 from snowshed.study.stack_table import StackTable
@@ -58,6 +59,7 @@ class StudyRuns:
         return sorted(int(event) for event in self.rows["event"].unique())
 
 
+@checked
 def read_study_runs(
     folder: PathLike, study: Optional[str] = None, measure: str = "stack"
 ) -> StudyRuns:

@@ -7,11 +7,13 @@ from scipy import ndimage
 
 from snowshed._core import InputError
 from snowshed.analysis.tomography.ice_image import IceImage
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import AnyIntegers, SingleFloats
 
 MAX_FACTOR = 16
 
 
+@checked
 def downscaled(image: IceImage, factor: int) -> IceImage:
     """Return an image whose voxels are each `factor` times as long.
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from snowshed.analysis.tomography.segmentation import known_grains
 from snowshed.analysis.tomography.sphere_packing import sphere_snow
+from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.io.atomic import replacing
 from snowshed.methods.grains.sample_folder import LABELS
@@ -19,6 +20,7 @@ from snowshed.scene.scene import Scene
 EXAMPLE_SHAPE, EXAMPLE_VOXEL = (30, 30, 30), 1e-4  # m
 
 
+@checked
 def example_grains(folder: PathLike) -> Scene:
     """Write an example's sample to a folder, and return the scene of its compression.
 

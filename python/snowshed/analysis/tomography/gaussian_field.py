@@ -21,6 +21,7 @@ from snowshed.analysis.tomography.crofton import surface_density
 from snowshed.analysis.tomography.ice_image import ICE_DENSITY, IceImage
 from snowshed.analysis.tomography.parts import largest_part
 from snowshed.analysis.tomography.request import asked_fraction, check_shape, one_of
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Booleans, SingleFloats, positive
 
 SHELL_WIDTH = 0.15  # standard deviation of the wave numbers over their mean
@@ -30,6 +31,7 @@ MAX_TRIES = 12  # fields of the search for the surface, and cuts of each field
 MAX_SURFACE_ERROR = 0.03  # of the best try
 
 
+@checked
 def gaussian_snow(
     shape: tuple[int, int, int],
     voxel_size: float,

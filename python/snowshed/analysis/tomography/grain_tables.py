@@ -9,6 +9,7 @@ import pandas as pd
 
 from snowshed.analysis.tomography.crofton import LAYERS_AT_ONCE
 from snowshed.analysis.tomography.segmentation import Segmentation
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Booleans, Floats, Integers, Labels
 
 
@@ -39,6 +40,7 @@ class GrainStatistics:
     bonded_surface: float
 
 
+@checked
 def grain_table(segmentation: Segmentation) -> pd.DataFrame:
     """Return a row for each grain.
 
@@ -77,6 +79,7 @@ def grain_table(segmentation: Segmentation) -> pd.DataFrame:
     )
 
 
+@checked
 def contact_table(segmentation: Segmentation) -> pd.DataFrame:
     """Return a row for each contact.
 

@@ -8,11 +8,13 @@ from typing import Optional
 import numpy as np
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Booleans, Labels, positive
 
 ICE_DENSITY = 917.0  # kg/m3
 
 
+@checked
 @dataclass(frozen=True)
 class IceImage:
     """Ice and air on cubic voxels.

@@ -10,6 +10,7 @@ import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.analysis.tomography.crofton import LAYERS_AT_ONCE, surface_density
 from snowshed.analysis.tomography.ice_image import ICE_DENSITY, IceImage, check_phases
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Booleans, Floats
 
 MIN_GRAIN, MAX_GRAIN = _core.min_grain_diameter, _core.max_grain_diameter  # m
@@ -66,6 +67,7 @@ class Microstructure:
     pore_chord_z_m: float
 
 
+@checked
 def measure_microstructure(image: IceImage) -> Microstructure:
     """Return the numbers of an image.
 

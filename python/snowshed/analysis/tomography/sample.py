@@ -35,6 +35,7 @@ from snowshed.analysis.tomography.ice_image import IceImage
 from snowshed.analysis.tomography.microstructure import Microstructure, measure_microstructure
 from snowshed.analysis.tomography.segmentation import Segmentation
 from snowshed.analysis.tomography.surface_mesh import write_surface
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import AnyIntegers
 from snowshed.base.paths import PathLike
 from snowshed.io.atomic import replacing, write_text
@@ -69,6 +70,7 @@ def check_new(folder: PathLike) -> None:
     check_empty(folder, "; choose a new folder")
 
 
+@checked
 def write_ice(folder: PathLike, image: IceImage, facts: Mapping[str, Fact]) -> SampleNumbers:
     """Write an image of ice into a folder, and return its numbers.
 
@@ -97,6 +99,7 @@ def write_ice(folder: PathLike, image: IceImage, facts: Mapping[str, Fact]) -> S
     return numbers
 
 
+@checked
 def write_grains(
     folder: PathLike,
     segmentation: Segmentation,

@@ -14,12 +14,14 @@ from snowshed.analysis.tomography.curvature import curvature_basins
 from snowshed.analysis.tomography.ice_image import IceImage, check_phases
 from snowshed.analysis.tomography.region_merging import merge_contiguous, merge_shallow
 from snowshed.analysis.tomography.watershed import Basins, distance_basins, voxel_counts
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Labels, finite, positive
 from snowshed.scene.loading import Sample
 
 SegmentationMethod = Literal["watershed", "curvature"]
 
 
+@checked
 @dataclass(frozen=True)
 class SegmentationSettings:
     """Settings of the segmentation into grains.
@@ -103,6 +105,7 @@ class Segmentation:
         return Sample.from_labels(self.labels, voxel_size=self.image.voxel_size)
 
 
+@checked
 def segment(
     image: IceImage,
     settings: Optional[SegmentationSettings] = None,
@@ -159,6 +162,7 @@ def segment(
     return Segmentation(image, chosen, labels, touching)
 
 
+@checked
 def known_grains(image: IceImage) -> Segmentation:
     """Return the grains of an image that knows them, such as a sphere pack.
 

@@ -16,6 +16,7 @@ from snowshed.analysis.tomography.threshold import (
     cropped_shape,
     read_ice,
 )
+from snowshed.base.arguments import checked
 from snowshed.base.formatting import duration, number
 from snowshed.base.notes import record_notes
 from snowshed.base.paths import PathLike
@@ -50,6 +51,7 @@ def segmentation_plan(file: VoxelFile, settings: ImageSettings) -> tuple[int, fl
     return needed, SECONDS_PER_VOXEL * coarse
 
 
+@checked
 def segment_image(
     file: VoxelFile,
     folder: PathLike,

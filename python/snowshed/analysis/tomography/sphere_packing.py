@@ -14,6 +14,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.analysis.tomography.ice_image import IceImage
 from snowshed.analysis.tomography.request import asked_fraction, check_shape
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Booleans, Floats, Labels, SingleFloats, finite, positive
 
 #: Spheres in a row that do not fit, after which the pack is full.
@@ -22,6 +23,7 @@ MAX_SPREAD = 0.5
 MAX_SPHERES = 1_000_000
 
 
+@checked
 def sphere_snow(
     shape: tuple[int, int, int],
     voxel_size: float,

@@ -14,6 +14,7 @@ from snowshed.analysis.tomography.automatic_threshold import automatic_threshold
 from snowshed.analysis.tomography.downscaling import downscaled
 from snowshed.analysis.tomography.ice_image import IceImage, check_phases
 from snowshed.analysis.tomography.parts import largest_part
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import finite, positive
 from snowshed.base.notes import issue_note
 from snowshed.io.voxels.voxel_file import VoxelFile
@@ -23,6 +24,7 @@ MAX_SIZE_DEVIATION = 0.01
 Crop = tuple[tuple[int, int], tuple[int, int], tuple[int, int]]
 
 
+@checked
 @dataclass(frozen=True)
 class ImageSettings:
     """Settings that separate ice from air in an image.
@@ -77,6 +79,7 @@ class ReadImage:
     lost: float
 
 
+@checked
 def read_ice(file: VoxelFile, settings: Optional[ImageSettings] = None) -> ReadImage:
     """Return the ice of an image.
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any, Optional
+from typing import Optional
 
 import click
 
@@ -18,7 +18,6 @@ from snowshed.cli.run_scene import run_scene
 from snowshed.io.folders import check_empty
 from snowshed.scene.lua.builder import LuaRun
 from snowshed.scene.lua.loading import load_lua
-from snowshed.scene.resolved import ResolvedScene
 
 
 @click.command()
@@ -50,7 +49,7 @@ def lua(
         raise click.UsageError("give -o DIR to run the scene, or --to-json FILE to write it")
     runs = _load(init, update, quiet=quiet)
     if threads is not None:
-        runs = [replace(run, scene=_with_threads(run.scene, threads)) for run in runs]
+        runs = [replace(run, scene=run.scene.with_threads(threads)) for run in runs]
     if file is not None:
         _save_all(runs, file)
     if dry_run:
@@ -67,12 +66,6 @@ def _load(init: Path, update: Optional[Path], *, quiet: bool) -> list[LuaRun]:
         say(line, err=True)
 
     return load_lua(init, update, echo=None if quiet else echo)
-
-
-def _with_threads(scene: ResolvedScene, threads: int) -> ResolvedScene:
-    data: dict[str, Any] = scene.copied_data()
-    data["numerics"]["threads"] = threads
-    return ResolvedScene.from_data(data, scene.base_dir)
 
 
 def _save_all(runs: Sequence[LuaRun], path: Path) -> None:

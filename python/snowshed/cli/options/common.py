@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import warnings
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -10,10 +11,24 @@ from typing import Any, Optional, TypeVar
 import click
 
 from snowshed.base.notes import SnowshedNote
+from snowshed.base.paths import with_home
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
-PATH = click.Path(path_type=Path)
+
+class HomePath(click.Path):
+    """A file or folder; ``~`` is the user's home also where the shell does not replace it."""
+
+    name = "path"
+
+    def convert(
+        self, value: Any, param: Optional[click.Parameter], ctx: Optional[click.Context]
+    ) -> Any:
+        """Return the path."""
+        return super().convert(with_home(os.fspath(value)), param, ctx)
+
+
+PATH = HomePath(path_type=Path)
 
 
 def _silence(context: click.Context, parameter: click.Parameter, quiet: bool) -> bool:

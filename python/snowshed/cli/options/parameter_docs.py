@@ -34,5 +34,5 @@ def parameter_docs(function: Callable[..., Any]) -> dict[str, str]:
     for name, text in docs.items():
         reference = REFERENCE.fullmatch(text)
         if reference:
-            docs[name] = parameter_docs(function.__globals__[reference[1]])[name]
+            docs[name] = parameter_docs(inspect.unwrap(function).__globals__[reference[1]])[name]
     return docs

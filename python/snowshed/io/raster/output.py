@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from snowshed.base.arguments import checked
 from snowshed.base.extras import require
 from snowshed.base.paths import PathLike
 from snowshed.io.atomic import replacing
@@ -14,6 +15,7 @@ from snowshed.io.coordinates.systems import system_of, write_prj
 from snowshed.io.raster.raster import Raster, write_ascii_grid
 
 
+@checked
 def write_raster(path: PathLike, raster: Raster) -> None:
     """Write a raster with its coordinate system, as GeoTIFF or ASCII grid by the name's suffix.
 

@@ -9,6 +9,7 @@ from typing import Optional
 import numpy as np
 
 from snowshed._core import InputError, read_ascii_grid
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
 from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
@@ -23,6 +24,7 @@ GEOTIFF = (".tif", ".tiff")
 TIFF_MARKS = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
 
 
+@checked
 @dataclass(frozen=True)
 class Raster:
     """Heights on a regular grid of a projected map.
@@ -98,6 +100,7 @@ class Raster:
         return heights
 
 
+@checked
 def read_raster(path: PathLike, band: Optional[int] = None) -> Raster:
     """Read heights in metres.
 

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
 from snowshed.io.atomic import replacing
 from snowshed.io.vdb.program import run_writer
@@ -45,6 +46,7 @@ class WrittenVdb:
         return self.mass / self.volume
 
 
+@checked
 def write_vdb(
     path: Union[str, os.PathLike[str]],
     positions: Floats,

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.notes import record_notes
 from snowshed.base.paths import PathLike
 from snowshed.io.voxels.array_files import open_npy, open_raw
@@ -24,6 +25,7 @@ READERS = {
 RAW = ".raw"
 
 
+@checked
 def open_voxels(
     path: PathLike, shape: Optional[tuple[int, int, int]] = None, kind: Optional[str] = None
 ) -> VoxelFile:

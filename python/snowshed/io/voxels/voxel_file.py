@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.formatting import number
 from snowshed.base.limits import (
     MAX_UNPACKED_RATIO,
@@ -26,6 +27,7 @@ MAX_AXIS_LENGTH = 1 << 16
 KINDS = "buif"
 
 
+@checked
 @dataclass(frozen=True)
 class VoxelFile:
     """An image of one number per voxel.

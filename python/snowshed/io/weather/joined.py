@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, NamedTuple, Optional
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.io.weather.amounts import usual_step
 from snowshed.io.weather.columns import HOURS, WORDS
 from snowshed.io.weather.observation import RANGES, Observation, Station, replace_values
@@ -38,6 +39,7 @@ class _Value(NamedTuple):
     quantity: str
 
 
+@checked
 def read_stations(paths: Sequence[Path], temperature: Optional[Path] = None) -> Station:
     """Return the observations of one station from several files.
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import NamedTuple, Optional
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.limits import KB, MAX_WEATHER_LINE_BYTES, MAX_WEATHER_LINES
 from snowshed.io.input_file import read_input
 from snowshed.io.packed import unpacked
@@ -49,6 +50,7 @@ FORMATS: Mapping[str, Format] = {
 }
 
 
+@checked
 def read_station(path: Path) -> Optional[Station]:
     """Return the observations of a weather file; None if it matches none of `FORMATS`.
 

@@ -11,6 +11,7 @@ import numpy as np
 
 import snowshed._core as _core
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
 from snowshed.base.core_simulation import AnySimulation, core_of
 from snowshed.base.missing_result import MissingResultError
@@ -57,6 +58,7 @@ PEAK = "peak_"
 COUNTS = ("stage", "bonds", "broken_in_tension", "broken_in_shear", "contacts")
 
 
+@checked
 @dataclass(frozen=True)
 class LoadingCurve:
     """Measurements of a loading test, row by row.

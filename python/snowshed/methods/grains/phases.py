@@ -14,6 +14,7 @@ from typing import Optional
 
 import numpy as np
 
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
 from snowshed.methods.grains.curve import (
     LoadingCurve,
@@ -72,6 +73,7 @@ class Phases:
     unknown: str = ""
 
 
+@checked
 def find_phases(curve: LoadingCurve, kind: str = "compress") -> Phases:
     """Return the phases of a stage.
 
@@ -114,6 +116,7 @@ def find_phases(curve: LoadingCurve, kind: str = "compress") -> Phases:
     return Phases(limit, modulus, linearity, onset, rate, known, float(strain[first]))
 
 
+@checked
 def mean_stress(strain: Floats, stress: Floats, low: float, high: float) -> Optional[float]:
     """Return the mean of the stress over a range of strain; None if the curve ends before `high`.
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar, Literal, Optional
 
+from snowshed.base.arguments import checked
 from snowshed.base.record import Alias, default
 from snowshed.methods.settings import MethodSettings
 
@@ -17,6 +18,7 @@ Fields = Literal["one", "events"]
 Basis = Literal["quadratic", "cubic"]
 
 
+@checked
 @dataclass
 class MpmSettings(MethodSettings):
     """Grid, transfer, time step and sleep of the material point method.

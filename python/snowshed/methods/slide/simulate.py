@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Optional, Union
 
+from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
 from snowshed.io.raster.raster import Raster
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     import xarray
 
 
+@checked
 def slide(
     terrain: Union[PathLike, Raster, xarray.DataArray],
     release: object,

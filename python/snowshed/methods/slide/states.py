@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Optional
 import numpy as np
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Integers, Numbers, finite, whole_number
 from snowshed.base.core_simulation import core_of
 from snowshed.results.particle_dataset import particle_dataset
@@ -53,6 +54,7 @@ class SlideState:
         return particle_dataset(self.quantities, 1, self.time)
 
 
+@checked
 def slide_states(
     scene: SceneLike,
     times: Optional[Sequence[float]] = None,

@@ -17,12 +17,13 @@ import numpy as np
 
 import snowshed._core as _core
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Booleans, Floats
 from snowshed.base.json_values import JsonObject
 from snowshed.base.messages import shortened
 from snowshed.running.ageing.columns import SnowColumns
 from snowshed.scene.resolved import snows_of
-from snowshed.snow.relations.relation import choose
+from snowshed.snow.relations.relation import check_choice
 from snowshed.snow.relations.settling import SETTLING_LAWS, settled_densities
 from snowshed.snow.relations.sintering import SINTERING_LAWS
 
@@ -37,6 +38,7 @@ class Interval(NamedTuple):
     temperature: float
 
 
+@checked
 @dataclass(frozen=True)
 class Ageing:
     """The ageing of a stack before each event.
@@ -70,12 +72,10 @@ class Ageing:
     strength_age: float = 24.0
 
     def __post_init__(self) -> None:
-        if self.settling is not None:
-            choose(self.settling, SETTLING_LAWS, "settling")
-        if self.sintering is not None:
-            choose(self.sintering, SINTERING_LAWS, "sintering")
+        check_choice("settling", self.settling, SETTLING_LAWS)
+        check_choice("sintering", self.sintering, SINTERING_LAWS)
         if not 0.0 < self.strength_age < np.inf:
-            raise InputError(f"strength age: {self.strength_age} hours; must be positive")
+            raise InputError(f"strength_age: {self.strength_age} hours; must be positive")
 
     @classmethod
     def from_data(cls, data: object, where: str) -> Ageing:

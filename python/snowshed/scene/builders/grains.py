@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.methods.grains.sample_folder import LABELS, find_sample
 from snowshed.methods.grains.settings import GrainsSettings
@@ -18,6 +19,7 @@ MAX_TIME = 1e4  # s; the stages end before
 NPY = ".npy"
 
 
+@checked
 def grains_scene(
     labels: PathLike,
     voxel_size: Optional[float] = None,
@@ -71,7 +73,7 @@ def grains_scene(
     file = sample.file
     size = voxel_size if voxel_size is not None else sample.voxel_size
     if size is None:
-        raise InputError(f"{file}: the edge of a voxel is not known; give it (--voxel) in m")
+        raise InputError(f"{file}: the edge of a voxel is not known; give it in m (`voxel_size=`)")
     if file.suffix.lower() != NPY:
         raise InputError(
             f"{file}: not an NPY file, which must hold integers, 0 for air (numpy.save)"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from snowshed.base.arguments import checked
 from snowshed.methods.registry import resolution_of
 from snowshed.scene.builders.panels import separate_part
 from snowshed.scene.builders.slope import check_positive, check_resolved, upright_box
@@ -11,6 +12,7 @@ from snowshed.scene.panel_edge import ground_tilt, panel_edge
 from snowshed.scene.scene import Scene
 
 
+@checked
 def lower_roof(
     scene: Scene, distance: float, width: float, height: float, thickness: float = 0.2
 ) -> Scene:
@@ -45,6 +47,7 @@ def lower_roof(
     return _add_box(scene, "lower roof", distance, width, (height - thickness, height))
 
 
+@checked
 def wall(scene: Scene, distance: float, height: float, thickness: float = 0.2) -> Scene:
     """Return the scene with a wall or a fence in front of its panel, named "wall".
 
@@ -75,6 +78,7 @@ def wall(scene: Scene, distance: float, height: float, thickness: float = 0.2) -
     return _add_box(scene, "wall", distance, thickness, (-thickness, height), on_ground=True)
 
 
+@checked
 def post(scene: Scene, distance: float, height: float, size: float = 0.2) -> Scene:
     """Return the scene with a square post in front of the middle of its panel, named "post".
 

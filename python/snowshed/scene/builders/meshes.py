@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.methods.mpm.settings import MpmSettings
 from snowshed.scene.builders.slope import check_positive
@@ -13,6 +14,7 @@ from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 
 
+@checked
 def mesh_structure(
     file: PathLike,
     *,

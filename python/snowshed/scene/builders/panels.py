@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Optional
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.methods.mpm.settings import MpmSettings
 from snowshed.scene.builders.slope import (
     BOARD_CELLS,
@@ -23,6 +24,7 @@ from snowshed.scene.shape import Shape
 SNOW_OF_PANEL = 2.0 / 3.0  # width of the slab over width of the panel, the default of a scene
 
 
+@checked
 def single_panel(
     *,
     height: float,
@@ -69,6 +71,7 @@ def single_panel(
     )
 
 
+@checked
 def panel_rows(
     count: int,
     pitch: float,
@@ -153,6 +156,7 @@ def row_board(number: int, slope: Slope, length: float, friction: float, dx: flo
     return _board(f"panel-{number}", slope, 0.0, length, friction, dx)
 
 
+@checked
 def panel_table(
     modules: int,
     gap: float,

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.notes import issue_note
 from snowshed.scene.builders.guards import note_overloaded_guards
 from snowshed.scene.builders.panels import separate_part, single_panel, snow_layer
@@ -22,6 +23,7 @@ from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
 
 
+@checked
 def shed_roof(
     *,
     eaves: float,
@@ -86,6 +88,7 @@ def shed_roof(
     return scene
 
 
+@checked
 def gable_roof(
     *,
     eaves: float,

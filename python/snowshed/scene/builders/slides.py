@@ -12,6 +12,7 @@ from uuid import uuid4
 import numpy as np
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.limits import MAX_TERRAIN_CELLS
 from snowshed.base.notes import issue_note, record_notes
 from snowshed.base.paths import PathLike
@@ -43,6 +44,7 @@ MAX_THICKNESS = 10.0  # m, largest plausible thickness of snow, as in the core
 LAYER_OPTIONS = {part: f"`layers['{part}']=`" for part in ("release", "entrainment", "resistance")}
 
 
+@checked
 def slide_scene(
     raster: Union[PathLike, Raster, xarray.DataArray],
     release: Optional[object] = None,
@@ -178,6 +180,7 @@ def _terrain(
     return dataclasses.replace(terrain, plain=False)
 
 
+@checked
 def example_slide(folder: PathLike) -> Scene:
     """Write an example's terrain to a folder, and return the scene of a slide on it.
 

@@ -16,6 +16,7 @@ from typing import Optional, Union
 import numpy as np
 
 from snowshed._core import InputError, Simulation
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats, Integers
 from snowshed.base.paths import PathLike
 from snowshed.io.atomic import replacing
@@ -35,6 +36,7 @@ MAX_SAMPLES = 20_000_000
 Span = tuple[float, float]
 
 
+@checked
 def on_terrain(
     scene: Scene,
     raster: Union[Raster, PathLike],

@@ -57,7 +57,7 @@ def read_terrain(
     if cells > max_cells:
         raise InputError(
             f"{path}: has {cells} cells; at most {max_cells} are allowed, because a slide takes "
-            "400 bytes or more for each; crop it, make cells larger, or allow more (--max-cells)"
+            "400 bytes or more for each; crop it, make cells larger, or allow more (`max_cells=`)"
         )
     if cells > UNCHECKED_RASTER_CELLS and cells > MAX_CELLS_PER_BYTE * size:
         raise InputError(

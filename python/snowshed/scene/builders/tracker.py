@@ -6,6 +6,7 @@ import math
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.methods.mpm.settings import MpmSettings
 from snowshed.scene.builders.panels import snow_layer
 from snowshed.scene.builders.slope import BOARD_CELLS, Slope, check_positive
@@ -13,6 +14,7 @@ from snowshed.scene.components import Events, Ground, Motion, Obstacle
 from snowshed.scene.scene import Scene
 
 
+@checked
 def tracker(
     *,
     axis_height: float,

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from snowshed.base.arguments import checked
 
+
+@checked
 @dataclass(frozen=True)
 class LuaLimits:
     """The resources that the scripts of one scene may use together.

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.io.input_file import read_input
 from snowshed.scene.lua.builder import Builder, LuaRun
@@ -17,6 +18,7 @@ from snowshed.scene.lua.vocabulary import SHAPES, WORDS, apply
 MAX_MODULES = 50  # scripts that others may require
 
 
+@checked
 def load_lua(
     init: PathLike,
     update: Optional[PathLike] = None,

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from datetime import date, datetime
 
 from snowshed._core import InputError
+from snowshed.base.formatting import plural
 from snowshed.base.limits import MAX_WEATHER_GAP_DAYS
 from snowshed.io.csv_table import TableRow
 from snowshed.season.weather.extremes import RECORD_DAY, RECORD_WINTER, RECORD_WORDS
@@ -22,6 +23,9 @@ YEARS = (1000, 9000)  # of measured or synthetic weather
 MAX_LONE_ROWS = 3
 #: Smallest gap between such rows and the others, days.
 MIN_LONE_GAP_DAYS = 3 * YEAR
+#: Temperature of a row, degrees C, at which no snow falls. It is well above that of all rain
+#: (`gauge.ALL_RAIN`), because the mean of a day is not the temperature of its snowfall.
+TOO_WARM_FOR_SNOW = 10.0
 NO_SNOW = "it never snows"
 HINT = "is it in cm, mm or inches?"
 
@@ -56,6 +60,25 @@ def check_rows(
     _check_amounts(rows, table_rows, name)
     if not snowless and not any(row.snowfall for row in rows):
         raise InputError(f"{name}: {NO_SNOW}; the snowfall of every row is 0")
+
+
+def warm_snow(rows: Sequence[Weather]) -> list[str]:
+    """Return a note if snow falls in air that is too warm for it.
+
+    Examples
+    --------
+    >>> warm_snow([Weather(2, datetime(2024, 12, 1), 0.1, None, 25.0)])[0][:62]
+    '1 snowfall in air of 10 °C and more, the warmest 25 °C on 2024'
+    """
+    warm = [row for row in rows if row.snowfall and row.temperature >= TOO_WARM_FOR_SNOW]
+    if not warm:
+        return []
+    warmest = max(warm, key=lambda row: row.temperature)
+    return [
+        f"{plural(len(warm), 'snowfall')} in air of {TOO_WARM_FOR_SNOW:g} °C and more, the warmest "
+        f"{warmest.temperature:g} °C on {warmest.date.date()}, where precipitation is rain; are "
+        "temperatures in degrees F, or sums of water in the column of snow?"
+    ]
 
 
 def check_one_season(rows: Sequence[Weather]) -> None:

@@ -16,7 +16,9 @@ from datetime import datetime, timedelta
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.base.arrays import Booleans
+from snowshed.base.arguments import checked
+from snowshed.base.arrays import Booleans, whole_number
+from snowshed.season.weather.columns import check_given_rows
 from snowshed.season.weather.row import MAX_SNOWFALL, Weather
 from snowshed.season.weather.source import SnowSource
 
@@ -49,6 +51,7 @@ class MonthClimate:
     snow_shift: float = 0.0
 
 
+@checked
 @dataclass(frozen=True)
 class Climate:
     """The winters of a station.
@@ -70,6 +73,11 @@ class Climate:
     months: Mapping[int, MonthClimate]
     persistence: float = 0.7
 
+    def __post_init__(self) -> None:
+        for month in self.months:
+            if not 1 <= month <= 12:
+                raise InputError(f"months: {month}; allowed: 1 (January) to 12")
+
     @classmethod
     def fit(cls, days: Sequence[Weather]) -> Climate:
         """Return the climate of daily rows; days whose snow is not known are left out.
@@ -77,8 +85,9 @@ class Climate:
         Raises
         ------
         InputError
-            If no month with snow has enough days.
+            If a row cannot be weather, or no month with snow has enough days.
         """
+        check_given_rows(days, "days", ordered=False)
         days = [day for day in days if day.source is not SnowSource.MISSING]
         snows = np.array([day.snowfall >= MIN_SNOWFALL for day in days])
         temperatures = np.array([day.temperature for day in days])
@@ -124,6 +133,7 @@ class Climate:
         first_year
             Year of the first autumn.
         """
+        whole_number("count", count, lowest=1)
         random = np.random.default_rng(seed)
         rows: list[Weather] = []
         for year in range(first_year, first_year + count):

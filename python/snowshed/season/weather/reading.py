@@ -10,23 +10,25 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from datetime import datetime, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING, Optional, Union
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.formatting import number_in
 from snowshed.base.messages import quoted
 from snowshed.base.notes import issue_note
-from snowshed.base.paths import PathLike
+from snowshed.base.paths import PathLike, with_home
 from snowshed.io.csv_table import TableRow, frame_as_text, read_text_table
 from snowshed.io.weather.joined import read_stations
 from snowshed.io.weather.observation import Station
 from snowshed.io.weather.recognise import read_station
-from snowshed.season.weather.checks import NO_SNOW, check_rows
+from snowshed.season.weather.checks import NO_SNOW, check_rows, warm_snow
+from snowshed.season.weather.columns import ALLOWED, COLUMNS, MeasuredColumn, check_given_rows
 from snowshed.season.weather.observed import record_of
-from snowshed.season.weather.row import MAX_SNOWFALL, Weather
+from snowshed.season.weather.row import Weather
 from snowshed.season.weather.season_record import SeasonRecord
 from snowshed.season.weather.source import AUTO, CHOICES
 
@@ -34,30 +36,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-@dataclass(frozen=True)
-class _Column:
-    """The unit and the range of a column."""
-
-    low: float
-    high: float
-    unit: str
-    required: bool = False  # whether the column must exist
-    filled: bool = False  # whether every cell must be filled
-    hint: str = ""  # likely meaning of a number beyond the range
-
-
-COLUMNS: Mapping[str, _Column] = {
-    "snowfall_m": _Column(
-        0.0, MAX_SNOWFALL, "m", required=True, filled=True, hint="; is it in cm, mm or inches?"
-    ),
-    "temperature_c": _Column(-90.0, 40.0, "degrees C", required=True, filled=True),
-    "density_kg_m3": _Column(10.0, 700.0, "kg/m3"),
-    "friction": _Column(0.0, 10.0, ""),
-    "adhesion_pa": _Column(0.0, 1e6, "Pa"),
-    "snow_depth_m": _Column(0.0, 15.0, "m", hint="; is it in cm, mm or inches?"),
-    "irradiance_w_m2": _Column(-20.0, 2000.0, "W/m2"),  # night offsets of sensors are negative
-}
-ALLOWED = ("date", *COLUMNS)
 #: Other spellings of units.
 SAME_UNITS: Mapping[str, Sequence[str]] = {"degrees C": ("degC", "°C"), "": ("1",)}
 
@@ -65,6 +43,7 @@ SAME_UNITS: Mapping[str, Sequence[str]] = {"degrees C": ("degC", "°C"), "": ("1
 Season = Union[PathLike, Sequence[PathLike], "pd.DataFrame", Sequence[Weather]]
 
 
+@checked
 def read_season(season: Season) -> list[Weather]:
     r"""Return the rows of a season, checked.
 
@@ -77,8 +56,8 @@ def read_season(season: Season) -> list[Weather]:
         and, if known, ``density_kg_m3``, ``friction``, ``adhesion_pa``, ``snow_depth_m`` (of the
         natural snow cover) and ``irradiance_w_m2`` (of the panel's plane). The names tell the
         units. If ``attrs["units"]`` of a DataFrame has the unit of a column, it must agree. Rows of
-        `Weather` are returned unchanged. Several weather files of one station are read as one
-        (`snowshed.io.weather.read_stations`).
+        `Weather` are checked and returned unchanged. Several weather files of one station are read
+        as one (`snowshed.io.weather.read_stations`).
 
     Raises
     ------
@@ -102,6 +81,7 @@ def read_season(season: Season) -> list[Weather]:
     return [*record.rows]
 
 
+@checked
 def read_weather(
     season: Season, temperature: Optional[PathLike] = None
 ) -> tuple[list[Weather], list[str]]:
@@ -116,6 +96,7 @@ def read_weather(
     return [*record.rows], [*record.notes]
 
 
+@checked
 def read_record(
     season: Season, snow_from: str = AUTO, temperature: Optional[PathLike] = None
 ) -> SeasonRecord:
@@ -140,6 +121,8 @@ def read_record(
         raise InputError(
             "a file of temperatures is allowed with weather files only, not with a table"
         )
+    if files and not isinstance(season, (str, os.PathLike)) and len(files) < len(season):
+        raise InputError("the season: both files and rows; give one of the two")
     if len(files) > 1 or temperature is not None:
         joined = read_stations(files, None if temperature is None else Path(temperature))
         return _station_record(joined, " and ".join(map(str, files)), snow_from)
@@ -154,7 +137,8 @@ def read_record(
     elif isinstance(season, Sequence):
         if not season:
             raise InputError("the season: no rows")
-        return SeasonRecord([*season])
+        rows = check_given_rows(season)
+        return SeasonRecord(rows, warm_snow(rows))
     else:
         table, name = frame_as_text(season, "the season", index="date"), "the season"
         _check_columns(table.columns, name)
@@ -163,16 +147,20 @@ def read_record(
         raise InputError(f"{name}: its snow is that of its column snowfall_m, not {snow_from}")
     rows = [_weather(row) for row in table.rows]
     check_rows(rows, table.rows, name)
-    return SeasonRecord(rows)
+    return SeasonRecord(rows, warm_snow(rows))
 
 
 def _weather_files(season: Season) -> list[Path]:
     """Return the weather files of a season; none if it is a table or rows."""
     if isinstance(season, (str, os.PathLike)):
-        return [Path(season)]
+        return [_file(season)]
     if isinstance(season, Sequence):
-        return [Path(path) for path in season if isinstance(path, (str, os.PathLike))]
+        return [_file(path) for path in season if isinstance(path, (str, os.PathLike))]
     return []
+
+
+def _file(path: PathLike) -> Path:
+    return Path(with_home(os.fspath(path)))
 
 
 def _station_record(station: Station, source: str, snow_from: str) -> SeasonRecord:
@@ -182,7 +170,7 @@ def _station_record(station: Station, source: str, snow_from: str) -> SeasonReco
     check_rows(record.rows, table_rows, source, snowless=True)
     if not any(row.snowfall for row in record.rows):
         notes.append(f"{NO_SNOW} in this file")
-    return replace(record, notes=notes)
+    return replace(record, notes=[*notes, *warm_snow(record.rows)])
 
 
 def _check_columns(names: Sequence[str], where: str) -> None:
@@ -225,24 +213,16 @@ def _weather(row: TableRow) -> Weather:
     )
 
 
-def _number(text: str, column: _Column, where: str) -> Optional[float]:
+def _number(text: str, column: MeasuredColumn, where: str) -> Optional[float]:
     if not text:
         if column.filled:
-            raise InputError(f"{where}: empty; give a number ({_range(column)})")
+            raise InputError(f"{where}: empty; give a number ({column.range_text})")
         return None
     value = number_in(text)
     if math.isnan(value):
-        raise InputError(f"{where}: {quoted(text)} is not a number ({_range(column)})")
-    if not column.low <= value <= column.high:
-        hint = column.hint if value > column.high else ""
-        raise InputError(
-            f"{where}: {value:g} is outside the allowed range ({_range(column)}){hint}"
-        )
+        raise InputError(f"{where}: {quoted(text)} is not a number ({column.range_text})")
+    column.check(value, where)
     return value
-
-
-def _range(column: _Column) -> str:
-    return f"{column.low:g} <= value <= {column.high:g} {column.unit}".rstrip()
 
 
 def _date(text: str, where: str) -> datetime:

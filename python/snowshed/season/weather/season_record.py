@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Optional
 
+from snowshed.base.arguments import checked
 from snowshed.base.formatting import plural
 from snowshed.season.weather.quality import COVERAGE, WinterQuality, qualities_of, spans
 from snowshed.season.weather.row import Weather
@@ -14,6 +15,7 @@ from snowshed.season.weather.source import SnowSource
 from snowshed.season.weather.winter_years import Calendar, SnowSeason, calendar_of
 
 
+@checked
 @dataclass(frozen=True)
 class SeasonRecord:
     """The weather of a season or of many winters.

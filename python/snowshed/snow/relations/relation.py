@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
-from typing import TypeVar, Union
+from typing import Optional, TypeVar, Union
 
 from snowshed._core import InputError
 
@@ -90,6 +90,12 @@ def choose(name: str, relations: Mapping[str, Chosen], where: str) -> Chosen:
     if name not in relations:
         raise InputError(f"{where}: {name!r} is unknown; allowed: {', '.join(relations)}")
     return relations[name]
+
+
+def check_choice(name: str, given: Optional[str], allowed: Collection[str]) -> None:
+    """Raise InputError at an argument that is neither None nor one of the allowed names."""
+    if given is not None and given not in allowed:
+        raise InputError(f"{name}: {given!r}; allowed: {', '.join(allowed)}, or None")
 
 
 def by_name(*relations: Relation) -> dict[str, Relation]:

@@ -5,12 +5,14 @@ from __future__ import annotations
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.scene.components import Snow
 from snowshed.snow.relations.relation import choose
 from snowshed.snow.relations.stiffness import YOUNGS_MODULUS
 from snowshed.snow.relations.strength import TENSILE_STRENGTH
 
 
+@checked
 def snow_from_density(
     density: float,
     *,

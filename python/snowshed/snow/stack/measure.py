@@ -30,7 +30,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Booleans, Floats, column, finite, flags, points, positive
+from snowshed.base.notes import issue_note
 from snowshed.snow.stack.connected_components import largest_body
 from snowshed.snow.stack.support import supports
 from snowshed.snow.stack.surface import outline_particles, surface_particles
@@ -39,6 +41,10 @@ from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS, check_trim
 #: Edge of the voxels that connect snow, m. It is the same on all finer grids, because the division
 #: of snow into bodies must not depend on the grid; coarser grids connect snow over a cell.
 CONNECTION_VOXEL = 0.01
+#: Range of the median density of snow, kg/m3; beyond it, a note asks for the unit.
+MIN_DENSITY, MAX_DENSITY = 5.0, 1500.0
+#: Largest size of a stack over the side of a cube of its snow; beyond it, a note asks for the unit.
+MAX_SPREAD = 100.0
 
 
 @dataclass(frozen=True, repr=False)
@@ -119,6 +125,7 @@ class StackMeasure(Extent):
         return self.mass / self.volume if self.volume else np.nan
 
 
+@checked
 def levelled_positions(positions: Floats, ground_tilt_deg: float) -> Floats:
     """Turn positions about y so that tilted ground becomes z = 0 (A.4.4).
 
@@ -146,6 +153,7 @@ def levelled_positions(positions: Floats, ground_tilt_deg: float) -> Floats:
     return levelled
 
 
+@checked
 def measure_stack(
     positions: ArrayLike,
     masses: ArrayLike,
@@ -196,6 +204,11 @@ def measure_stack(
     StackMeasure
         The stack; without snow off the panel, its sizes are 0 and its positions NaN.
 
+    Warns
+    -----
+    SnowshedNote
+        If the positions cannot be in metres, or the densities in kg/m3.
+
     Raises
     ------
     InputError
@@ -219,6 +232,7 @@ def measure_stack(
     coordinates = points("positions", positions, dimension)
     every_mass = column("masses", masses, len(coordinates), non_negative=True)
     every_density = column("densities", densities, len(coordinates), non_negative=True)
+    _note_on_units(coordinates, every_mass, every_density, dimension)
     on_panel = (
         np.zeros(len(coordinates), dtype=bool)
         if exclude is None
@@ -256,6 +270,29 @@ def measure_stack(
         joined=joined,
         members=members,
     )
+
+
+def _note_on_units(positions: Floats, masses: Floats, densities: Floats, dimension: int) -> None:
+    """Issue notes if the arrays cannot be in metres, kg and kg/m3."""
+    dense = densities[masses > 0.0]
+    if not len(dense):
+        return
+    middle = float(np.median(dense))
+    if not MIN_DENSITY <= middle <= MAX_DENSITY:
+        issue_note(
+            f"densities: half of them are {middle:.3g} kg/m3 or more, which snow cannot be; are "
+            "they in g/cm3, or masses?"
+        )
+        return
+    sides = np.ptp(positions, axis=0)[[0, 2] if dimension == 2 else [0, 1, 2]]
+    size = float(np.prod(sides)) ** (1 / dimension)
+    snow = float((masses / np.maximum(densities, MIN_DENSITY)).sum()) ** (1 / dimension)
+    if size > MAX_SPREAD * snow:
+        issue_note(
+            f"positions: the particles span {' x '.join(f'{side:.3g}' for side in sides)} m, "
+            f"but their snow has the volume of {'a square' if dimension == 2 else 'a cube'} with "
+            f"sides of {snow:.2g} m; are the positions in mm or cm?"
+        )
 
 
 def _held(

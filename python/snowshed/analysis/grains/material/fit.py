@@ -22,6 +22,7 @@ from snowshed.analysis.grains.material.loading_tests import (
 )
 from snowshed.analysis.grains.material.yield_surface import fit_yield_surface
 from snowshed.analysis.grains.ratios import LogMean
+from snowshed.base.arguments import checked
 from snowshed.base.formatting import percent
 from snowshed.methods.grains.curve import LoadingCurve
 from snowshed.methods.grains.phases import MIN_LINEARITY
@@ -110,6 +111,7 @@ def isotropic_strength(curves: Curves) -> float:
     return Range.of(list(_read(curves, ISOTROPIC, readings.isotropic_yield, []).values())).value
 
 
+@checked
 def fit_material(
     curves: Curves, density: float, *, modulus: Optional[float] = None, min_grains: int = FEW_GRAINS
 ) -> FittedSnow:

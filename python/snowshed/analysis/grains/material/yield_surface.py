@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
 
 COHESIONS = np.linspace(0.0, 1.0, 201)  # values in scenes (`snowshed.Snow`)
@@ -32,6 +33,7 @@ class YieldSurface:
     residual: float
 
 
+@checked
 def fit_yield_surface(p: Floats, q: Floats) -> YieldSurface:
     """Return the surface fitted to measured strengths by least squares in q.
 

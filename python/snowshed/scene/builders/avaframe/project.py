@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.base.arguments import checked
 from snowshed.base.limits import MAX_RASTER_CELLS, MAX_RESAMPLED_CELLS, MAX_SAVED_CELLS
 from snowshed.base.messages import quoted
 from snowshed.base.paths import PathLike
@@ -128,6 +129,7 @@ def avaframe_simulations(
     ]
 
 
+@checked
 def avaframe_scene(
     folder: PathLike,
     *,
