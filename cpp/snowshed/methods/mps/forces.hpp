@@ -33,8 +33,7 @@ double shear_rate(const Eigen::Matrix<double, D, D>& gradient) {
 template <int D>
 bool rests(const Model<D>& model, double dt, const VecD<D>& velocity) {
   constexpr double max_share = 0.1;
-  return !model.rheology.is_newtonian() &&
-         velocity.norm() < max_share * model.gravity.norm() * dt;
+  return !model.rheology.is_newtonian() && velocity.norm() < max_share * model.gravity.norm() * dt;
 }
 
 /// Prepares find_rates for the present positions of the particles.

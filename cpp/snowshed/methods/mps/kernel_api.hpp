@@ -75,8 +75,8 @@ struct Kernels {
   /// Subtracts from q the sum of slope (spread_i + spread_j) r in rows whose block does not begin
   /// with zero; `spread` has matrices by columns.
   void (*spread_torques)(const PairRows&, const float* const* offset, const float* slope,
-                         const double* block, const double* spread, double* q,
-                         std::ptrdiff_t begin, std::ptrdiff_t end);
+                         const double* block, const double* spread, double* q, std::ptrdiff_t begin,
+                         std::ptrdiff_t end);
 };
 
 /// The kernels of the instruction set in use.

@@ -7,7 +7,8 @@ namespace snowshed::methods::mps {
 enum class ShearLaw { newtonian, bingham, bingham_dilatant };
 /// Form of the yield stress at small shear rates.
 enum class Regularisation { papanastasiou, bi_viscous };
-/// Viscous force: the weighted sum of velocity differences, or the divergence of a symmetric stress.
+/// Viscous force: the weighted sum of velocity differences, or the divergence of a symmetric
+/// stress.
 enum class Stress { published, symmetric };
 /// Right-hand side of the pressure equation: Koshizuka and Oka (1996); Tanaka and Masunaga (2010).
 enum class Source { published, compensated };

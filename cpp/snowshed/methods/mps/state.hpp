@@ -159,7 +159,7 @@ struct ViscousSolve {
   AlignedVector<float> coupling;                // coupling of velocities, one per pair
   AlignedVector<float> weight;                  // of pairs, see find_stress_weights
   AlignedVector<Eigen::Matrix<double, D, D>> block, inverse_block;
-  AlignedVector<Eigen::Matrix<double, D, D>> own_block;  // without the couplings
+  AlignedVector<Eigen::Matrix<double, D, D>> own_block;         // without the couplings
   AlignedVector<Eigen::Matrix<double, D, D>> gradient, spread;  // see apply_symmetric_stress
   AlignedVector<std::array<double, D*(D - 1) / 2>> turn, torque;
   AlignedVector<double> diagonal;

@@ -146,7 +146,8 @@ constexpr double sweep_damping = 0.9;
 /// The wall's shear stress is that of snow with the shear rate u/h at the pressure on the wall; u
 /// is the speed at which the particle slides, and h is its distance from the wall. The stress acts
 /// on the particles next to the wall. If the obstacle is not sticky, the stress is at most the
-/// obstacle's own friction. `reaction` is the pressure of the wall's hold, Pa. Returns the drag, 1/s.
+/// obstacle's own friction. `reaction` is the pressure of the wall's hold, Pa. Returns the drag,
+/// 1/s.
 template <int D>
 double wall_drag(const Model<D>& model, const Particles<D>& particles, double share,
                  double reaction, std::size_t i, const WallContact<D>& c) {
@@ -170,8 +171,8 @@ double wall_drag(const Model<D>& model, const Particles<D>& particles, double sh
 constexpr double wall_hold = 1e4;
 
 /// Walls bear the stress of the snow that they press: viscosity does not move its layer next to a
-/// wall along the normal. The pressure has no share in this step, and would leave the snow without a
-/// support.
+/// wall along the normal. The pressure has no share in this step, and would leave the snow without
+/// a support.
 template <int D>
 double hold_of_wall(const Model<D>& model, const Particles<D>& particles, std::size_t i,
                     const WallContact<D>& c) {
@@ -305,7 +306,8 @@ SolveReport solve_viscosity(const Model<D>& model, double dt, const Velocities<D
   const auto solve = [&](int max_iterations, const auto& precondition) {
     return conjugate_gradients(n * D, tolerance, scale, max_iterations, threads, work.cg,
                                particles.velocity.data()->data(),
-                               work.viscosity.right_side.data()->data(), apply_stress, precondition);
+                               work.viscosity.right_side.data()->data(), apply_stress,
+                               precondition);
   };
   const int max_iterations = model.settings().max_iterations;
   const SolveReport first = solve(std::min(max_iterations, max_diagonal_iterations), smooth);

@@ -282,9 +282,8 @@ void expect_plain_stresses() {
     for (std::uint32_t e = cloud.lists.begin(i); e < cloud.lists.end(i); ++e) {
       const std::size_t j = cloud.lists.neighbour(e);
       const VecD<D> r = cloud.lists.separation(e);
-      const VecD<D> t =
-          2 * double(cloud.weight[e]) *
-          (cloud.velocity[j] - cloud.velocity[i] - 0.5 * (spin[i] + spin[j]) * r);
+      const VecD<D> t = 2 * double(cloud.weight[e]) *
+                        (cloud.velocity[j] - cloud.velocity[i] - 0.5 * (spin[i] + spin[j]) * r);
       force += t + double(cloud.slope[e]) * (spread[i] + spread[j]) * r;
       moment -= 0.25 * (t * r.transpose() - r * t.transpose());
     }

@@ -30,8 +30,8 @@ SNOWSHED_INLINE void subtract_turn(const PairMotion<D>& pair, const double* turn
   }
 }
 
-/// q[row] = block[row] p[row] - sum of t, where t is twice the coupling times the change of velocity
-/// in the turning frame; torque[row] = -1/4 of the sum of t_a r_b - t_b r_a.
+/// q[row] = block[row] p[row] - sum of t, where t is twice the coupling times the change of
+/// velocity in the turning frame; torque[row] = -1/4 of the sum of t_a r_b - t_b r_a.
 template <int D>
 SNOWSHED_INLINE void sum_row_stresses(const PairRows& rows, const float* const* offset,
                                       const float* coupling, const double* block, const double* p,
