@@ -41,6 +41,7 @@ void describe(SettingsVisitor& v, Settings& s) {
   v.number("deposition_speed", s.deposition_speed, "m/s", non_negative.up_to(1e4),
            "Speed below which moving snow is deposited");
   v.choice("walls", s.walls, "Walls: mirror images of the snow, or particles");
+  v.choice("stress", s.stress, "Viscous force: as published, or of a symmetric stress");
   v.choice("source", s.source, "Right-hand side of the pressure equation");
   v.number("compensation", s.compensation, "", fraction,
            "Share of the density's error that a step removes");

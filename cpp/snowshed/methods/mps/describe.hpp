@@ -30,6 +30,12 @@ struct EnumNames<mps::Walls> {
 };
 
 template <>
+struct EnumNames<mps::Stress> {
+  static constexpr Named<mps::Stress> list[] = {{mps::Stress::published, "published"},
+                                                {mps::Stress::symmetric, "symmetric"}};
+};
+
+template <>
 struct EnumNames<mps::Source> {
   static constexpr Named<mps::Source> list[] = {{mps::Source::published, "published"},
                                                 {mps::Source::compensated, "compensated"}};

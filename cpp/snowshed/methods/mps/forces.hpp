@@ -28,6 +28,14 @@ double shear_rate(const Eigen::Matrix<double, D, D>& gradient) {
   return (gradient + gradient.transpose()).norm() / std::sqrt(2.0);
 }
 
+/// Whether snow with this velocity is at rest: it has a yield stress, and is slower than a tenth of
+/// the speed that gravity adds in a step.
+template <int D>
+bool rests(const Model<D>& model, double dt, const VecD<D>& velocity) {
+  constexpr double max_share = 0.1;
+  return !model.rheology.is_newtonian() && velocity.norm() < max_share * model.gravity.norm() * dt;
+}
+
 /// Prepares find_rates for the present positions of the particles.
 template <int D>
 void prepare_rates(const Model<D>&, const Particles<D>&, Workspace<D>&);

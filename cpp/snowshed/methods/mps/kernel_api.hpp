@@ -66,6 +66,17 @@ struct Kernels {
   /// the part along the separation.
   void (*pair_rates)(const PairRows&, const float* const* offset, const double* velocity,
                      const double* gradient, float* rate, std::ptrdiff_t begin, std::ptrdiff_t end);
+  /// q = block p - sum of t in each row; q = 0 if the block begins with zero. t is twice the
+  /// coupling times the change of p in a frame that turns with the mean of both particles' `turn`
+  /// (antisymmetric components of a matrix). `torque` is -1/4 of the sum of t_a r_b - t_b r_a.
+  void (*sum_stresses)(const PairRows&, const float* const* offset, const float* coupling,
+                       const double* block, const double* p, const double* turn, double* q,
+                       double* torque, std::ptrdiff_t begin, std::ptrdiff_t end);
+  /// Subtracts from q the sum of slope (spread_i + spread_j) r in rows whose block does not begin
+  /// with zero; `spread` has matrices by columns.
+  void (*spread_torques)(const PairRows&, const float* const* offset, const float* slope,
+                         const double* block, const double* spread, double* q, std::ptrdiff_t begin,
+                         std::ptrdiff_t end);
 };
 
 /// The kernels of the instruction set in use.

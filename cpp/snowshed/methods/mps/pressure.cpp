@@ -141,6 +141,13 @@ double compensated_excess(const Model<D>& model, const Particles<D>& particles,
   return std::min(0.0, excess + deficit + surface_tolerance);
 }
 
+/// The share of the density's error that a step removes. Snow with a yield stress keeps the errors
+/// with which it comes to rest, so twice the share is removed while it flows (ours).
+template <int D>
+double compensated_share(const Model<D>& model) {
+  return (model.rheology.is_newtonian() ? 1 : 2) * model.settings().compensation;
+}
+
 /// The right-hand side of lap p = ..., Pa/m2: equation (18), or after Tanaka and Masunaga (2010,
 /// doi:10.1016/j.jcp.2010.02.011) the divergence of the velocities and the fraction `compensation`
 /// of the density error. Their factor 1 - compensation on the divergence would lower pressures at
@@ -153,7 +160,7 @@ double source(const Model<D>& model, double dt, double compensation_time,
   if (s.source == Source::published)
     return -s.density / (dt * dt) * (near.density[i] / model.kernel.number_density - 1);
   return s.density / dt * divergence(model, particles, work, i) -
-         s.compensation * s.density / (dt * compensation_time) *
+         compensated_share(model) * s.density / (dt * compensation_time) *
              compensated_excess(model, particles, near, i);
 }
 

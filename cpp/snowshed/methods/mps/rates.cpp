@@ -8,56 +8,13 @@
 namespace snowshed::methods::mps {
 namespace {
 
-/// Smallest distance from a wall, in l0, with which the velocity behind the wall is extrapolated.
-constexpr double min_no_slip_distance = 0.25;
-
-/// The velocity difference between a particle and a wall particle, over that between the particle
-/// and the wall's surface.
-template <int D>
-double no_slip_factor(const WallContact<D>& c, const VecD<D>& separation, double spacing) {
-  return std::max(1.0,
-                  -separation.dot(c.normal) / std::max(c.distance, min_no_slip_distance * spacing));
-}
-
-/// Calls visit(separation, slope, change of velocity) for each wall particle and image that
-/// contributes to a velocity gradient. Snow does not slide on sticky walls: images behind them have
-/// the opposite velocity relative to the wall, and wall particles the velocity for which the snow
-/// at the surface moves with the wall (Morris and others 1997, doi:10.1006/jcph.1997.5776).
-template <int D, class Visit>
-void visit_walls(const Model<D>& model, const Particles<D>& particles, const Neighbourhood<D>& near,
-                 std::size_t i, const Visit& visit) {
-  if (model.has_wall_particles())
-    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
-      const std::size_t j = near.lists.neighbour(e);
-      if (!particles.is_wall(j)) continue;
-      const WallContact<D>* c = near.contact_with(i, particles.event[j]);
-      if (!c || !model.is_sticky(*c)) continue;
-      const VecD<D> r = near.separation(e);
-      visit(r, double(near.slope[e]),
-            VecD<D>(no_slip_factor(*c, r, model.settings().spacing) *
-                    (particles.velocity[j] - particles.velocity[i])));
-    }
-  for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
-    const bool two = m->mirror_shift[1] != 0;
-    const WallContact<D>& wall = near.wall(*m, 0);
-    if (two || !model.is_sticky(wall)) continue;
-    visit(m->separation, double(m->slope),
-          VecD<D>(2 * wall.velocity - particles.velocity[m->neighbour] - particles.velocity[i]));
-  }
-}
-
 /// The matrix, with the factor d/n0, that makes velocity gradients exact for linear velocities in
 /// any arrangement of the neighbours (see find_corrections).
 template <int D>
-Eigen::Matrix<double, D, D> rate_correction(const Model<D>& model, const Particles<D>& particles,
-                                            const Neighbourhood<D>& near, std::size_t i) {
+Eigen::Matrix<double, D, D> rate_correction(const Model<D>& model, const Neighbourhood<D>& near,
+                                            std::size_t i) {
   using Matrix = Eigen::Matrix<double, D, D>;
-  Matrix moment = symmetric<D>(near.moments[i].slope);
-  visit_walls(model, particles, near, i,
-              [&](const VecD<D>& separation, double slope, const VecD<D>&) {
-                moment += slope * separation * separation.transpose();
-              });
-  moment *= model.gradient();
+  const Matrix moment = model.gradient() * symmetric<D>(near.moments[i].slope);
   constexpr double min_determinant = 0.05;  // 1 on a lattice
   if (!(moment.determinant() > min_determinant)) return model.gradient() * Matrix::Identity();
   return model.gradient() * moment.inverse();
@@ -105,6 +62,7 @@ void smooth_pressures(const Model<D>& model, const Particles<D>& particles, Work
 
 template <int D>
 void prepare_rates(const Model<D>& model, const Particles<D>& particles, Workspace<D>& work) {
+  using Matrix = Eigen::Matrix<double, D, D>;
   Neighbourhood<D>& near = work.near;
   const std::size_t n = particles.size();
   const int threads = model.threads_for(n);
@@ -116,8 +74,8 @@ void prepare_rates(const Model<D>& model, const Particles<D>& particles, Workspa
   });
   work.rates.correction.resize(n);
   for_each_particle(n, threads, [&](std::size_t i) {
-    if (!particles.is_wall(i))
-      work.rates.correction[i] = rate_correction(model, particles, near, i);
+    work.rates.correction[i] =
+        particles.is_wall(i) ? Matrix(Matrix::Zero()) : rate_correction(model, near, i);
   });
 }
 
@@ -137,20 +95,11 @@ void sum_velocity_gradients(const Model<D>& model, const Particles<D>& particles
 template <int D>
 void find_rates(const Model<D>& model, Particles<D>& particles, Workspace<D>& work) {
   using Matrix = Eigen::Matrix<double, D, D>;
-  const Neighbourhood<D>& near = work.near;
   const int threads = model.threads_for(particles.size());
   sum_velocity_gradients(model, particles, work.rates.snow_slope, work);
   for_each_particle(particles.size(), threads, [&](std::size_t i) {
     Matrix& gradient = work.rates.gradient[i];
-    if (particles.is_wall(i)) {
-      gradient.setZero();
-    } else {
-      visit_walls(model, particles, near, i,
-                  [&](const VecD<D>& separation, double slope, const VecD<D>& change) {
-                    gradient += change * (slope * separation).transpose();
-                  });
-      gradient = Matrix(gradient * work.rates.correction[i]);
-    }
+    gradient = Matrix(gradient * work.rates.correction[i]);
     particles.shear_rate[i] = shear_rate<D>(gradient);
   });
 }

@@ -7,6 +7,9 @@ namespace snowshed::methods::mps {
 enum class ShearLaw { newtonian, bingham, bingham_dilatant };
 /// Form of the yield stress at small shear rates.
 enum class Regularisation { papanastasiou, bi_viscous };
+/// Viscous force: the weighted sum of velocity differences, or the divergence of a symmetric
+/// stress.
+enum class Stress { published, symmetric };
 /// Right-hand side of the pressure equation: Koshizuka and Oka (1996); Tanaka and Masunaga (2010).
 enum class Source { published, compensated };
 /// Pressure gradient: relative to the least neighbouring pressure, with equal and opposite forces,
@@ -56,6 +59,7 @@ struct Settings {
   double deposition_speed = 0.05;   // m/s
 
   Walls walls = Walls::mirrors;
+  Stress stress = Stress::symmetric;
   Source source = Source::compensated;
   double compensation = 0.1;  // share of the density's error that a step removes
   Gradient gradient = Gradient::corrected;

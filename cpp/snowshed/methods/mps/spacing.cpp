@@ -76,9 +76,10 @@ VecD<D> inward(const AlignedVector<VecD<D>>& gradients, const Neighbourhood<D>& 
 }
 
 /// Shifts particles towards lower concentrations. Particles at the surface are shifted only along
-/// it, and those below it not towards it, because the surface would rise. Snow at rest is shifted,
-/// too, as if it moved at the speed of a fall over l0, because the corrected gradient does not keep
-/// its particles apart (ours).
+/// it, and those below it not towards it, because the surface would rise. A fluid without a yield
+/// stress is shifted at rest, too, as if it moved at the speed of a fall over l0, because the
+/// corrected gradient does not keep its particles apart. Snow with a yield stress is not shifted at
+/// rest: it would creep (ours).
 template <int D>
 void shift(const Model<D>& model, double dt, Particles<D>& particles, Workspace<D>& work) {
   const Neighbourhood<D>& near = work.near;
@@ -88,7 +89,7 @@ void shift(const Model<D>& model, double dt, Particles<D>& particles, Workspace<
   find_concentration_gradients(model, particles.size(), work);
   for_each_particle(particles.size(), threads, [&](std::size_t i) {
     work.change[i].setZero();
-    if (!particles.moves(i)) return;
+    if (!particles.moves(i) || rests(model, dt, particles.velocity[i])) return;
     VecD<D> gradient = work.spacing.concentration[i];
     if (near.below_surface[i]) {
       const VecD<D> normal = inward<D>(work.spacing.concentration, near, i);

@@ -51,6 +51,10 @@ struct Model {
   int threads;
 
   bool has_wall_particles() const { return settings().walls == Walls::particles; }
+  /// With a constant viscosity both forms of the viscous force are the same.
+  bool has_symmetric_stress() const {
+    return settings().stress == Stress::symmetric && !rheology.is_newtonian();
+  }
   bool is_sticky(const WallContact<D>& c) const {
     return options.obstacles[c.obstacle].law.condition == Condition::sticky;
   }
@@ -153,7 +157,11 @@ template <int D>
 struct ViscousSolve {
   AlignedVector<VecD<D>> right_side, residual;  // m/s
   AlignedVector<float> coupling;                // coupling of velocities, one per pair
+  AlignedVector<float> weight;                  // of pairs, see find_stress_weights
   AlignedVector<Eigen::Matrix<double, D, D>> block, inverse_block;
+  AlignedVector<Eigen::Matrix<double, D, D>> own_block;         // without the couplings
+  AlignedVector<Eigen::Matrix<double, D, D>> gradient, spread;  // see apply_symmetric_stress
+  AlignedVector<std::array<double, D*(D - 1) / 2>> turn, torque;
   AlignedVector<double> diagonal;
   Multigrid<D, D> multigrid;  // built if needed
 };
@@ -171,6 +179,7 @@ struct SplitForces {
 struct WallFriction {
   AlignedVector<double> share, weight_sum;  // see compute_wall_contact_fractions
   AlignedVector<double> drag;               // one per contact with a wall, 1/s
+  AlignedVector<double> hold, reaction;     // see hold_of_wall, find_wall_reactions (Pa)
 };
 
 /// Corrections of the distances between particles.

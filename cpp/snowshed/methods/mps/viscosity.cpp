@@ -5,9 +5,13 @@
 
 #include "snowshed/methods/mps/anderson.hpp"
 #include "snowshed/methods/mps/forces.hpp"
+#include "snowshed/methods/mps/viscous_stress.hpp"
 
 namespace snowshed::methods::mps {
 namespace {
+
+template <int D>
+using Velocities = AlignedVector<VecD<D>>;
 
 /// Lower limit of the wall distance that enters wall friction, in l0.
 constexpr double min_friction_distance = 0.25;
@@ -95,7 +99,7 @@ void find_couplings(const Model<D>& model, double factor, const Particles<D>& pa
   };
   const auto set = [&](std::uint32_t e, double viscosity, bool is_wall) {
     work.viscosity.coupling[e] =
-        is_wall ? 0.0f : float(factor * viscosity * double(near.isotropic_weight[e]));
+        is_wall ? 0.0f : float(factor * viscosity * double(work.viscosity.weight[e]));
   };
   if (law.is_newtonian()) {
     for_each_pair([&](std::size_t, std::size_t, std::uint32_t e, bool is_wall) {
@@ -122,9 +126,6 @@ void find_couplings(const Model<D>& model, double factor, const Particles<D>& pa
   });
 }
 
-template <int D>
-using Velocities = AlignedVector<VecD<D>>;
-
 /// The iterations for the apparent viscosities of a step end when the velocities change by less
 /// than this share in an iteration.
 constexpr double yield_tolerance = 1e-3;
@@ -145,17 +146,18 @@ constexpr double sweep_damping = 0.9;
 /// The wall's shear stress is that of snow with the shear rate u/h at the pressure on the wall; u
 /// is the speed at which the particle slides, and h is its distance from the wall. The stress acts
 /// on the particles next to the wall. If the obstacle is not sticky, the stress is at most the
-/// obstacle's own friction. Returns the drag, 1/s.
+/// obstacle's own friction. `reaction` is the pressure of the wall's hold, Pa. Returns the drag,
+/// 1/s.
 template <int D>
-double wall_drag(const Model<D>& model, const Particles<D>& particles, double share, std::size_t i,
-                 const WallContact<D>& c) {
+double wall_drag(const Model<D>& model, const Particles<D>& particles, double share,
+                 double reaction, std::size_t i, const WallContact<D>& c) {
   const Settings& s = model.settings();
   const double height = std::max(c.distance, min_friction_distance * s.spacing);
   if (share == 0) return 0;
   const VecD<D> relative = particles.velocity[i] - c.velocity;
   const double rate = (relative - relative.dot(c.normal) * c.normal).norm() / height;
   const double pressure =
-      std::max(0.0, particles.pressure[i] -
+      std::max(0.0, particles.pressure[i] + reaction -
                         s.density * c.distance * particles.pressure_acceleration[i].dot(c.normal));
   const Rheology& law = model.rheology;
   double viscosity = law.apparent_viscosity(law.yield_stress(pressure), rate);
@@ -163,6 +165,45 @@ double wall_drag(const Model<D>& model, const Particles<D>& particles, double sh
   if (contact.condition != Condition::sticky)
     viscosity = std::min(viscosity, law.regularised(contact.friction * pressure, rate));
   return share * viscosity / (s.density * s.spacing * height);
+}
+
+/// How firmly a wall holds the snow that it presses: this many times the inertia of a particle.
+constexpr double wall_hold = 1e4;
+
+/// Walls bear the stress of the snow that they press: viscosity does not move its layer next to a
+/// wall along the normal. The pressure has no share in this step, and would leave the snow without
+/// a support.
+template <int D>
+double hold_of_wall(const Model<D>& model, const Particles<D>& particles, std::size_t i,
+                    const WallContact<D>& c) {
+  if (!model.has_symmetric_stress() || !(particles.pressure[i] > 0)) return 0;
+  return wall_hold * share_of_wall(c.distance / model.settings().spacing, 0);
+}
+
+/// The velocity at which a wall holds a particle: the wall's if the snow is at rest there, so that
+/// small errors of the pressure do not move it, and that before viscosity acts if the snow flows.
+template <int D>
+const VecD<D>& held_velocity(const Model<D>& model, double dt, const Workspace<D>& work,
+                             const Velocities<D>& start, std::size_t i, const WallContact<D>& c) {
+  return rests(model, dt, VecD<D>(work.before[i] - c.velocity)) ? c.velocity : start[i];
+}
+
+/// Finds the pressures by which walls hold the snow, which the pressure equation does not know of.
+template <int D>
+void find_wall_reactions(const Model<D>& model, double dt, const Velocities<D>& start,
+                         const Particles<D>& particles, Workspace<D>& work) {
+  const Neighbourhood<D>& near = work.near;
+  const double per_speed = model.settings().density * model.settings().spacing / dt;
+  for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
+    for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c) {
+      const std::size_t k = near.contacts.index_of(c);
+      const double share = work.wall_friction.share[k];
+      const double hold = particles.moves(i) && share > 0 ? work.wall_friction.hold[k] : 0.0;
+      const VecD<D>& held = held_velocity(model, dt, work, start, i, *c);
+      work.wall_friction.reaction[k] =
+          hold > 0 ? per_speed * hold / share * (held - particles.velocity[i]).dot(c->normal) : 0.0;
+    }
+  });
 }
 
 /// On the levels above the particles the walls' drag acts equally in all directions.
@@ -216,24 +257,31 @@ SolveReport solve_viscosity(const Model<D>& model, double dt, const Velocities<D
   work.viscosity.right_side.resize(n);
   work.viscosity.block.resize(n);
   work.viscosity.inverse_block.resize(n);
+  work.viscosity.own_block.resize(n);
   work.wall_friction.drag.resize(near.contacts.all().size());
   for_each_particle(n, threads, [&](std::size_t i) {
     const bool moves = particles.moves(i);
     double sum = 0;
     for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
       sum += double(work.viscosity.coupling[e]);
-    Matrix block = (1 + sum) * Matrix::Identity();
+    Matrix own = Matrix::Identity();
     VecD<D> right = start[i];
     if (moves)
       for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c) {
-        double& drag = work.wall_friction.drag[near.contacts.index_of(c)];
-        drag =
-            wall_drag(model, particles, work.wall_friction.share[near.contacts.index_of(c)], i, *c);
+        const std::size_t k = near.contacts.index_of(c);
+        double& drag = work.wall_friction.drag[k];
+        drag = wall_drag(model, particles, work.wall_friction.share[k],
+                         work.wall_friction.reaction[k], i, *c);
         const Matrix along = dt * drag * (Matrix::Identity() - c->normal * c->normal.transpose());
-        block += along;
-        right += along * c->velocity;
+        const double hold = hold_of_wall(model, particles, i, *c);
+        const Matrix across = hold * c->normal * c->normal.transpose();
+        own += along + across;
+        right += along * c->velocity + across * held_velocity(model, dt, work, start, i, *c);
+        work.wall_friction.hold[k] = hold;
       }
+    const Matrix block = own + sum * Matrix::Identity();
     work.viscosity.right_side[i] = moves ? right : VecD<D>(VecD<D>::Zero());
+    work.viscosity.own_block[i] = moves ? own : Matrix(Matrix::Zero());
     work.viscosity.block[i] = moves ? block : Matrix(Matrix::Zero());
     work.viscosity.inverse_block[i] = moves ? Matrix(block.inverse()) : Matrix(Matrix::Zero());
   });
@@ -244,6 +292,12 @@ SolveReport solve_viscosity(const Model<D>& model, double dt, const Velocities<D
                                         work.viscosity.block.data()->data(), p, q, begin, end);
     });
   };
+  const auto apply_stress = [&](const double* p, double* q) {
+    if (model.has_symmetric_stress())
+      apply_symmetric_stress(model, work, p, q);
+    else
+      apply(p, q);
+  };
   const auto smooth = [&](const double* r, double* z) {
     for_each_particle(n, threads, [&](std::size_t i) {
       VecD<D>::Map(z + i * D) = work.viscosity.inverse_block[i] * VecD<D>::Map(r + i * D);
@@ -252,7 +306,8 @@ SolveReport solve_viscosity(const Model<D>& model, double dt, const Velocities<D
   const auto solve = [&](int max_iterations, const auto& precondition) {
     return conjugate_gradients(n * D, tolerance, scale, max_iterations, threads, work.cg,
                                particles.velocity.data()->data(),
-                               work.viscosity.right_side.data()->data(), apply, precondition);
+                               work.viscosity.right_side.data()->data(), apply_stress,
+                               precondition);
   };
   const int max_iterations = model.settings().max_iterations;
   const SolveReport first = solve(std::min(max_iterations, max_diagonal_iterations), smooth);
@@ -312,6 +367,9 @@ SolveReport apply_viscosity(const Model<D>& model, double dt, Particles<D>& part
       particles.velocity[i] = work.before[i] + first_guess_share * (start[i] - work.before[i]);
   const double scale = velocity_scale(model, dt, particles);
   compute_wall_contact_fractions(model, particles, work);
+  work.wall_friction.hold.assign(work.near.contacts.all().size(), 0.0);
+  work.wall_friction.reaction.assign(work.near.contacts.all().size(), 0.0);
+  find_stress_weights(model, particles, work);
   if (!newtonian) {
     prepare_rates(model, particles, work);
     work.near.lists.find_mirrors(model.threads_for(particles.size()));
@@ -327,6 +385,7 @@ SolveReport apply_viscosity(const Model<D>& model, double dt, Particles<D>& part
     if (!newtonian) find_rates(model, particles, work);
     last = particles.velocity;
     const SolveReport solve = solve_viscosity(model, dt, start, tolerance, scale, particles, work);
+    find_wall_reactions(model, dt, start, particles, work);
     report = {report.iterations + solve.iterations, solve.residual, solve.converged};
     if (!solve.converged || newtonian || last_chance) break;
     const double change = distance<D>(particles.velocity, last);

@@ -248,5 +248,58 @@ TYPED_TEST(MpsKernels, ComputeTheShearRateOfALinearField) {
   });
 }
 
+/// Compares the forces of the symmetric stress with plain sums.
+template <int D>
+void expect_plain_stresses() {
+  using Matrix = Eigen::Matrix<double, D, D>;
+  const Cloud<D> cloud(200);
+  const std::size_t n = cloud.position.size();
+  AlignedVector<Matrix> block(n, Matrix::Identity()), spread(n);
+  AlignedVector<std::array<double, D*(D - 1) / 2>> turn(n), torque(n);
+  std::vector<Matrix> spin(n, Matrix::Zero());
+  for (std::size_t i = 0; i < n; ++i) {
+    std::size_t k = 0;
+    for (int a = 0; a < D; ++a)
+      for (int b = a + 1; b < D; ++b, ++k) {
+        turn[i][k] = std::sin(double(i + k));
+        spin[i](a, b) = turn[i][k];
+        spin[i](b, a) = -turn[i][k];
+      }
+    spread[i] = std::cos(double(i)) * Matrix::Identity() + spin[i];
+  }
+  block[1].setZero();
+  AlignedVector<VecD<D>> q(n);
+  const double* const blocks = block.data()->data();
+  const Kernels<D>& kernels = chosen_kernels<D>();
+  kernels.sum_stresses(cloud.rows, cloud.offset.data(), cloud.weight.data(), blocks,
+                       cloud.velocity.data()->data(), turn.data()->data(), q.data()->data(),
+                       torque.data()->data(), 0, cloud.size());
+  kernels.spread_torques(cloud.rows, cloud.offset.data(), cloud.slope.data(), blocks,
+                         spread.data()->data(), q.data()->data(), 0, cloud.size());
+  for (std::size_t i = 0; i < n; ++i) {
+    VecD<D> force = VecD<D>::Zero();
+    Matrix moment = Matrix::Zero();
+    for (std::uint32_t e = cloud.lists.begin(i); e < cloud.lists.end(i); ++e) {
+      const std::size_t j = cloud.lists.neighbour(e);
+      const VecD<D> r = cloud.lists.separation(e);
+      const VecD<D> t = 2 * double(cloud.weight[e]) *
+                        (cloud.velocity[j] - cloud.velocity[i] - 0.5 * (spin[i] + spin[j]) * r);
+      force += t + double(cloud.slope[e]) * (spread[i] + spread[j]) * r;
+      moment -= 0.25 * (t * r.transpose() - r * t.transpose());
+    }
+    const VecD<D> expected = i == 1 ? VecD<D>(VecD<D>::Zero()) : VecD<D>(cloud.velocity[i] - force);
+    EXPECT_LT((q[i] - expected).norm(), 1e-9 * (1 + force.norm())) << i;
+    std::size_t k = 0;
+    for (int a = 0; a < D; ++a)
+      for (int b = a + 1; b < D; ++b, ++k)
+        EXPECT_NEAR(torque[i][k], moment(a, b), 1e-9 * (1 + moment.norm())) << i;
+  }
+}
+
+TEST(MpsKernels, StressesArePlainSums) {
+  expect_plain_stresses<2>();
+  expect_plain_stresses<3>();
+}
+
 }  // namespace
 }  // namespace snowshed::methods::mps

@@ -381,6 +381,30 @@ TEST(MpsSolver, BinghamSlumpComesToRest) {
   EXPECT_LT(std::sqrt(error / square), 0.1);
 }
 
+/// The advance of the face of a vertical cut in snow without friction in 1 s, over the height.
+/// `strength` is c/(rho g H).
+double advance_of_cut(double strength, Walls walls) {
+  Options o = tank(2, 10, 0.05);
+  o.settings.walls = walls;
+  o.settings.density = 200;
+  o.settings.rheology = ShearLaw::bingham;
+  o.settings.friction_angle = 0;
+  o.settings.cohesion = strength * 200 * 9.81;
+  const auto mps = body_of(o, {2, 0, 1});
+  flow_until(*mps, 1);
+  double front = 0;
+  for (const Vec3& x : mps->state().positions) front = std::max(front, x.x() + 0.025);
+  return front - 2;
+}
+
+// Limit analysis: it stands if c/(rho g H) is more than 0.26.
+TEST(MpsSolver, AVerticalCutStandsOrFalls) {
+  for (const Walls walls : {Walls::mirrors, Walls::particles}) {
+    EXPECT_LT(advance_of_cut(0.28, walls), 0.02) << int(walls);
+    EXPECT_GT(advance_of_cut(0.25, walls), 0.05) << int(walls);
+  }
+}
+
 // A column of water, twice as high as wide, collapses. Contacts of particles take little of its
 // energy.
 TEST(MpsSolver, DamBreakKeepsItsEnergy) {

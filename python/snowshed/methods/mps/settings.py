@@ -17,6 +17,7 @@ MpsSplitting = Literal["viscosity_first", "pressure_first"]
 MpsCoupling = Literal["none", "stiff", "always"]
 MpsSurface = Literal["published", "mirrored"]
 MpsOrder = Literal["published", "single_move"]
+MpsStress = Literal["published", "symmetric"]
 MpsSpacing = Literal["none", "collision", "shifting"]
 MpsPreconditioner = Literal["jacobi", "incomplete_cholesky", "multigrid"]
 
@@ -75,6 +76,8 @@ class MpsSettings(MethodSettings):
         Speed below which moving snow is deposited [m/s]. 0 <= value <= 10000; default 0.05.
     walls : {"mirrors", "particles"}
         Walls: mirror images of the snow, or particles. Default "mirrors".
+    stress : {"published", "symmetric"}
+        Viscous force: as published, or of a symmetric stress. Default "symmetric".
     source : {"published", "compensated"}
         Right-hand side of the pressure equation. Default "compensated".
     compensation : float
@@ -129,6 +132,7 @@ class MpsSettings(MethodSettings):
     deposition_pressure: Optional[float] = default(25.0)
     deposition_speed: Optional[float] = default(0.05)
     walls: Optional[MpsWalls] = default("mirrors")
+    stress: Optional[MpsStress] = default("symmetric")
     source: Optional[MpsSource] = default("compensated")
     compensation: Optional[float] = default(0.1)
     gradient: Optional[MpsGradient] = default("corrected")

@@ -2,6 +2,7 @@
 #include "snowshed/methods/mps/kernels/products.hpp"
 #include "snowshed/methods/mps/kernels/rates.hpp"
 #include "snowshed/methods/mps/kernels/search.hpp"
+#include "snowshed/methods/mps/kernels/stress.hpp"
 #include "snowshed/methods/mps/kernels/weights.hpp"
 
 SNOWSHED_MODULE_VARIANT_BEGIN(methods::mps)
@@ -76,11 +77,24 @@ struct Rows {
     for (std::ptrdiff_t i = begin; i < end; ++i)
       find_pair_rates<D>(rows, offset, velocity, gradient, rate, std::size_t(i));
   }
+  static void sum_stresses(const PairRows& rows, const float* const* offset, const float* coupling,
+                           const double* block, const double* p, const double* turn, double* q,
+                           double* torque, std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t i = begin; i < end; ++i)
+      sum_row_stresses<D>(rows, offset, coupling, block, p, turn, q, torque, std::size_t(i));
+  }
+  static void spread_torques(const PairRows& rows, const float* const* offset, const float* slope,
+                             const double* block, const double* spread, double* q,
+                             std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t i = begin; i < end; ++i)
+      spread_row_torques<D>(rows, offset, slope, block, spread, q, std::size_t(i));
+  }
 
   static constexpr Kernels<D> table{
       &search,          &weigh,          &sum_moments,         &isotropic_weights,
       &apply,           &residual,       &apply_to_velocities, &sum_gradients,
-      &sum_separations, &sum_approaches, &pair_rates};
+      &sum_separations, &sum_approaches, &pair_rates,          &sum_stresses,
+      &spread_torques};
 };
 
 }  // namespace
