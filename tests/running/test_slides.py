@@ -120,6 +120,13 @@ def test_bad_slides_are_refused(slope, path, value, message):
         slope.set(path, value).resolve()
 
 
+@pytest.mark.parametrize(("time_step", "is_told"), [(0.1, True), (0.03, True), (0.02, False)])
+def test_divided_steps_are_told(slope, tmp_path, time_step, is_told):
+    slope.update({"numerics.bonds": False, "numerics.time_step": time_step, "events.max_time": 0.5})
+    notes = run(slope, tmp_path / "out", pictures=False).summary.notes
+    assert any("were divided" in note for note in notes) == is_told
+
+
 def test_a_release_beyond_the_terrain_is_refused_without_files(slope, tmp_path):
     slope.terrain.release[0].outline = [(0, 0), (9, 0), (9, 9)]
     with pytest.raises(InputError, match="/terrain/release/0: reaches beyond the terrain"):

@@ -73,13 +73,14 @@ def test_an_event_ends_within_a_step_of_its_time_limit(method, tmp_path):
     assert before < limit - 1e-6 * step <= simulation.time < limit + step
 
 
-def test_steps_that_divide_the_time_limit_reach_it_exactly(tmp_path):
+@pytest.mark.parametrize(("mixing_rate", "steps"), [(0.0, 10), (8.0, 40)])
+def test_steps_that_divide_the_time_limit_reach_it_exactly(tmp_path, mixing_rate, steps):
     """Ten steps of 0.1 s make 0.99999 s in floating point: no eleventh follows."""
     scene = scene_of("slide", tmp_path).update({"events.max_time": 1.0, "numerics.time_step": 0.1})
-    scene.update({"numerics.bonds": False})
+    scene.update({"numerics.bonds": False, "numerics.mixing_rate": mixing_rate})
     run(scene, tmp_path / "out", pictures=False)
     (event,) = json.loads((tmp_path / "out" / "run.json").read_text())["finished_events"]
-    assert event["steps"] == 10
+    assert event["steps"] == steps
 
 
 def test_a_rest_time_of_zero_does_not_end_an_event_at_once(tmp_path):

@@ -131,7 +131,14 @@ inline void mend_slide(Randomizer& randomizer, Scene& scene) {
   scene.output.energy = scene.output.forces = false;
   methods::slide::Settings& settings = scene.numerics.as<methods::slide::Settings>();
   settings.explicit_friction = false;
-  if (settings.mode == methods::slide::Mode::compatible) scene.terrain->thickness_file.clear();
+  const methods::slide::Settings usual;
+  if (settings.mode == methods::slide::Mode::compatible) {
+    scene.terrain->thickness_file.clear();
+    settings.columns = usual.columns;
+    settings.mixing_rate = usual.mixing_rate;
+  } else {
+    settings.artificial_viscosity = usual.artificial_viscosity;
+  }
 }
 
 /// Turns a scene into a loading test of a sample, in stages that may follow each other.

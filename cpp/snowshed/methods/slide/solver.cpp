@@ -75,7 +75,7 @@ SolverImpl::SolverImpl(Options o)
     : model_(o.settings, o.gravity, o.terrain, std::move(o.areas), o.energy), state_(model_) {
   check_on_terrain(model_.terrain, model_.areas.release, "release");
   check_effort(model_.settings, model_.terrain, model_.areas.release);
-  state_.counters.smallest_dt = model_.settings.time_step;
+  state_.counters.smallest_dt = longest_step(model_.settings);
 }
 
 /// Appends a batch and bonds its particles with each other.
@@ -230,8 +230,9 @@ void SolverImpl::step() {
   refresh_fields(model_, state_, workspace_, &state_.peaks);
   state_.dt = state_.step;
   ++state_.counters.steps;
-  const bool step_is_given = state_.counters.smallest_dt == model_.settings.time_step;
-  state_.time = step_is_given ? double(state_.counters.steps) * state_.dt : state_.time + state_.dt;
+  const bool step_is_constant = state_.counters.smallest_dt == longest_step(model_.settings);
+  state_.time =
+      step_is_constant ? double(state_.counters.steps) * state_.dt : state_.time + state_.dt;
   state_.counters.particle_updates += std::int64_t(size());
   order_.forget();
   workspace_.thread_choice.end();

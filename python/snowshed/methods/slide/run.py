@@ -140,7 +140,18 @@ def _summary(
     of_files = str(scene["terrain"].get("notes", "")).splitlines()
     of_border = _border_notes(slide["left_terrain_kg"], maps)
     validity = validity_notes(areas, scene["numerics"], asdict(summary))
-    return replace(summary, notes=(*of_files, *of_border, *validity))
+    of_steps = _step_notes(facts, scene["numerics"]["time_step"])
+    return replace(summary, notes=(*of_files, *of_border, *validity, *of_steps))
+
+
+def _step_notes(facts: Mapping[str, Any], time_step: float) -> tuple[str, ...]:
+    time, steps = facts["sim_time_s"], facts["steps"]
+    if steps <= math.ceil(time / time_step - 1e-6):
+        return ()
+    return (
+        f"Steps of {time_step:g} s were divided, to {time / steps:.2g} s on average, because bonds "
+        "or the mixing of velocities need shorter ones.",
+    )
 
 
 def _border_notes(left: float, maps: SlideMaps) -> tuple[str, ...]:
