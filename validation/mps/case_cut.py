@@ -13,7 +13,7 @@ DENSITY = 200.0  # kg/m3
 #: c/(rho g H) below which a cut falls: the inverse of the stability number 3.78.
 CRITICAL_STRENGTH = 0.265
 #: A face that moved farther than this share of the height has fallen.
-LARGEST_ADVANCE = 0.02
+MAX_ADVANCE = 0.02
 
 
 def measure(settings: CaseSettings) -> Outcome:
@@ -36,7 +36,7 @@ def measure(settings: CaseSettings) -> Outcome:
     )
     drive.run_to(END_S)
     advance = float(drive.core.positions()[:, 0].max()) + spacing / 2 - WIDTH
-    fell = float(advance / HEIGHT > LARGEST_ADVANCE)
+    fell = float(advance / HEIGHT > MAX_ADVANCE)
     expected = float(strength < CRITICAL_STRENGTH)
     return drive.outcome(
         [

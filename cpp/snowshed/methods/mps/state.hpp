@@ -157,7 +157,7 @@ template <int D>
 struct ViscousSolve {
   AlignedVector<VecD<D>> right_side, residual;  // m/s
   AlignedVector<float> coupling;                // coupling of velocities, one per pair
-  AlignedVector<float> weight;                  // of pairs, see find_stress_weights
+  AlignedVector<float> weight;                  // weights of pairs, see find_stress_weights
   AlignedVector<Eigen::Matrix<double, D, D>> block, inverse_block;
   AlignedVector<Eigen::Matrix<double, D, D>> own_block;         // without the couplings
   AlignedVector<Eigen::Matrix<double, D, D>> gradient, spread;  // see apply_symmetric_stress

@@ -167,7 +167,7 @@ double wall_drag(const Model<D>& model, const Particles<D>& particles, double sh
   return share * viscosity / (s.density * s.spacing * height);
 }
 
-/// How firmly a wall holds the snow that it presses: this many times the inertia of a particle.
+/// A wall holds the snow that it presses with this many times the inertia of a particle.
 constexpr double wall_hold = 1e4;
 
 /// Walls bear the stress of the snow that they press: viscosity does not move its layer next to a
