@@ -24,6 +24,7 @@ struct Solid {
   std::string path;
   std::string file;  // empty: of no file
   double size;       // m, its longest edge; infinite or 0 if it has none
+  bool is_snow = false;
 };
 
 /// The first file that a shape is made of.
@@ -63,7 +64,7 @@ std::vector<Solid> solids_of(const Scene& scene, const std::filesystem::path& ba
                       longest_edge(listed[i].shape->bounds(), scene.dimension)});
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
     solids.push_back({"/bodies/" + std::to_string(i) + "/shape", file_of(scene.bodies[i].shape),
-                      size_of_body(scene.bodies[i], i, scene, base_dir, notes)});
+                      size_of_body(scene.bodies[i], i, scene, base_dir, notes), true});
   return solids;
 }
 
@@ -86,7 +87,7 @@ void add_notes_on_snow_of_panel(const Scene& scene, const std::vector<Solid>& so
     compare("/slab/length", scene.slab->length, "long", panel, 1 / max_panel_ratio, 1, notes);
   }
   for (const Solid& solid : solids)
-    if (solid.file.empty() && solid.path.rfind("/bodies", 0) == 0)
+    if (solid.is_snow && solid.file.empty())
       compare(solid.path, solid.size, "large", panel, 1 / max_panel_ratio, max_panel_ratio, notes);
 }
 

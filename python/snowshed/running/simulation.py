@@ -20,7 +20,12 @@ from snowshed.results.provenance import present_origin, with_origin
 from snowshed.running.laws import Laws, addresses_of
 from snowshed.running.particle_reading import ReadsParticles
 from snowshed.running.sequence import issuing_notes
-from snowshed.running.stepping_checks import note_on_mass, note_on_time, refuse_coincident
+from snowshed.running.stepping_checks import (
+    note_on_mass,
+    note_on_time,
+    refuse_coincident,
+    refuse_fast,
+)
 from snowshed.scene.components import Snow
 from snowshed.scene.resolved import snows_of
 from snowshed.scene.scene import ResolvedScene, SceneLike, resolve_scene
@@ -31,7 +36,6 @@ Ended = Literal["rest", "time_limit", "reached"]
 Until = Union[Literal["rest"], float, Callable[["Simulation"], bool]]
 OnStep = Callable[["Simulation"], object]
 
-MAX_SPEED = 1e4  # m/s, as in scenes
 MAX_STEPS = 64  # steps between two checks for Ctrl-C
 CHECK_INTERVAL = 0.1  # s of wall time between checks while the core runs to rest
 
@@ -325,8 +329,7 @@ class Simulation(ReadsParticles):
         seeded = self._seeded_mass(snows[kind])
         heavy = seeded if mass is None else positive("mass", mass)
         note_on_mass(heavy, seeded)
-        if np.abs(speed).max() > MAX_SPEED:
-            raise InputError(f"velocity: faster than {MAX_SPEED:g} m/s")
+        refuse_fast("velocity", speed)
         with issuing_notes(self._core):
             self._core.add_snow(given, heavy, tuple(speed.tolist()), kind)
 
@@ -354,8 +357,7 @@ class Simulation(ReadsParticles):
         is_single = rows.ndim == 1
         count = 1 if is_single else self.particle_count
         vectors = points("changes", rows[None] if is_single else rows, self.dimension, count)
-        if np.abs(vectors).max(initial=0.0) > MAX_SPEED:
-            raise InputError(f"changes: faster than {MAX_SPEED:g} m/s")
+        refuse_fast("changes", vectors)
         self._core.add_velocity(np.broadcast_to(vectors, (self.particle_count, 3)))
 
     def _seeded_mass(self, snow: Snow) -> float:

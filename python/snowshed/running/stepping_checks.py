@@ -8,6 +8,7 @@ from snowshed._core import InputError
 from snowshed.base.arrays import Floats
 from snowshed.base.notes import issue_note
 
+MAX_SPEED = 1e4  # m/s, as in scenes
 MASS_RATIO = 10.0  # masses that differ more from those of seeded particles are noted
 
 
@@ -32,6 +33,12 @@ repeats another
             f"positions: indices {original[at]} and {at} are the same place, and {len(repeated)} "
             f"of {len(positions)} positions {verb} another"
         )
+
+
+def refuse_fast(name: str, velocities: Floats) -> None:
+    """Raise InputError if a component of a velocity exceeds the largest speed of scenes."""
+    if np.abs(velocities).max(initial=0.0) > MAX_SPEED:
+        raise InputError(f"{name}: faster than {MAX_SPEED:g} m/s")
 
 
 def note_on_mass(mass: float, seeded: float) -> None:

@@ -179,7 +179,7 @@ struct SplitForces {
 struct WallFriction {
   AlignedVector<double> share, weight_sum;  // see compute_wall_contact_fractions
   AlignedVector<double> drag;               // one per contact with a wall, 1/s
-  AlignedVector<double> hold, reaction;     // see hold_of_wall, find_wall_reactions (Pa)
+  AlignedVector<double> reaction;           // see find_wall_reactions, Pa
 };
 
 /// Corrections of the distances between particles.

@@ -88,6 +88,8 @@ void find_couplings(const Model<D>& model, double factor, const Particles<D>& pa
   const particles::NeighbourLists<D>& lists = near.lists;
   const Rheology& law = model.rheology;
   const int threads = model.threads_for(lists.size());
+  const AlignedVector<float>& weight =
+      model.has_symmetric_stress() ? work.viscosity.weight : near.isotropic_weight;
   work.viscosity.coupling.resize(lists.pairs());
   const auto for_each_pair = [&](const auto& coupling) {
     for_each_particle(lists.size(), threads, [&](std::size_t i) {
@@ -98,8 +100,7 @@ void find_couplings(const Model<D>& model, double factor, const Particles<D>& pa
     });
   };
   const auto set = [&](std::uint32_t e, double viscosity, bool is_wall) {
-    work.viscosity.coupling[e] =
-        is_wall ? 0.0f : float(factor * viscosity * double(work.viscosity.weight[e]));
+    work.viscosity.coupling[e] = is_wall ? 0.0f : float(factor * viscosity * double(weight[e]));
   };
   if (law.is_newtonian()) {
     for_each_pair([&](std::size_t, std::size_t, std::uint32_t e, bool is_wall) {
@@ -198,7 +199,8 @@ void find_wall_reactions(const Model<D>& model, double dt, const Velocities<D>& 
     for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c) {
       const std::size_t k = near.contacts.index_of(c);
       const double share = work.wall_friction.share[k];
-      const double hold = particles.moves(i) && share > 0 ? work.wall_friction.hold[k] : 0.0;
+      const double hold =
+          particles.moves(i) && share > 0 ? hold_of_wall(model, particles, i, *c) : 0.0;
       const VecD<D>& held = held_velocity(model, dt, work, start, i, *c);
       work.wall_friction.reaction[k] =
           hold > 0 ? per_speed * hold / share * (held - particles.velocity[i]).dot(c->normal) : 0.0;
@@ -277,7 +279,6 @@ SolveReport solve_viscosity(const Model<D>& model, double dt, const Velocities<D
         const Matrix across = hold * c->normal * c->normal.transpose();
         own += along + across;
         right += along * c->velocity + across * held_velocity(model, dt, work, start, i, *c);
-        work.wall_friction.hold[k] = hold;
       }
     const Matrix block = own + sum * Matrix::Identity();
     work.viscosity.right_side[i] = moves ? right : VecD<D>(VecD<D>::Zero());
@@ -367,9 +368,9 @@ SolveReport apply_viscosity(const Model<D>& model, double dt, Particles<D>& part
       particles.velocity[i] = work.before[i] + first_guess_share * (start[i] - work.before[i]);
   const double scale = velocity_scale(model, dt, particles);
   compute_wall_contact_fractions(model, particles, work);
-  work.wall_friction.hold.assign(work.near.contacts.all().size(), 0.0);
   work.wall_friction.reaction.assign(work.near.contacts.all().size(), 0.0);
-  find_stress_weights(model, particles, work);
+  const bool symmetric = model.has_symmetric_stress();
+  if (symmetric) find_stress_weights(model, particles, work);
   if (!newtonian) {
     prepare_rates(model, particles, work);
     work.near.lists.find_mirrors(model.threads_for(particles.size()));
@@ -385,7 +386,7 @@ SolveReport apply_viscosity(const Model<D>& model, double dt, Particles<D>& part
     if (!newtonian) find_rates(model, particles, work);
     last = particles.velocity;
     const SolveReport solve = solve_viscosity(model, dt, start, tolerance, scale, particles, work);
-    find_wall_reactions(model, dt, start, particles, work);
+    if (symmetric) find_wall_reactions(model, dt, start, particles, work);
     report = {report.iterations + solve.iterations, solve.residual, solve.converged};
     if (!solve.converged || newtonian || last_chance) break;
     const double change = distance<D>(particles.velocity, last);

@@ -51,7 +51,6 @@ template <int D>
 void find_stress_weights(const Model<D>& model, const Particles<D>& particles, Workspace<D>& work) {
   const Neighbourhood<D>& near = work.near;
   work.viscosity.weight = near.isotropic_weight;
-  if (!model.has_symmetric_stress()) return;
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
     if (near.contacts.begin(i) == near.contacts.end(i)) return;
     for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)

@@ -26,4 +26,8 @@ SNOWSHED_INLINE double across_flow_column_factor(double nz, double ux, double uy
   return (1 - steepness) / nz;
 }
 
+SNOWSHED_INLINE double column_factor(bool across_flow, double nz, double ux, double uy, double uz) {
+  return across_flow ? across_flow_column_factor(nz, ux, uy, uz) : vertical_column_factor(nz);
+}
+
 }  // namespace snowshed::methods::slide

@@ -59,13 +59,6 @@ double raised_integral(double n) {
              (std::pow(n, rest) - std::pow(neighbours_at_factor_2, rest));
 }
 
-double column_factor(const Model& model, const Workspace& work, const Vec3& u, std::size_t i) {
-  const double nz = work.cell_positions.nz[i];
-  return model.settings.columns == Columns::across_flow
-             ? across_flow_column_factor(nz, u.x(), u.y(), u.z())
-             : vertical_column_factor(nz);
-}
-
 /// The potential energy of the pressure (columns.hpp), J: sum_k m_k g f_k h_k / 2, raised where
 /// neighbours are few.
 double pressure_energy(const Model& model, const State& state, const Workspace& work) {
@@ -76,8 +69,11 @@ double pressure_energy(const Model& model, const State& state, const Workspace& 
     const double mass_sum = kernel_mass_sum(p, work.cells, work.cell_positions, i, radius);
     const double neighbours = 10 / (radius * radius * radius) * mass_sum / p.mass[i];
     const double thickness_of_one = p.mass[i] / (pi * radius * radius * model.settings.density);
-    sum += 0.5 * p.mass[i] * model.gravity * column_factor(model, work, velocity_at(state, i), i) *
-           thickness_of_one * raised_integral(neighbours);
+    const bool across_flow = model.settings.columns == Columns::across_flow;
+    const double factor =
+        column_factor(across_flow, work.cell_positions.nz[i], p.ux[i], p.uy[i], p.uz[i]);
+    sum +=
+        0.5 * p.mass[i] * model.gravity * factor * thickness_of_one * raised_integral(neighbours);
   }
   return sum;
 }

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, Optional
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from snowshed._core import InputError
 from snowshed.base.extras import require
@@ -25,6 +26,19 @@ from snowshed.io.raster.thickness import ThicknessField, thickness_fields, thick
 Ring = Sequence[Sequence[float]]
 
 MAX_NAME = 200  # characters
+
+
+def ring_area(ring: ArrayLike) -> float:
+    """Return the area within a ring of corners (x, y), m2.
+
+    Examples
+    --------
+    >>> ring_area([(0.0, 0.0), (2.0, 0.0), (2.0, 3.0), (0.0, 3.0)])
+    6.0
+    """
+    corners = np.asarray(ring, dtype=float)
+    x, y = (corners - corners[0]).T
+    return 0.5 * abs(float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))))
 
 
 @dataclass(frozen=True)

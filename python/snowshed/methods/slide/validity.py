@@ -15,6 +15,7 @@ from typing import Any, Optional
 import numpy as np
 
 from snowshed.base.arrays import Booleans, Floats
+from snowshed.io.raster.areas import ring_area
 from snowshed.io.raster.raster import Raster, read_raster
 
 SLOPES = (28.0, 50.0)  # degrees
@@ -174,9 +175,7 @@ def _release_area(ground: Raster, inclination: Floats, area: Mapping[str, Any]) 
     outline = np.asarray(area["outline"], dtype=float)
     inside = _within(ground, area)
     slopes, heights = inclination[inside], ground.heights[inside]
-    flat = _ring_area(outline) - sum(
-        _ring_area(np.asarray(hole["outline"], dtype=float)) for hole in area.get("holes") or ()
-    )
+    flat = ring_area(outline) - sum(ring_area(hole["outline"]) for hole in area.get("holes") or ())
     outside = (slopes < SLOPES[0]) | (slopes > SLOPES[1])
     return ReleaseArea(
         name=area.get("name") or "release",
@@ -226,8 +225,3 @@ def _inside(ground: Raster, ring: Floats) -> Booleans:
             crossing = x0 + (y - y0) * (x1 - x0) / (y1 - y0)
             inside ^= ((y0 > y) != (y1 > y)) & (x < crossing)
     return inside
-
-
-def _ring_area(ring: Floats) -> float:
-    x, y = ring[:, 0] - ring[0, 0], ring[:, 1] - ring[0, 1]
-    return 0.5 * abs(float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Optional, Union
 from uuid import uuid4
@@ -17,7 +17,7 @@ from snowshed.base.limits import MAX_TERRAIN_CELLS
 from snowshed.base.notes import issue_note, record_notes
 from snowshed.base.paths import PathLike
 from snowshed.io.array_files import array_folder
-from snowshed.io.raster.areas import MapArea, read_areas
+from snowshed.io.raster.areas import MapArea, read_areas, ring_area
 from snowshed.io.raster.arrays import areas_of, raster_of
 from snowshed.io.raster.raster import Raster, is_single, read_raster, write_ascii_grid
 from snowshed.io.raster.release import areas_of_depth, snow_part
@@ -130,7 +130,7 @@ def slide_scene(
     most = MAX_THICKNESS if max_thickness is None else max_thickness
     rings = [_snow_area(area, thickness, most, depth) for area in areas]
     for area in areas:
-        if _size(area.outline) < terrain.cell**2:
+        if ring_area(area.outline) < terrain.cell**2:
             issue_note(f"{area.name}: smaller than a cell of the terrain; are its units right?")
     file = _ascii_grid(Path(terrain.name), terrain, ascii_copy)
     map_file = None if depth is None else str(_thickness_file(depth, ascii_copy).resolve())
@@ -288,12 +288,6 @@ def _snow_area(
             "centimetres? If not, raise `max_thickness=`"
         )
     return Area(name=area.name, outline=area.outline, holes=_holes(area), thickness=snow)
-
-
-def _size(outline: Sequence[Sequence[float]]) -> float:
-    """Return the area within an outline, m2."""
-    x, y = np.asarray(outline, dtype=float).T
-    return 0.5 * abs(float(x @ np.roll(y, 1) - y @ np.roll(x, 1)))
 
 
 def _holes(area: MapArea) -> Optional[list[Hole]]:

@@ -46,11 +46,6 @@ SNOWSHED_INLINE void count_neighbours_of(const View& s, std::uint32_t first,
     s.sorted_pressure_factor[first + k] = sums[k] / s.sorted_mass[first + k];
 }
 
-SNOWSHED_INLINE double column_factor(const View& s, std::uint32_t i) {
-  return s.across_flow ? across_flow_column_factor(s.nz[i], s.ux[i], s.uy[i], s.uz[i])
-                       : vertical_column_factor(s.nz[i]);
-}
-
 /// Finds the factor on the pressure for the particles of a row.
 SNOWSHED_INLINE void weigh_row(const View& s, int row) {
   for_each_neighbourhood(s, row,
@@ -63,8 +58,10 @@ SNOWSHED_INLINE void weigh_row(const View& s, int row) {
   for (std::ptrdiff_t e = begin; e < end; e += width) {
     const int count = end - e < width ? int(end - e) : width;
     V factor;
-    for (int lane = 0; lane < width; ++lane)
-      factor[lane] = column_factor(s, s.sorted_particle[e + (lane < count ? lane : 0)]);
+    for (int lane = 0; lane < width; ++lane) {
+      const std::uint32_t i = s.sorted_particle[e + (lane < count ? lane : 0)];
+      factor[lane] = column_factor(s.across_flow, s.nz[i], s.ux[i], s.uy[i], s.uz[i]);
+    }
     store(s.sorted_column_mass + e, V(factor * load(s.sorted_mass + e, count)), count);
     store(s.sorted_pressure_factor + e, raised_pressure(load(s.sorted_pressure_factor + e, count)),
           count);
