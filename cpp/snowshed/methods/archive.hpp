@@ -37,10 +37,10 @@ struct StoredAs<T, std::enable_if_t<std::is_enum_v<T>>> {
   using Type = std::underlying_type_t<T>;
   static constexpr std::size_t count = 1;
 };
-template <class Scalar, int D>
-struct StoredAs<Eigen::Matrix<Scalar, D, 1>> {
+template <class Scalar, int Rows, int Columns>
+struct StoredAs<Eigen::Matrix<Scalar, Rows, Columns>> {
   using Type = Scalar;
-  static constexpr std::size_t count = D;
+  static constexpr std::size_t count = std::size_t(Rows) * std::size_t(Columns);
 };
 template <class Scalar, std::size_t N>
 struct StoredAs<std::array<Scalar, N>> {

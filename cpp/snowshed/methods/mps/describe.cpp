@@ -23,6 +23,8 @@ void describe(SettingsVisitor& v, Settings& s) {
            "Inner friction angle: the yield stress grows with its tangent times the pressure");
   v.number("stress_growth", s.stress_growth, "s", positive.up_to(1e6),
            "Coefficient m with which the yield stress is approached");
+  v.number("yield_strain", s.yield_strain, "", positive.up_to(0.1),
+           "Shear strain at which snow with an elastoplastic stress yields");
   v.number("dilatant_rate", s.dilatant_rate, "1/s", positive.up_to(1e9),
            "Shear rate above which the stress grows as a power of the rate");
   v.number("dilatant_exponent", s.dilatant_exponent, "", between(1.0, 5.0),
@@ -41,7 +43,8 @@ void describe(SettingsVisitor& v, Settings& s) {
   v.number("deposition_speed", s.deposition_speed, "m/s", non_negative.up_to(1e4),
            "Speed below which moving snow is deposited");
   v.choice("walls", s.walls, "Walls: mirror images of the snow, or particles");
-  v.choice("stress", s.stress, "Viscous force: as published, or of a symmetric stress");
+  v.choice("stress", s.stress,
+           "Shear stress: viscous as published, or elastic until the snow yields");
   v.choice("source", s.source, "Right-hand side of the pressure equation");
   v.number("compensation", s.compensation, "", fraction,
            "Share of the density's error that a step removes");

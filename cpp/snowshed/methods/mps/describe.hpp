@@ -32,7 +32,7 @@ struct EnumNames<mps::Walls> {
 template <>
 struct EnumNames<mps::Stress> {
   static constexpr Named<mps::Stress> list[] = {{mps::Stress::published, "published"},
-                                                {mps::Stress::symmetric, "symmetric"}};
+                                                {mps::Stress::elastoplastic, "elastoplastic"}};
 };
 
 template <>

@@ -42,6 +42,8 @@ void SolverImpl<D>::append(State<D>& state, const ParticleBatch& batch) const {
     p.pressure[i] = p.shear_rate[i] = 0;
     p.pressure_acceleration[i].setZero();
     p.viscous_acceleration[i].setZero();
+    p.elastic_strain[i].setZero();
+    p.elastic_slip[i].setZero();
     p.mass[i] = batch.mass_of(k);
     p.relative_density[i] = 1;
     p.viscosity[i] = model_.rheology.viscosity;

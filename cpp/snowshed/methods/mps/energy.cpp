@@ -1,5 +1,7 @@
 #include "snowshed/methods/mps/energy.hpp"
 
+#include "snowshed/methods/mps/elastic_strain.hpp"
+
 namespace snowshed::methods::mps {
 
 template <int D>
@@ -53,9 +55,9 @@ void EnergyRecorder<D>::end_step(const Model<D>& model, const Workspace<D>& work
     double friction = 0;
     for (const WallContact<D>* c = work.near.contacts.begin(i); c < work.near.contacts.end(i);
          ++c) {
-      const VecD<D> relative = viscous_[i] - c->velocity;
       friction += dt * mass * work.wall_friction.drag[work.near.contacts.index_of(c)] *
-                  (relative - relative.dot(c->normal) * c->normal).dot(mean);
+                  sliding_velocity(model, dt, viscous_[i], work.start.particles.elastic_slip[i], *c)
+                      .dot(mean);
     }
     e.friction += friction;
     e.plastic -= mass * viscous_change_[i].dot(mean) + friction;

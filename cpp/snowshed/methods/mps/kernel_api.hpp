@@ -63,20 +63,31 @@ struct Kernels {
                          std::ptrdiff_t end);
   /// The shear rate (1/s) at the midpoint of each pair whose neighbour has the larger index. It
   /// follows from the mean of both gradients, in which the difference of the velocities replaces
-  /// the part along the separation.
+  /// the part along the separation. The mean of `elastic` (1/s, null without one) is added.
   void (*pair_rates)(const PairRows&, const float* const* offset, const double* velocity,
-                     const double* gradient, float* rate, std::ptrdiff_t begin, std::ptrdiff_t end);
+                     const double* gradient, const double* elastic, float* rate,
+                     std::ptrdiff_t begin, std::ptrdiff_t end);
+  /// turn = sum of u_a l_b - u_b l_a in each row, the components a < b of a matrix; u is the change
+  /// of p, and l the `lever` of the pair, a vector.
+  void (*sum_turns)(const PairRows&, const float* lever, const double* p, double* turn,
+                    std::ptrdiff_t begin, std::ptrdiff_t end);
   /// q = block p - sum of t in each row; q = 0 if the block begins with zero. t is twice the
   /// coupling times the change of p in a frame that turns with the mean of both particles' `turn`
   /// (antisymmetric components of a matrix). `torque` is -1/4 of the sum of t_a r_b - t_b r_a.
   void (*sum_stresses)(const PairRows&, const float* const* offset, const float* coupling,
                        const double* block, const double* p, const double* turn, double* q,
                        double* torque, std::ptrdiff_t begin, std::ptrdiff_t end);
-  /// Subtracts from q the sum of slope (spread_i + spread_j) r in rows whose block does not begin
-  /// with zero; `spread` has matrices by columns.
-  void (*spread_torques)(const PairRows&, const float* const* offset, const float* slope,
-                         const double* block, const double* spread, double* q, std::ptrdiff_t begin,
+  /// Subtracts from q twice T_i l + sum of T_j m, in rows whose block does not begin with zero. T
+  /// are the antisymmetric matrices of the torques, l is a row's `lever_sum`, and m the `far_lever`
+  /// of a pair.
+  void (*spread_torques)(const PairRows&, const float* far_lever, const double* lever_sum,
+                         const double* block, const double* torque, double* q, std::ptrdiff_t begin,
                          std::ptrdiff_t end);
+  /// q = - sum of t in each row, or 0 if the block begins with zero. t is the coupling times
+  /// (tensor_i + tensor_j) r, with matrices by columns, and `torque` as in sum_stresses.
+  void (*sum_tensors)(const PairRows&, const float* const* offset, const float* coupling,
+                      const double* block, const double* tensor, double* q, double* torque,
+                      std::ptrdiff_t begin, std::ptrdiff_t end);
 };
 
 /// The kernels of the instruction set in use.

@@ -26,7 +26,9 @@ struct Particles {
   /// m/s2, the gradient of the pressure over the density, in the last step. Wall particles have no
   /// acceleration; the array holds their `wall_normal`.
   AlignedVector<VecD<D>> pressure_acceleration;
-  AlignedVector<VecD<D>> viscous_acceleration;  // m/s2, in the last step
+  AlignedVector<VecD<D>> viscous_acceleration;                // m/s2, in the last step
+  AlignedVector<Eigen::Matrix<double, D, D>> elastic_strain;  // see elastic_strain.hpp
+  AlignedVector<VecD<D>> elastic_slip;                        // m, along the walls beside it
   AlignedVector<Kind> kind;
   AlignedVector<std::uint32_t> id;
   AlignedVector<std::uint16_t> event;  // for wall particles, the number of the obstacle
@@ -57,6 +59,8 @@ struct Particles {
     visit("viscosity", self.viscosity, other.viscosity);
     visit("push", self.pressure_acceleration, other.pressure_acceleration);
     visit("shear", self.viscous_acceleration, other.viscous_acceleration);
+    visit("strain", self.elastic_strain, other.elastic_strain);
+    visit("slip", self.elastic_slip, other.elastic_slip);
     visit("kind", self.kind, other.kind);
     visit("id", self.id, other.id);
     visit("event", self.event, other.event);

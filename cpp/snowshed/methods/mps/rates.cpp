@@ -15,7 +15,8 @@ Eigen::Matrix<double, D, D> rate_correction(const Model<D>& model, const Neighbo
                                             std::size_t i) {
   using Matrix = Eigen::Matrix<double, D, D>;
   const Matrix moment = model.gradient() * symmetric<D>(near.moments[i].slope);
-  constexpr double min_determinant = 0.05;  // 1 on a lattice
+  // 1 on a lattice; at the corners of a cube 0.04, and 0.02 with a radius of 3.1
+  constexpr double min_determinant = D == 2 ? 0.05 : 0.01;
   if (!(moment.determinant() > min_determinant)) return model.gradient() * Matrix::Identity();
   return model.gradient() * moment.inverse();
 }

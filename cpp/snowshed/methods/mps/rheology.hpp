@@ -53,6 +53,21 @@ struct Rheology {
     return stress * (x < 40 ? 1 - std::exp(-x) : 1.0) / rate;  // exp(-40) is lost beside 1
   }
 
+  /// The stress over the shear rate at which elastic snow would have deformed in a step, Pa s.
+  /// `rate` is the sum of the strain rate and of the elastic strain over the step, `yield_rate` the
+  /// yield strain over the step. Until the snow yields its stress is yield * rate / yield_rate, and
+  /// then that of the excess of the rate.
+  double elastic_viscosity(double yield, double rate, double yield_rate) const {
+    if (rate <= yield_rate) return yield / yield_rate;
+    return flow_stress(yield, rate - yield_rate) / rate;
+  }
+
+  /// The stress of snow that flows at a shear rate, Pa.
+  double flow_stress(double yield, double rate) const {
+    if (rate <= dilatant_rate) return yield + viscosity * rate;
+    return (yield + viscosity * dilatant_rate) * std::pow(rate / dilatant_rate, exponent);
+  }
+
   /// The apparent viscosity eta' (22), Pa s.
   double apparent_viscosity(double yield, double rate) const {
     if (rate <= dilatant_rate) return viscosity + regularised(yield, rate);

@@ -7,9 +7,9 @@ namespace snowshed::methods::mps {
 enum class ShearLaw { newtonian, bingham, bingham_dilatant };
 /// Form of the yield stress at small shear rates.
 enum class Regularisation { papanastasiou, bi_viscous };
-/// Viscous force: the weighted sum of velocity differences, or the divergence of a symmetric
-/// stress.
-enum class Stress { published, symmetric };
+/// Shear stress: viscous, with the weighted sum of velocity differences as its force, or elastic
+/// until the snow yields, with the divergence of the stress.
+enum class Stress { published, elastoplastic };
 /// Right-hand side of the pressure equation: Koshizuka and Oka (1996); Tanaka and Masunaga (2010).
 enum class Source { published, compensated };
 /// Pressure gradient: relative to the least neighbouring pressure, with equal and opposite forces,
@@ -47,6 +47,7 @@ struct Settings {
   double cohesion = 0;         // Pa, "adhesive force"
   double friction_angle = 24;  // degrees
   double stress_growth = 1e4;  // s, m of Papanastasiou
+  double yield_strain = 3e-4;  // shear strain at which elastoplastic snow yields
   double dilatant_rate = 100;  // 1/s, above which the dilatant branch holds
   double dilatant_exponent = 1.5;
   int yield_iterations = 50;  // largest number of iterations for the apparent viscosity, per step
@@ -59,7 +60,7 @@ struct Settings {
   double deposition_speed = 0.05;   // m/s
 
   Walls walls = Walls::mirrors;
-  Stress stress = Stress::symmetric;
+  Stress stress = Stress::elastoplastic;
   Source source = Source::compensated;
   double compensation = 0.1;  // share of the density's error that a step removes
   Gradient gradient = Gradient::corrected;

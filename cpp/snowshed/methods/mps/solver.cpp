@@ -6,6 +6,7 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/message_format.hpp"
 #include "snowshed/methods/mps/anderson.hpp"
+#include "snowshed/methods/mps/elastic_strain.hpp"
 #include "snowshed/methods/mps/solver_impl.hpp"
 
 namespace snowshed::methods::mps {
@@ -25,6 +26,10 @@ constexpr double pressure_courant = 0.5;
 /// Without it stiff fluids are compressed more, because viscosity acts last. With 0.9 the pressure
 /// of a column of 1e4 Pa s at rest was 1.4 % too low (ours).
 constexpr double viscous_share_uncoupled = 0.5;
+
+/// The same for elastic snow, whether it flows or not, so that the pressure bears the stress of
+/// snow at rest. With 1 the pressures of a sliding slab alternate from step to step (ours).
+constexpr double viscous_share_elastic = 0.75;
 
 /// Pressure and viscosity are solved together under three conditions; u is the root mean square of
 /// the speeds.
@@ -185,19 +190,20 @@ void SolverImpl<D>::solve_pressure_first(double dt, State<D>& next) {
   Particles<D>& p = next.particles;
   const std::size_t n = p.size();
   const int threads = model_.threads_for(n);
-  const bool coupled = is_coupled(dt);
+  const bool coupled = is_coupled(dt), elastic = model_.is_elastic();
+  const double share = coupled   ? viscous_share_first_iteration
+                       : elastic ? viscous_share_elastic
+                                 : viscous_share_uncoupled;
   prepare_pressure(model_, p, workspace_);
   SplitForces<D>& split = workspace_.splitting;
   split.predicted_velocity = p.velocity;
   split.flowing.resize(n);
   split.expected_viscous_acceleration.resize(n);
   for_each_particle(n, threads, [&](std::size_t i) {
-    split.flowing[i] = p.moves(i) && model_.rheology.flows(p.shear_rate[i]);
+    split.flowing[i] = p.moves(i) && (elastic || model_.rheology.flows(p.shear_rate[i]));
     split.expected_viscous_acceleration[i].setZero();
     if (split.flowing[i])
-      split.expected_viscous_acceleration[i] =
-          (coupled ? viscous_share_first_iteration : viscous_share_uncoupled) *
-          p.viscous_acceleration[i];
+      split.expected_viscous_acceleration[i] = share * p.viscous_acceleration[i];
   });
   AndersonMixing<D> mixing;
   SolveReport pressure, viscosity;
@@ -289,6 +295,7 @@ void SolverImpl<D>::step() {
   workspace_.before = start.particles.velocity;
   energy_recorder_.begin_step(start.particles);
   const double dt = solve_step(start, next);
+  if (model_.is_elastic()) update_elastic_strains(model_, dt, next.particles, workspace_);
   keep_spacing(model_, dt, next.particles, workspace_);
   energy_recorder_.after_forces(next.particles);
   if (model_.settings().order == Order::single_move) move(dt, next.particles);

@@ -51,9 +51,9 @@ struct Model {
   int threads;
 
   bool has_wall_particles() const { return settings().walls == Walls::particles; }
-  /// With a constant viscosity both forms of the viscous force are the same.
-  bool has_symmetric_stress() const {
-    return settings().stress == Stress::symmetric && !rheology.is_newtonian();
+  /// A fluid without a yield stress has no elastic strain.
+  bool is_elastic() const {
+    return settings().stress == Stress::elastoplastic && !rheology.is_newtonian();
   }
   bool is_sticky(const WallContact<D>& c) const {
     return options.obstacles[c.obstacle].law.condition == Condition::sticky;
@@ -148,6 +148,7 @@ struct ShearRates {
   AlignedVector<Eigen::Matrix<double, D, D>> gradient;    // velocity gradients, 1/s
   AlignedVector<Eigen::Matrix<double, D, D>> correction;  // correction of velocity gradients
   const float* snow_slope = nullptr;                      // slopes of pairs, 0 for walls
+  AlignedVector<Eigen::Matrix<double, D, D>> elastic;     // elastic strains over the step, 1/s
   AlignedVector<float> pair_rate;                         // 1/s, midway between a pair
   AlignedVector<double> smooth_pressure;                  // Pa
 };
@@ -159,8 +160,10 @@ struct ViscousSolve {
   AlignedVector<float> coupling;                // coupling of velocities, one per pair
   AlignedVector<float> weight;                  // weights of pairs, see find_stress_weights
   AlignedVector<Eigen::Matrix<double, D, D>> block, inverse_block;
-  AlignedVector<Eigen::Matrix<double, D, D>> own_block;         // without the couplings
-  AlignedVector<Eigen::Matrix<double, D, D>> gradient, spread;  // see apply_symmetric_stress
+  AlignedVector<Eigen::Matrix<double, D, D>> own_block;  // without the couplings
+  // See kernels/stress.hpp; vectors of pairs have their components one after the other.
+  AlignedVector<float> lever, far_lever;
+  AlignedVector<VecD<D>> lever_sum;
   AlignedVector<std::array<double, D*(D - 1) / 2>> turn, torque;
   AlignedVector<double> diagonal;
   Multigrid<D, D> multigrid;  // built if needed

@@ -4,8 +4,10 @@
 #include <cmath>
 
 #include "snowshed/methods/mps/anderson.hpp"
+#include "snowshed/methods/mps/elastic_strain.hpp"
 #include "snowshed/methods/mps/forces.hpp"
 #include "snowshed/methods/mps/viscous_stress.hpp"
+#include "snowshed/methods/mps/wall_friction.hpp"
 
 namespace snowshed::methods::mps {
 namespace {
@@ -13,83 +15,19 @@ namespace {
 template <int D>
 using Velocities = AlignedVector<VecD<D>>;
 
-/// Lower limit of the wall distance that enters wall friction, in l0.
-constexpr double min_friction_distance = 0.25;
-
-/// Weight of a wall particle's friction on a particle that touches its obstacle, m; 0 if the wall
-/// particle is not in the layer at the surface.
-template <int D>
-double friction_weight(const Model<D>& model, float weight, const VecD<D>& to_wall,
-                       const WallContact<D>& c) {
-  const double below = -to_wall.dot(c.normal);
-  const bool at_surface = below - c.distance < model.settings().spacing;
-  return at_surface ? double(weight) * std::max(0.0, below) : 0.0;
-}
-
-/// Sum of these weights over the particles that touch a wall particle's obstacle, but at least
-/// `min_touched_share` times the sum on a lattice, so that a wall particle at the edge of the snow
-/// has less friction.
-template <int D>
-double friction_weight_sum(const Model<D>& model, const Particles<D>& particles,
-                           const Neighbourhood<D>& near, std::size_t wall) {
-  double sum = 0;
-  for (std::uint32_t e = near.lists.begin(wall); e < near.lists.end(wall); ++e) {
-    const std::size_t i = near.lists.neighbour(e);
-    const WallContact<D>* c =
-        particles.is_wall(i) ? nullptr : near.contact_with(i, particles.event[wall]);
-    if (c) sum += friction_weight(model, near.weight[e], VecD<D>(-near.separation(e)), *c);
-  }
-  constexpr double min_touched_share = 0.8;
-  const double on_lattice =
-      (1 - model.second_layer) / (model.laplacian() * model.settings().spacing);
-  return std::max(sum, min_touched_share * on_lattice);
-}
-
-/// Computes the fraction of the wall's shear stress that each contact carries. The particles that
-/// touch the obstacle around a wall particle divide its friction among them.
-template <int D>
-void compute_wall_contact_fractions(const Model<D>& model, const Particles<D>& particles,
-                                    Workspace<D>& work) {
-  const Neighbourhood<D>& near = work.near;
-  const int threads = model.threads_for(particles.size());
-  work.wall_friction.share.resize(near.contacts.all().size());
-  if (!model.has_wall_particles()) {
-    for (std::size_t k = 0; k < work.wall_friction.share.size(); ++k)
-      work.wall_friction.share[k] = share_of_wall(
-          near.contacts.all()[k].distance / model.settings().spacing, model.second_layer);
-    return;
-  }
-  work.wall_friction.weight_sum.resize(particles.size());
-  for_each_particle(particles.size(), threads, [&](std::size_t j) {
-    if (particles.is_wall(j))
-      work.wall_friction.weight_sum[j] = friction_weight_sum(model, particles, near, j);
-  });
-  for_each_particle(particles.size(), threads, [&](std::size_t i) {
-    for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c) {
-      double sum = 0;
-      for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
-        const std::size_t j = near.lists.neighbour(e);
-        if (particles.is_wall(j) && particles.event[j] == c->obstacle)
-          sum += friction_weight(model, near.weight[e], near.separation(e), *c) /
-                 work.wall_friction.weight_sum[j];
-      }
-      work.wall_friction.share[near.contacts.index_of(c)] = sum;
-    }
-  });
-}
-
 /// The coupling of the velocities of each pair, from the viscosity at the shear rate midway between
 /// them and at the mean of both pressures. Wall particles have no coupling; walls act by their
 /// drag.
 template <int D>
-void find_couplings(const Model<D>& model, double factor, const Particles<D>& particles,
+void find_couplings(const Model<D>& model, double dt, const Particles<D>& particles,
                     Workspace<D>& work) {
+  const double factor = dt / model.settings().density * model.laplacian();
   const Neighbourhood<D>& near = work.near;
   const particles::NeighbourLists<D>& lists = near.lists;
   const Rheology& law = model.rheology;
   const int threads = model.threads_for(lists.size());
   const AlignedVector<float>& weight =
-      model.has_symmetric_stress() ? work.viscosity.weight : near.isotropic_weight;
+      model.is_elastic() ? work.viscosity.weight : near.isotropic_weight;
   work.viscosity.coupling.resize(lists.pairs());
   const auto for_each_pair = [&](const auto& coupling) {
     for_each_particle(lists.size(), threads, [&](std::size_t i) {
@@ -111,15 +49,19 @@ void find_couplings(const Model<D>& model, double factor, const Particles<D>& pa
   work.rates.pair_rate.resize(lists.pairs());
   for_each_piece(lists.size(), threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     model.kernels.pair_rates(near.rows(), near.offsets().data(), particles.velocity.data()->data(),
-                             work.rates.gradient.data()->data(), work.rates.pair_rate.data(), begin,
-                             end);
+                             work.rates.gradient.data()->data(),
+                             model.is_elastic() ? work.rates.elastic.data()->data() : nullptr,
+                             work.rates.pair_rate.data(), begin, end);
   });
   for_each_pair([&](std::size_t i, std::size_t j, std::uint32_t e, bool is_wall) {
     if (j < i) return;
     const double pressure =
         law.friction > 0 ? 0.5 * (work.rates.smooth_pressure[i] + work.rates.smooth_pressure[j])
                          : 0.0;
-    set(e, law.apparent_viscosity(law.yield_stress(pressure), double(work.rates.pair_rate[e])),
+    const double yield = law.yield_stress(pressure), rate = double(work.rates.pair_rate[e]);
+    set(e,
+        model.is_elastic() ? law.elastic_viscosity(yield, rate, model.settings().yield_strain / dt)
+                           : law.apparent_viscosity(yield, rate),
         is_wall);
   });
   for_each_pair([&](std::size_t i, std::size_t j, std::uint32_t e, bool) {
@@ -130,6 +72,10 @@ void find_couplings(const Model<D>& model, double factor, const Particles<D>& pa
 /// The iterations for the apparent viscosities of a step end when the velocities change by less
 /// than this share in an iteration.
 constexpr double yield_tolerance = 1e-3;
+/// In elastic snow this share of gravity's change in a step is added to the velocities, because
+/// errors of a step do not add up: the strain remembers them. With 0.3 slabs near the yield stress
+/// accelerated by 5 % too much or too little; with 1 they crept by 1 mm/s.
+constexpr double gravity_share = 0.1;
 /// The iterations begin at this fraction of the way from the velocities before the step to those
 /// predicted without viscosity.
 constexpr double first_guess_share = 0.01;
@@ -143,70 +89,6 @@ constexpr double max_solve_tolerance = 0.1, solve_share = 0.03;
 /// velocities are damped by `sweep_damping`.
 constexpr int max_diagonal_iterations = 12;
 constexpr double sweep_damping = 0.9;
-
-/// The wall's shear stress is that of snow with the shear rate u/h at the pressure on the wall; u
-/// is the speed at which the particle slides, and h is its distance from the wall. The stress acts
-/// on the particles next to the wall. If the obstacle is not sticky, the stress is at most the
-/// obstacle's own friction. `reaction` is the pressure of the wall's hold, Pa. Returns the drag,
-/// 1/s.
-template <int D>
-double wall_drag(const Model<D>& model, const Particles<D>& particles, double share,
-                 double reaction, std::size_t i, const WallContact<D>& c) {
-  const Settings& s = model.settings();
-  const double height = std::max(c.distance, min_friction_distance * s.spacing);
-  if (share == 0) return 0;
-  const VecD<D> relative = particles.velocity[i] - c.velocity;
-  const double rate = (relative - relative.dot(c.normal) * c.normal).norm() / height;
-  const double pressure =
-      std::max(0.0, particles.pressure[i] + reaction -
-                        s.density * c.distance * particles.pressure_acceleration[i].dot(c.normal));
-  const Rheology& law = model.rheology;
-  double viscosity = law.apparent_viscosity(law.yield_stress(pressure), rate);
-  const ContactLaw& contact = model.options.obstacles[c.obstacle].law;
-  if (contact.condition != Condition::sticky)
-    viscosity = std::min(viscosity, law.regularised(contact.friction * pressure, rate));
-  return share * viscosity / (s.density * s.spacing * height);
-}
-
-/// A wall holds the snow that it presses with this many times the inertia of a particle.
-constexpr double wall_hold = 1e4;
-
-/// Walls bear the stress of the snow that they press: viscosity does not move its layer next to a
-/// wall along the normal. The pressure has no share in this step, and would leave the snow without
-/// a support.
-template <int D>
-double hold_of_wall(const Model<D>& model, const Particles<D>& particles, std::size_t i,
-                    const WallContact<D>& c) {
-  if (!model.has_symmetric_stress() || !(particles.pressure[i] > 0)) return 0;
-  return wall_hold * share_of_wall(c.distance / model.settings().spacing, 0);
-}
-
-/// The velocity at which a wall holds a particle: the wall's if the snow is at rest there, so that
-/// small errors of the pressure do not move it, and that before viscosity acts if the snow flows.
-template <int D>
-const VecD<D>& held_velocity(const Model<D>& model, double dt, const Workspace<D>& work,
-                             const Velocities<D>& start, std::size_t i, const WallContact<D>& c) {
-  return rests(model, dt, VecD<D>(work.before[i] - c.velocity)) ? c.velocity : start[i];
-}
-
-/// Finds the pressures by which walls hold the snow, which the pressure equation does not know of.
-template <int D>
-void find_wall_reactions(const Model<D>& model, double dt, const Velocities<D>& start,
-                         const Particles<D>& particles, Workspace<D>& work) {
-  const Neighbourhood<D>& near = work.near;
-  const double per_speed = model.settings().density * model.settings().spacing / dt;
-  for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
-    for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c) {
-      const std::size_t k = near.contacts.index_of(c);
-      const double share = work.wall_friction.share[k];
-      const double hold =
-          particles.moves(i) && share > 0 ? hold_of_wall(model, particles, i, *c) : 0.0;
-      const VecD<D>& held = held_velocity(model, dt, work, start, i, *c);
-      work.wall_friction.reaction[k] =
-          hold > 0 ? per_speed * hold / share * (held - particles.velocity[i]).dot(c->normal) : 0.0;
-    }
-  });
-}
 
 /// On the levels above the particles the walls' drag acts equally in all directions.
 template <int D>
@@ -255,37 +137,25 @@ SolveReport solve_viscosity(const Model<D>& model, double dt, const Velocities<D
   const std::size_t n = particles.size();
   const int threads = model.threads_for(n);
   const Neighbourhood<D>& near = work.near;
-  find_couplings(model, dt / model.settings().density * model.laplacian(), particles, work);
+  find_couplings(model, dt, particles, work);
   work.viscosity.right_side.resize(n);
   work.viscosity.block.resize(n);
   work.viscosity.inverse_block.resize(n);
   work.viscosity.own_block.resize(n);
-  work.wall_friction.drag.resize(near.contacts.all().size());
   for_each_particle(n, threads, [&](std::size_t i) {
     const bool moves = particles.moves(i);
     double sum = 0;
     for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
       sum += double(work.viscosity.coupling[e]);
-    Matrix own = Matrix::Identity();
-    VecD<D> right = start[i];
-    if (moves)
-      for (const WallContact<D>* c = near.contacts.begin(i); c < near.contacts.end(i); ++c) {
-        const std::size_t k = near.contacts.index_of(c);
-        double& drag = work.wall_friction.drag[k];
-        drag = wall_drag(model, particles, work.wall_friction.share[k],
-                         work.wall_friction.reaction[k], i, *c);
-        const Matrix along = dt * drag * (Matrix::Identity() - c->normal * c->normal.transpose());
-        const double hold = hold_of_wall(model, particles, i, *c);
-        const Matrix across = hold * c->normal * c->normal.transpose();
-        own += along + across;
-        right += along * c->velocity + across * held_velocity(model, dt, work, start, i, *c);
-      }
-    const Matrix block = own + sum * Matrix::Identity();
-    work.viscosity.right_side[i] = moves ? right : VecD<D>(VecD<D>::Zero());
-    work.viscosity.own_block[i] = moves ? own : Matrix(Matrix::Zero());
+    WallAction<D> own{Matrix::Identity(), start[i]};
+    if (moves) add_wall_action(model, dt, start, particles, i, work, own);
+    const Matrix block = own.matrix + sum * Matrix::Identity();
+    work.viscosity.right_side[i] = moves ? own.right_side : VecD<D>(VecD<D>::Zero());
+    work.viscosity.own_block[i] = moves ? own.matrix : Matrix(Matrix::Zero());
     work.viscosity.block[i] = moves ? block : Matrix(Matrix::Zero());
     work.viscosity.inverse_block[i] = moves ? Matrix(block.inverse()) : Matrix(Matrix::Zero());
   });
+  if (model.is_elastic()) add_elastic_force(model, work);
 
   const auto apply = [&](const double* p, double* q) {
     for_each_piece(n, threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
@@ -294,7 +164,7 @@ SolveReport solve_viscosity(const Model<D>& model, double dt, const Velocities<D
     });
   };
   const auto apply_stress = [&](const double* p, double* q) {
-    if (model.has_symmetric_stress())
+    if (model.is_elastic())
       apply_symmetric_stress(model, work, p, q);
     else
       apply(p, q);
@@ -344,6 +214,23 @@ double distance(const Velocities<D>& a, const Velocities<D>& b) {
   return std::sqrt(square);
 }
 
+/// Replaces the velocities before viscosity acts by a guess of those after it. In elastic snow
+/// viscosity is expected to act as in the last step. A viscous fluid begins near the velocities
+/// before the step, so that creeping snow comes to rest; but not exactly there, because viscosity
+/// would then keep snow at rest for too many iterations.
+template <int D>
+void set_first_guess(const Model<D>& model, double dt, Particles<D>& particles,
+                     const Workspace<D>& work) {
+  if (model.rheology.is_newtonian()) return;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    VecD<D>& u = particles.velocity[i];
+    if (!model.is_elastic())
+      u = work.before[i] + first_guess_share * (u - work.before[i]);
+    else if (particles.moves(i))
+      u += dt * particles.viscous_acceleration[i];
+  }
+}
+
 }  // namespace
 
 template <int D>
@@ -358,22 +245,19 @@ template <int D>
 SolveReport apply_viscosity(const Model<D>& model, double dt, Particles<D>& particles,
                             Workspace<D>& work) {
   const Settings& s = model.settings();
-  // The iterations begin near the velocities before the step, not at the velocities after the
-  // action of forces, so that creeping snow comes to rest. They do not begin exactly at rest,
-  // because viscosity would then keep the snow at rest for too many iterations.
   const Velocities<D> start = particles.velocity;
-  const bool newtonian = model.rheology.is_newtonian();
-  if (!newtonian)
-    for (std::size_t i = 0; i < start.size(); ++i)
-      particles.velocity[i] = work.before[i] + first_guess_share * (start[i] - work.before[i]);
+  const bool newtonian = model.rheology.is_newtonian(), elastic = model.is_elastic();
+  set_first_guess(model, dt, particles, work);
   const double scale = velocity_scale(model, dt, particles);
   compute_wall_contact_fractions(model, particles, work);
-  work.wall_friction.reaction.assign(work.near.contacts.all().size(), 0.0);
-  const bool symmetric = model.has_symmetric_stress();
-  if (symmetric) find_stress_weights(model, particles, work);
   if (!newtonian) {
     prepare_rates(model, particles, work);
     work.near.lists.find_mirrors(model.threads_for(particles.size()));
+  }
+  if (elastic) {
+    find_stress_weights(model, particles, work);
+    find_levers(model, work);
+    find_elastic_rates(model, dt, particles, work);
   }
   SolveReport report;
   AndersonMixing<D> mixing;
@@ -386,12 +270,13 @@ SolveReport apply_viscosity(const Model<D>& model, double dt, Particles<D>& part
     if (!newtonian) find_rates(model, particles, work);
     last = particles.velocity;
     const SolveReport solve = solve_viscosity(model, dt, start, tolerance, scale, particles, work);
-    if (symmetric) find_wall_reactions(model, dt, start, particles, work);
+    if (elastic) find_wall_reactions(model, dt, start, particles, work);
     report = {report.iterations + solve.iterations, solve.residual, solve.converged};
     if (!solve.converged || newtonian || last_chance) break;
     const double change = distance<D>(particles.velocity, last);
     const double limit =
-        yield_tolerance * (norm<D>(particles.velocity) + s.viscosity_tolerance * scale);
+        yield_tolerance *
+        (norm<D>(particles.velocity) + (elastic ? gravity_share : s.viscosity_tolerance) * scale);
     if (change <= limit && tolerance <= s.viscosity_tolerance) break;
     tolerance = change <= 2 * limit ? 0.0 : std::min(tolerance, solve_share * change / scale);
     mixing.mix(last, particles.velocity);

@@ -23,26 +23,16 @@ double share_of_drag(const Model<D>& model, const Neighbourhood<D>& near, std::s
   return most;
 }
 
+/// Subtracts from q the change of velocity by the torques of the particles.
 template <int D>
-Eigen::Matrix<double, D, D> antisymmetric(const std::array<double, D*(D - 1) / 2>& components) {
-  Eigen::Matrix<double, D, D> m = Eigen::Matrix<double, D, D>::Zero();
-  std::size_t k = 0;
-  for (int a = 0; a < D; ++a)
-    for (int b = a + 1; b < D; ++b, ++k) {
-      m(a, b) = components[k];
-      m(b, a) = -components[k];
-    }
-  return m;
-}
-
-/// The components of the antisymmetric part of a matrix.
-template <int D>
-std::array<double, D*(D - 1) / 2> spin(const Eigen::Matrix<double, D, D>& m) {
-  std::array<double, D*(D - 1) / 2> components;
-  std::size_t k = 0;
-  for (int a = 0; a < D; ++a)
-    for (int b = a + 1; b < D; ++b) components[k++] = 0.5 * (m(a, b) - m(b, a));
-  return components;
+void spread_torques(const Model<D>& model, const Workspace<D>& work, double* q) {
+  const ViscousSolve<D>& solve = work.viscosity;
+  const std::size_t n = work.near.lists.size();
+  for_each_piece(n, model.threads_for(n), [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
+    model.kernels.spread_torques(work.near.rows(), solve.far_lever.data(),
+                                 solve.lever_sum.data()->data(), solve.own_block.data()->data(),
+                                 solve.torque.data()->data(), q, begin, end);
+  });
 }
 
 }  // namespace
@@ -59,6 +49,30 @@ void find_stress_weights(const Model<D>& model, const Particles<D>& particles, W
 }
 
 template <int D>
+void find_levers(const Model<D>& model, Workspace<D>& work) {
+  const Neighbourhood<D>& near = work.near;
+  const std::size_t n = near.lists.size();
+  ViscousSolve<D>& solve = work.viscosity;
+  solve.lever.resize(D * near.lists.pairs());
+  solve.far_lever.resize(D * near.lists.pairs());
+  solve.lever_sum.resize(n);
+  for_each_particle(n, model.threads_for(n), [&](std::size_t i) {
+    VecD<D> sum = VecD<D>::Zero();
+    for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
+      const VecD<D> half = 0.5 * double(work.rates.snow_slope[e]) * near.separation(e);
+      const VecD<D> lever = work.rates.correction[i].transpose() * half;
+      const VecD<D> far = work.rates.correction[near.lists.neighbour(e)].transpose() * half;
+      sum += lever;
+      for (int d = 0; d < D; ++d) {
+        solve.lever[e * D + std::size_t(d)] = float(lever[d]);
+        solve.far_lever[e * D + std::size_t(d)] = float(far[d]);
+      }
+    }
+    solve.lever_sum[i] = sum;
+  });
+}
+
+template <int D>
 void apply_symmetric_stress(const Model<D>& model, Workspace<D>& work, const double* p, double* q) {
   const Neighbourhood<D>& near = work.near;
   ViscousSolve<D>& solve = work.viscosity;
@@ -66,31 +80,45 @@ void apply_symmetric_stress(const Model<D>& model, Workspace<D>& work, const dou
   const int threads = model.threads_for(n);
   const auto offsets = near.offsets();
   const double* const block = solve.own_block.data()->data();
-  solve.gradient.resize(n);
-  solve.spread.resize(n);
   solve.turn.resize(n);
   solve.torque.resize(n);
   for_each_piece(n, threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    model.kernels.sum_gradients(near.rows(), offsets.data(), work.rates.snow_slope, p,
-                                solve.gradient.data()->data(), begin, end);
-    for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i)
-      solve.turn[i] = spin<D>(solve.gradient[i] * work.rates.correction[i]);
+    model.kernels.sum_turns(near.rows(), solve.lever.data(), p, solve.turn.data()->data(), begin,
+                            end);
   });
   for_each_piece(n, threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     model.kernels.sum_stresses(near.rows(), offsets.data(), solve.coupling.data(), block, p,
                                solve.turn.data()->data(), q, solve.torque.data()->data(), begin,
                                end);
-    for (std::size_t i = std::size_t(begin); i < std::size_t(end); ++i)
-      solve.spread[i] = antisymmetric<D>(solve.torque[i]) * work.rates.correction[i].transpose();
   });
+  spread_torques(model, work, q);
+}
+
+template <int D>
+void add_elastic_force(const Model<D>& model, Workspace<D>& work) {
+  const Neighbourhood<D>& near = work.near;
+  ViscousSolve<D>& solve = work.viscosity;
+  const std::size_t n = near.lists.size();
+  const int threads = model.threads_for(n);
+  const auto offsets = near.offsets();
+  solve.residual.resize(n);
+  solve.torque.resize(n);
   for_each_piece(n, threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
-    model.kernels.spread_torques(near.rows(), offsets.data(), work.rates.snow_slope, block,
-                                 solve.spread.data()->data(), q, begin, end);
+    model.kernels.sum_tensors(near.rows(), offsets.data(), solve.coupling.data(),
+                              solve.own_block.data()->data(), work.rates.elastic.data()->data(),
+                              solve.residual.data()->data(), solve.torque.data()->data(), begin,
+                              end);
   });
+  spread_torques(model, work, solve.residual.data()->data());
+  for_each_particle(n, threads, [&](std::size_t i) { solve.right_side[i] -= solve.residual[i]; });
 }
 
 template void find_stress_weights(const Model<2>&, const Particles<2>&, Workspace<2>&);
 template void find_stress_weights(const Model<3>&, const Particles<3>&, Workspace<3>&);
+template void find_levers(const Model<2>&, Workspace<2>&);
+template void find_levers(const Model<3>&, Workspace<3>&);
+template void add_elastic_force(const Model<2>&, Workspace<2>&);
+template void add_elastic_force(const Model<3>&, Workspace<3>&);
 template void apply_symmetric_stress(const Model<2>&, Workspace<2>&, const double*, double*);
 template void apply_symmetric_stress(const Model<3>&, Workspace<3>&, const double*, double*);
 

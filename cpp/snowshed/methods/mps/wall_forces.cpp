@@ -10,6 +10,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "snowshed/methods/mps/elastic_strain.hpp"
 #include "snowshed/methods/mps/solver_impl.hpp"
 
 namespace snowshed::methods::mps {
@@ -30,11 +31,10 @@ void SolverImpl<D>::record_drag(double dt, const Particles<D>& p) {
   for (std::size_t i = 0; i < p.size(); ++i)
     for (const WallContact<D>* c = contacts.begin(i); c < contacts.end(i); ++c) {
       const std::size_t k = contacts.index_of(c);
-      const VecD<D> relative = p.velocity[i] - c->velocity;
-      workspace_.wall_impulse[k] = p.moves(i)
-                                       ? VecD<D>(dt * p.mass[i] * workspace_.wall_friction.drag[k] *
-                                                 (relative - relative.dot(c->normal) * c->normal))
-                                       : VecD<D>(VecD<D>::Zero());
+      workspace_.wall_impulse[k] =
+          p.moves(i) ? VecD<D>(dt * p.mass[i] * workspace_.wall_friction.drag[k] *
+                               sliding_velocity(model_, dt, p.velocity[i], p.elastic_slip[i], *c))
+                     : VecD<D>(VecD<D>::Zero());
     }
 }
 

@@ -289,6 +289,8 @@ void WallParticles<D>::append_group(Group& group, const geometry::RigidPose& pos
       to.pressure_acceleration[i] =
           moves ? section<D>(pose.normal_to_world(embed(p.normal))) : p.normal;
       to.viscous_acceleration[i].setZero();
+      to.elastic_strain[i].setZero();
+      to.elastic_slip[i].setZero();
       to.kind[i] = p.kind;
       to.id[i] = 0xffffffff;
       to.event[i] = std::uint16_t(p.obstacle);

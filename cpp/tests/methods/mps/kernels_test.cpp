@@ -238,13 +238,23 @@ TYPED_TEST(MpsKernels, ComputeTheShearRateOfALinearField) {
   gradient.assign(150, field);
   AlignedVector<float> rate(cloud.lists.pairs());
   chosen_kernels<D>().pair_rates(cloud.rows, cloud.offset.data(), cloud.velocity.data()->data(),
-                                 gradient.data()->data(), rate.data(), 0, cloud.size());
+                                 gradient.data()->data(), nullptr, rate.data(), 0, cloud.size());
   const double expected_rate = (field + field.transpose()).norm() / std::sqrt(2.0);
   cloud.for_each_pair([&](std::size_t i, std::size_t j, std::size_t e) {
     if (j > i) {
       EXPECT_NEAR(rate[e], expected_rate, 1e-4 * expected_rate);
     }
     EXPECT_EQ(cloud.lists.neighbour(cloud.lists.mirror(e)), i);
+  });
+  // The elastic strain is added to the rate, also along the pair.
+  const AlignedVector<Matrix> elastic(150, Matrix(2 * (field + field.transpose())));
+  chosen_kernels<D>().pair_rates(cloud.rows, cloud.offset.data(), cloud.velocity.data()->data(),
+                                 gradient.data()->data(), elastic.data()->data(), rate.data(), 0,
+                                 cloud.size());
+  cloud.for_each_pair([&](std::size_t i, std::size_t j, std::size_t e) {
+    if (j > i) {
+      EXPECT_NEAR(rate[e], 5 * expected_rate, 1e-3 * expected_rate);
+    }
   });
 }
 
@@ -254,45 +264,74 @@ void expect_plain_stresses() {
   using Matrix = Eigen::Matrix<double, D, D>;
   const Cloud<D> cloud(200);
   const std::size_t n = cloud.position.size();
-  AlignedVector<Matrix> block(n, Matrix::Identity()), spread(n);
-  AlignedVector<std::array<double, D*(D - 1) / 2>> turn(n), torque(n);
-  std::vector<Matrix> spin(n, Matrix::Zero());
-  for (std::size_t i = 0; i < n; ++i) {
+  AlignedVector<Matrix> block(n, Matrix::Identity()), tensor(n);
+  AlignedVector<std::array<double, D*(D - 1) / 2>> turn(n), torque(n), sum(n);
+  AlignedVector<float> lever(D * cloud.lists.pairs()), far_lever(D * cloud.lists.pairs());
+  AlignedVector<VecD<D>> lever_sum(n);
+  for (std::size_t k = 0; k < lever.size(); ++k) {
+    lever[k] = float(std::cos(double(3 * k)));
+    far_lever[k] = float(std::sin(double(2 * k)));
+  }
+  const auto at = [](const AlignedVector<float>& pairs, std::uint32_t e) {
+    VecD<D> v;
+    for (int d = 0; d < D; ++d) v[d] = double(pairs[e * D + std::uint32_t(d)]);
+    return v;
+  };
+  const auto antisymmetric = [](const std::array<double, D*(D - 1) / 2>& components) {
+    Matrix m = Matrix::Zero();
     std::size_t k = 0;
     for (int a = 0; a < D; ++a)
       for (int b = a + 1; b < D; ++b, ++k) {
-        turn[i][k] = std::sin(double(i + k));
-        spin[i](a, b) = turn[i][k];
-        spin[i](b, a) = -turn[i][k];
+        m(a, b) = components[k];
+        m(b, a) = -components[k];
       }
-    spread[i] = std::cos(double(i)) * Matrix::Identity() + spin[i];
+    return m;
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t k = 0; k < turn[i].size(); ++k) turn[i][k] = std::sin(double(i + k));
+    tensor[i] = std::cos(double(i)) * Matrix::Identity() + antisymmetric(turn[i]);
+    lever_sum[i].setConstant(std::sin(double(5 * i)));
   }
   block[1].setZero();
   AlignedVector<VecD<D>> q(n);
   const double* const blocks = block.data()->data();
+  const double* const velocity = cloud.velocity.data()->data();
   const Kernels<D>& kernels = chosen_kernels<D>();
-  kernels.sum_stresses(cloud.rows, cloud.offset.data(), cloud.weight.data(), blocks,
-                       cloud.velocity.data()->data(), turn.data()->data(), q.data()->data(),
-                       torque.data()->data(), 0, cloud.size());
-  kernels.spread_torques(cloud.rows, cloud.offset.data(), cloud.slope.data(), blocks,
-                         spread.data()->data(), q.data()->data(), 0, cloud.size());
+  kernels.sum_turns(cloud.rows, lever.data(), velocity, sum.data()->data(), 0, cloud.size());
+  kernels.sum_stresses(cloud.rows, cloud.offset.data(), cloud.weight.data(), blocks, velocity,
+                       turn.data()->data(), q.data()->data(), torque.data()->data(), 0,
+                       cloud.size());
+  kernels.spread_torques(cloud.rows, far_lever.data(), lever_sum.data()->data(), blocks,
+                         torque.data()->data(), q.data()->data(), 0, cloud.size());
+  AlignedVector<VecD<D>> minus(n);
+  AlignedVector<std::array<double, D*(D - 1) / 2>> tensor_torque(n);
+  kernels.sum_tensors(cloud.rows, cloud.offset.data(), cloud.slope.data(), blocks,
+                      tensor.data()->data(), minus.data()->data(), tensor_torque.data()->data(), 0,
+                      cloud.size());
   for (std::size_t i = 0; i < n; ++i) {
-    VecD<D> force = VecD<D>::Zero();
-    Matrix moment = Matrix::Zero();
+    VecD<D> force = VecD<D>::Zero(), tensor_force = VecD<D>::Zero();
+    Matrix moment = Matrix::Zero(), turns = Matrix::Zero(), tensor_moment = Matrix::Zero();
     for (std::uint32_t e = cloud.lists.begin(i); e < cloud.lists.end(i); ++e) {
       const std::size_t j = cloud.lists.neighbour(e);
-      const VecD<D> r = cloud.lists.separation(e);
-      const VecD<D> t = 2 * double(cloud.weight[e]) *
-                        (cloud.velocity[j] - cloud.velocity[i] - 0.5 * (spin[i] + spin[j]) * r);
-      force += t + double(cloud.slope[e]) * (spread[i] + spread[j]) * r;
+      const VecD<D> r = cloud.lists.separation(e), change = cloud.velocity[j] - cloud.velocity[i];
+      const VecD<D> turned = 0.5 * (antisymmetric(turn[i]) + antisymmetric(turn[j])) * r;
+      const VecD<D> t = 2 * double(cloud.weight[e]) * (change - turned);
+      const VecD<D> s = double(cloud.slope[e]) * (tensor[i] + tensor[j]) * r;
+      force += t + 2 * antisymmetric(torque[j]) * at(far_lever, e);
+      tensor_force += s;
       moment -= 0.25 * (t * r.transpose() - r * t.transpose());
+      tensor_moment -= 0.25 * (s * r.transpose() - r * s.transpose());
+      turns += change * at(lever, e).transpose() - at(lever, e) * change.transpose();
     }
-    const VecD<D> expected = i == 1 ? VecD<D>(VecD<D>::Zero()) : VecD<D>(cloud.velocity[i] - force);
-    EXPECT_LT((q[i] - expected).norm(), 1e-9 * (1 + force.norm())) << i;
-    std::size_t k = 0;
-    for (int a = 0; a < D; ++a)
-      for (int b = a + 1; b < D; ++b, ++k)
-        EXPECT_NEAR(torque[i][k], moment(a, b), 1e-9 * (1 + moment.norm())) << i;
+    force += 2 * antisymmetric(torque[i]) * lever_sum[i];
+    const double moves = i == 1 ? 0 : 1;
+    EXPECT_LT((q[i] - moves * (cloud.velocity[i] - force)).norm(), 1e-9 * (1 + force.norm())) << i;
+    EXPECT_LT((minus[i] + moves * tensor_force).norm(), 1e-9 * (1 + tensor_force.norm())) << i;
+    EXPECT_LT((antisymmetric(torque[i]) - moment).norm(), 1e-9 * (1 + moment.norm())) << i;
+    EXPECT_LT((antisymmetric(tensor_torque[i]) - tensor_moment).norm(),
+              1e-9 * (1 + tensor_moment.norm()))
+        << i;
+    EXPECT_LT((antisymmetric(sum[i]) - turns).norm(), 1e-9 * (1 + turns.norm())) << i;
   }
 }
 

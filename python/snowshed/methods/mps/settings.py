@@ -17,7 +17,7 @@ MpsSplitting = Literal["viscosity_first", "pressure_first"]
 MpsCoupling = Literal["none", "stiff", "always"]
 MpsSurface = Literal["published", "mirrored"]
 MpsOrder = Literal["published", "single_move"]
-MpsStress = Literal["published", "symmetric"]
+MpsStress = Literal["published", "elastoplastic"]
 MpsSpacing = Literal["none", "collision", "shifting"]
 MpsPreconditioner = Literal["jacobi", "incomplete_cholesky", "multigrid"]
 
@@ -52,6 +52,9 @@ class MpsSettings(MethodSettings):
     stress_growth : float
         Coefficient m with which the yield stress is approached [s]. 0 < value <= 1e+06; default
         10000.
+    yield_strain : float
+        Shear strain at which snow with an elastoplastic stress yields. 0 < value <= 0.1; default
+        0.0003.
     dilatant_rate : float
         Shear rate above which the stress grows as a power of the rate [1/s]. 0 < value <= 1e+09;
         default 100.
@@ -76,8 +79,9 @@ class MpsSettings(MethodSettings):
         Speed below which moving snow is deposited [m/s]. 0 <= value <= 10000; default 0.05.
     walls : {"mirrors", "particles"}
         Walls: mirror images of the snow, or particles. Default "mirrors".
-    stress : {"published", "symmetric"}
-        Viscous force: as published, or of a symmetric stress. Default "symmetric".
+    stress : {"published", "elastoplastic"}
+        Shear stress: viscous as published, or elastic until the snow yields. Default
+        "elastoplastic".
     source : {"published", "compensated"}
         Right-hand side of the pressure equation. Default "compensated".
     compensation : float
@@ -122,6 +126,7 @@ class MpsSettings(MethodSettings):
     cohesion: Optional[float] = default(0.0)
     friction_angle: Optional[float] = default(24.0)
     stress_growth: Optional[float] = default(10000.0)
+    yield_strain: Optional[float] = default(0.0003)
     dilatant_rate: Optional[float] = default(100.0)
     dilatant_exponent: Optional[float] = default(1.5)
     yield_iterations: Optional[int] = default(50)
@@ -132,7 +137,7 @@ class MpsSettings(MethodSettings):
     deposition_pressure: Optional[float] = default(25.0)
     deposition_speed: Optional[float] = default(0.05)
     walls: Optional[MpsWalls] = default("mirrors")
-    stress: Optional[MpsStress] = default("symmetric")
+    stress: Optional[MpsStress] = default("elastoplastic")
     source: Optional[MpsSource] = default("compensated")
     compensation: Optional[float] = default(0.1)
     gradient: Optional[MpsGradient] = default("corrected")

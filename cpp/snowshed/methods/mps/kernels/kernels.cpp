@@ -72,10 +72,10 @@ struct Rows {
       sum_row_approaches<D>(rows, offset, velocity, share, limit, sum, std::size_t(i));
   }
   static void pair_rates(const PairRows& rows, const float* const* offset, const double* velocity,
-                         const double* gradient, float* rate, std::ptrdiff_t begin,
-                         std::ptrdiff_t end) {
+                         const double* gradient, const double* elastic, float* rate,
+                         std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t i = begin; i < end; ++i)
-      find_pair_rates<D>(rows, offset, velocity, gradient, rate, std::size_t(i));
+      find_pair_rates<D>(rows, offset, velocity, gradient, elastic, rate, std::size_t(i));
   }
   static void sum_stresses(const PairRows& rows, const float* const* offset, const float* coupling,
                            const double* block, const double* p, const double* turn, double* q,
@@ -83,18 +83,29 @@ struct Rows {
     for (std::ptrdiff_t i = begin; i < end; ++i)
       sum_row_stresses<D>(rows, offset, coupling, block, p, turn, q, torque, std::size_t(i));
   }
-  static void spread_torques(const PairRows& rows, const float* const* offset, const float* slope,
-                             const double* block, const double* spread, double* q,
+  static void sum_turns(const PairRows& rows, const float* lever, const double* p, double* turn,
+                        std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t i = begin; i < end; ++i)
+      sum_row_turns<D>(rows, lever, p, turn, std::size_t(i));
+  }
+  static void spread_torques(const PairRows& rows, const float* far_lever, const double* lever_sum,
+                             const double* block, const double* torque, double* q,
                              std::ptrdiff_t begin, std::ptrdiff_t end) {
     for (std::ptrdiff_t i = begin; i < end; ++i)
-      spread_row_torques<D>(rows, offset, slope, block, spread, q, std::size_t(i));
+      spread_row_torques<D>(rows, far_lever, lever_sum, block, torque, q, std::size_t(i));
+  }
+  static void sum_tensors(const PairRows& rows, const float* const* offset, const float* coupling,
+                          const double* block, const double* tensor, double* q, double* torque,
+                          std::ptrdiff_t begin, std::ptrdiff_t end) {
+    for (std::ptrdiff_t i = begin; i < end; ++i)
+      sum_row_tensors<D>(rows, offset, coupling, block, tensor, q, torque, std::size_t(i));
   }
 
   static constexpr Kernels<D> table{
       &search,          &weigh,          &sum_moments,         &isotropic_weights,
       &apply,           &residual,       &apply_to_velocities, &sum_gradients,
-      &sum_separations, &sum_approaches, &pair_rates,          &sum_stresses,
-      &spread_torques};
+      &sum_separations, &sum_approaches, &pair_rates,          &sum_turns,
+      &sum_stresses,    &spread_torques, &sum_tensors};
 };
 
 }  // namespace

@@ -96,11 +96,11 @@ SNOWSHED_INLINE void sum_row_approaches(const PairRows& rows, const float* const
 
 /// rate[pair] = |G + G^T| / sqrt(2), guaranteed only for pairs whose neighbour has the larger
 /// index. G is the mean of both gradients, except that along the separation it is the change of
-/// velocity.
+/// velocity. With `elastic`, a symmetric matrix per particle, the mean of both is added to G.
 template <int D>
 SNOWSHED_INLINE void find_pair_rates(const PairRows& rows, const float* const* offset,
-                                     const double* velocity, const double* gradient, float* rate,
-                                     std::size_t row) {
+                                     const double* velocity, const double* gradient,
+                                     const double* elastic, float* rate, std::size_t row) {
   using V = SimdPack<double>;
   for_each_pack<V>(rows, row, [&](const RowPack<V>& pack) SNOWSHED_INLINE_LAMBDA {
     std::uint32_t last = 0;  // neighbours need not be in order
@@ -125,6 +125,11 @@ SNOWSHED_INLINE void find_pair_rates(const PairRows& rows, const float* const* o
     const V inverse = 1.0 / max(square, broadcast<V>(1e-30));
     SNOWSHED_UNROLL
     for (int a = 0; a < D; ++a) along[a] *= inverse;
+    if (elastic) {
+      SNOWSHED_UNROLL
+      for (int k = 0; k < D * D; ++k)
+        mean[k] += 0.5 * (gather<V>(elastic + k, at) + elastic[row * D * D + k]);
+    }
     V sum{};  // |G + G^T|^2 / 2
     SNOWSHED_UNROLL
     for (int a = 0; a < D; ++a) {

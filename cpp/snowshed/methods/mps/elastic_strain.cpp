@@ -1,0 +1,82 @@
+#include "snowshed/methods/mps/elastic_strain.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "snowshed/methods/mps/forces.hpp"
+
+namespace snowshed::methods::mps {
+namespace {
+
+/// The strain after a step with a velocity gradient: it grows by the strain rate without its trace,
+/// at most to the yield strain, and turns with the snow (Cayley's form of a rotation).
+template <int D>
+Eigen::Matrix<double, D, D> strain_after(const Eigen::Matrix<double, D, D>& strain,
+                                         const Eigen::Matrix<double, D, D>& gradient, double dt,
+                                         double yield_strain) {
+  using Matrix = Eigen::Matrix<double, D, D>;
+  Matrix rate = 0.5 * (gradient + gradient.transpose());
+  rate -= rate.trace() / D * Matrix::Identity();
+  const Matrix trial = strain + dt * rate;
+  const double shear = std::sqrt(2.0) * trial.norm();
+  const Matrix half_turn = 0.25 * dt * (gradient - gradient.transpose());
+  const Matrix turn = (Matrix::Identity() - half_turn).inverse() * (Matrix::Identity() + half_turn);
+  return std::min(1.0, yield_strain / std::max(shear, 1e-300)) * turn * trial * turn.transpose();
+}
+
+/// The slip along the walls after a step with this velocity. Along each wall it is at most the
+/// yield strain times the distance.
+template <int D>
+VecD<D> slip_after(const Model<D>& model, const Workspace<D>& work, double dt, const VecD<D>& slip,
+                   const VecD<D>& velocity, std::size_t i) {
+  const RowLists<WallContact<D>>& contacts = work.near.contacts;
+  const WallContact<D>* nearest = nullptr;
+  for (const WallContact<D>* c = contacts.begin(i); c < contacts.end(i); ++c)
+    if (!nearest || c->distance < nearest->distance) nearest = c;
+  if (!nearest) return VecD<D>::Zero();
+  const double yield_strain = model.settings().yield_strain, spacing = model.settings().spacing;
+  VecD<D> after = slip + dt * (velocity - nearest->velocity);
+  for (const WallContact<D>* c = contacts.begin(i); c < contacts.end(i); ++c) {
+    const VecD<D> along = after - after.dot(c->normal) * c->normal;
+    const double most = yield_strain * std::max(c->distance, 0.25 * spacing), length = along.norm();
+    if (length > most) after -= (1 - most / length) * along;
+  }
+  const double most = 2 * yield_strain * spacing, length = after.norm();
+  return length > most ? VecD<D>(most / length * after) : after;
+}
+
+}  // namespace
+
+template <int D>
+void find_elastic_rates(const Model<D>& model, double dt, const Particles<D>& particles,
+                        Workspace<D>& work) {
+  work.rates.elastic.resize(particles.size());
+  for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
+    work.rates.elastic[i] = particles.elastic_strain[i] / dt;
+  });
+}
+
+template <int D>
+void update_elastic_strains(const Model<D>& model, double dt, Particles<D>& particles,
+                            Workspace<D>& work) {
+  find_rates(model, particles, work);
+  for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
+    if (particles.moves(i)) {
+      particles.elastic_strain[i] = strain_after<D>(
+          particles.elastic_strain[i], work.rates.gradient[i], dt, model.settings().yield_strain);
+      particles.elastic_slip[i] =
+          slip_after(model, work, dt, particles.elastic_slip[i], particles.velocity[i], i);
+    } else {
+      particles.elastic_strain[i].setZero();
+      particles.elastic_slip[i].setZero();
+    }
+  });
+}
+
+template void find_elastic_rates(const Model<2>&, double, const Particles<2>&, Workspace<2>&);
+template void find_elastic_rates(const Model<3>&, double, const Particles<3>&, Workspace<3>&);
+template void update_elastic_strains(const Model<2>&, double, Particles<2>&, Workspace<2>&);
+template void update_elastic_strains(const Model<3>&, double, Particles<3>&, Workspace<3>&);
+
+}  // namespace snowshed::methods::mps
