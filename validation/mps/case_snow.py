@@ -15,7 +15,9 @@ from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import absolute, relative
 from validation.mps.bodies import GRAVITY, block, floor_and_sides, mps_driver
 
-SNOW = MpsSettings(density=200.0, viscosity=0.012, friction_angle=24.0, rheology="bingham")
+#: Without viscosity Coulomb's friction is exact. With the usual 0.012 Pa s a viscous layer of
+#: sqrt(nu t) = 3.5 mm makes the slab 2.6 % slower than that, 1 - 8 sqrt(nu t)/(6 sqrt(pi) H).
+SNOW = MpsSettings(density=200.0, viscosity=1e-6, friction_angle=24.0, rheology="bingham")
 SLAB_THICKNESS, LENGTH, SLIDING_TIME = 0.1, 2.4, 0.2  # m, m, s
 TILTS = (30.0, 35.0, 45.0)  # degrees
 FLUID = MpsSettings(
@@ -116,7 +118,7 @@ CASES = (
         title="Slab of snow that slides down a plane, as a fluid of particles",
         source="Newton's law with Coulomb's friction, g (sin a - cos a tan phi)",
         description="""
-        Snow without cohesion, 0.1 m thick and 2.4 m long, with a friction angle of 24 degrees,
+        Snow without cohesion and viscosity, 0.1 m thick and 2.4 m long, with a friction angle of 24 degrees,
         slides down a plane for 0.2 s. The mean speed of its middle sixth is compared.
         """,
         quantities=(

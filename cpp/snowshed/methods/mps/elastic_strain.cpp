@@ -9,16 +9,14 @@
 namespace snowshed::methods::mps {
 namespace {
 
-/// The strain after a step with a velocity gradient: it grows by the strain rate without its trace,
-/// at most to the yield strain, and turns with the snow (Cayley's form of a rotation).
+/// The strain after a step with a velocity gradient: it grows by the strain rate, at most to the
+/// yield strain, and turns with the snow (Cayley's form of a rotation).
 template <int D>
 Eigen::Matrix<double, D, D> strain_after(const Eigen::Matrix<double, D, D>& strain,
                                          const Eigen::Matrix<double, D, D>& gradient, double dt,
                                          double yield_strain) {
   using Matrix = Eigen::Matrix<double, D, D>;
-  Matrix rate = 0.5 * (gradient + gradient.transpose());
-  rate -= rate.trace() / D * Matrix::Identity();
-  const Matrix trial = strain + dt * rate;
+  const Matrix trial = strain + 0.5 * dt * (gradient + gradient.transpose());
   const double shear = std::sqrt(2.0) * trial.norm();
   const Matrix half_turn = 0.25 * dt * (gradient - gradient.transpose());
   const Matrix turn = (Matrix::Identity() - half_turn).inverse() * (Matrix::Identity() + half_turn);
