@@ -40,6 +40,25 @@ def write_features(path, features, crs="EPSG:31287"):
     return path
 
 
+def write_lines(path, lines, **fields):
+    """Write a GeoJSON file of lines; corners may have z."""
+    collection = {
+        "type": "FeatureCollection",
+        "crs": {"type": "name", "properties": {"name": "EPSG:31287"}},
+        "features": [
+            {
+                "type": "Feature",
+                "properties": fields,
+                "geometry": {"type": "LineString", "coordinates": line},
+            }
+            for line in lines
+        ],
+    }
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps(collection))
+    return path
+
+
 def plane(degrees=38.0, columns=40, rows=30, cell=2.0):
     """Return the raster of a plane that falls toward the east."""
     fall = math.tan(math.radians(degrees)) * cell * np.arange(columns)

@@ -85,7 +85,8 @@ NamedEnergies named_energies(const EnergyBalance& e) {
           {"bonds_j", e.bonds},         {"coulomb_j", e.coulomb},
           {"turbulent_j", e.turbulent}, {"resistance_j", e.resistance},
           {"viscosity_j", e.viscosity}, {"entrainment_j", e.entrainment},
-          {"broken_bonds_j", e.broken}, {"left_terrain_j", e.left_terrain},
+          {"broken_bonds_j", e.broken}, {"detrainment_j", e.detrainment},
+          {"dams_j", e.dams},           {"left_terrain_j", e.left_terrain},
           {"added_j", e.added},         {"residual_j", e.residual()}};
 }
 
@@ -122,8 +123,11 @@ void EnergyRecorder::after_ground(const Model& model, const State& state, const 
     const Vec3 u = velocity_at(state, i);
     const double mass = state.particles.mass[i];
     e.viscosity += 0.5 * masses_[i] * (before_[i].squaredNorm() - after_viscosity);
-    e.entrainment += 0.5 * (masses_[i] * after_viscosity - mass * u.squaredNorm());
-    e.added += (mass - masses_[i]) * model.gravity * heights_[i];
+    const double detrained = work.detrained.empty() ? 0.0 : work.detrained[i];
+    const double grown = mass + detrained;
+    e.entrainment += 0.5 * (masses_[i] * after_viscosity - grown * u.squaredNorm());
+    e.detrainment += detrained * (0.5 * u.squaredNorm() + model.gravity * heights_[i]);
+    e.added += (grown - masses_[i]) * model.gravity * heights_[i];
     before_[i] = u;
   }
 }
@@ -150,8 +154,10 @@ void EnergyRecorder::after_motion(const Model& model, const State& state, const 
   const Loads& l = work.loads;
   for (std::size_t i = 0; i < before_.size(); ++i) {
     const double mass = state.particles.mass[i];
-    if (work.removed[i]) {
-      e.left_terrain += mass * (0.5 * before_[i].squaredNorm() + model.gravity * heights_[i]);
+    const bool is_gone = !work.gone.empty() && work.gone[i];
+    if (work.removed[i] || is_gone) {
+      double& taken = work.removed[i] ? e.left_terrain : e.detrainment;
+      taken += mass * (0.5 * before_[i].squaredNorm() + model.gravity * heights_[i]);
       continue;
     }
     // Friction reduces the velocity, and afterwards the ground turns it.

@@ -1,0 +1,59 @@
+"""Secondary releases, inflows and dams of slides from files."""
+
+import re
+
+import pytest
+from helpers.slide_files import box, plane, write_lines, write_polygons
+
+from snowshed import InputError, run
+from snowshed.io.raster.raster import write_ascii_grid
+from snowshed.scene import slide_scene
+
+pytest.importorskip("pyogrio")
+pytest.importorskip("shapely")
+
+
+@pytest.fixture
+def files(tmp_path):
+    write_ascii_grid(tmp_path / "dem.asc", plane(columns=60))
+    (tmp_path / "flow.csv").write_text("timestep,thickness,velocity\n0.5,0.3,6\n200,0.3,6\n")
+    return {
+        "raster": tmp_path / "dem.asc",
+        "release": write_polygons(tmp_path / "rel.geojson", thickness=0.5),
+        "secondary_release": write_polygons(
+            tmp_path / "sec.geojson", box(40, 12, 50, 28), thickness=0.4, name="bowl"
+        ),
+        "inflow": write_polygons(tmp_path / "in.geojson", box(10, 40, 20, 50), name="gully"),
+        "hydrograph": tmp_path / "flow.csv",
+        "dams": write_lines(
+            tmp_path / "dam.geojson", [[[70, 4], [74, 50]]], height=9, name="wall"
+        ),
+    }
+
+
+def test_all_parts_act_and_notes_say_so(files, tmp_path):
+    scene = slide_scene(**files, secondary_thickness=0.6).set("events.max_time", 12.0)
+    assert scene.terrain.secondary_release[0].thickness == 0.6
+    results = run(scene, tmp_path / "out", pictures=False)
+    summary = results.summary
+    notes = "\n".join(summary.notes)
+    assert re.search(r"Secondary release bowl started after [0-9.]+ s, with [0-9,]+ kg\.", notes)
+    assert "Inflow gully brought" in notes
+    assert "The slide ended before 200 s, when more snow was to enter." in notes
+    assert "Dam wall: no snow passed over it." in notes
+    sources = summary.released_kg + summary.secondary_kg + summary.inflow_kg
+    assert summary.on_terrain_kg + summary.left_terrain_kg == pytest.approx(sources, rel=1e-9)
+    assert summary.secondary_kg > 0.0 and summary.inflow_kg > 0.0
+
+
+def test_an_inflow_needs_its_hydrograph(files):
+    del files["hydrograph"]
+    with pytest.raises(InputError, match="give both the polygons of an inflow and its hydrograph"):
+        slide_scene(**files)
+
+
+def test_a_secondary_release_without_contact_is_noted(files, tmp_path):
+    parts = {key: files[key] for key in ("raster", "release", "secondary_release")}
+    scene = slide_scene(**parts).set("events.max_time", 0.1)
+    notes = run(scene, tmp_path / "out", pictures=False).summary.notes
+    assert "Secondary release bowl never started: no snow of the slide entered it." in notes
