@@ -26,8 +26,8 @@ from snowshed.plot import (
 from snowshed.scene import Dam, DamCorner, ResistanceArea, example_slide, slide_terrain
 
 BOWL = [(60.0, 18.0), (80.0, 16.0), (84.0, 34.0), (64.0, 40.0)]
-FOREST = [(96.0, 34.0), (122.0, 34.0), (122.0, 56.0), (96.0, 52.0)]
-DAM = [(148.0, 40.0), (156.0, 62.0), (152.0, 84.0)]
+FOREST = [(94.0, 14.0), (118.0, 14.0), (118.0, 44.0), (94.0, 42.0)]
+DAM = [(120.0, 50.0), (124.0, 68.0), (120.0, 90.0)]
 
 
 def main(folder: Path, seconds: float) -> None:
@@ -45,7 +45,7 @@ def scene_with_dam(folder: Path, seconds: float) -> Scene:
     scene = example_slide(folder)
     scene.terrain.secondary_release = [Area(name="bowl", outline=BOWL, thickness=0.4)]
     scene.terrain.resistance = [ResistanceArea(name="forest", outline=FOREST)]
-    corners = [DamCorner(x=x, y=y, height=3.0) for x, y in DAM]
+    corners = [DamCorner(x=x, y=y, height=2.0) for x, y in DAM]
     scene.terrain.dams = [Dam(name="dam", corners=corners)]
     return scene.update(
         {"numerics.detrainment": 20.0, "numerics.resistance": 0.05, "events.max_time": seconds}
@@ -73,11 +73,11 @@ def draw(scene: Scene, ground: Raster, speed: np.ndarray, file: Path) -> None:
         )
         draw_outlines(axes, outlines)
         for label, outline, colour in (
-            ("secondary release", BOWL, "tab:blue"),
+            ("secondary release", BOWL, "tab:purple"),
             ("forest", FOREST, "tab:green"),
         ):
             axes.plot(*zip(*outline, outline[0]), color=colour, lw=2.0, zorder=6, label=label)
-        axes.plot(*zip(*DAM), color=INK, lw=4.0, zorder=7, label="dam, 3 m high")
+        axes.plot(*zip(*DAM), color=INK, lw=4.0, zorder=7, label="dam, 2 m high")
         axes.legend(loc="upper left", framealpha=0.9, edgecolor="none")
         axes.set(xlim=part[:2], ylim=part[2:], xlabel="east, m", ylabel="north, m")
         figure.colorbar(drawn, ax=axes, label="peak speed, m/s", shrink=0.9, pad=0.01)

@@ -32,8 +32,7 @@ void describe(V& v, methods::ResistanceSpec& r) {
 template <class V>
 void describe(V& v, methods::PulseSpec& p) {
   v.number("time", p.time, "s", methods::non_negative.up_to(1e9), "Time at which the snow enters");
-  v.number("thickness", p.thickness, "m",
-           methods::positive.up_to(100.0).required().usual(0.02, 4),
+  v.number("thickness", p.thickness, "m", methods::positive.up_to(100.0).required().usual(0.02, 4),
            "Thickness of the snow over the whole area, normal to the ground");
   v.number("speed", p.speed, "m/s", methods::non_negative.up_to(200.0),
            "Speed of the snow, down the slope");
@@ -92,8 +91,7 @@ void describe(V& v, methods::TerrainSpec& t) {
   v.list("release", t.release, methods::between(1, 10000).required(), "Areas of release");
   v.list("secondary_release", t.secondary_release, methods::between(0, 1000),
          "Areas that are released when snow of the slide enters them");
-  v.list("inflows", t.inflows, methods::between(0, 1000),
-         "Areas that snow enters at given times");
+  v.list("inflows", t.inflows, methods::between(0, 1000), "Areas that snow enters at given times");
   v.list("entrainment", t.entrainment, methods::between(0, 10000),
          "Areas where the slide entrains snow");
   v.list("resistance", t.resistance, methods::between(0, 10000),

@@ -26,6 +26,7 @@ MisplacedSnow = Literal["refuse", "allow"]
 
 PROVENANCE = "provenance"  # key under which a snow's file says where it comes from
 
+
 @checked
 @dataclass
 class Snow(Record):

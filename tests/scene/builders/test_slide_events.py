@@ -25,9 +25,7 @@ def files(tmp_path):
         ),
         "inflow": write_polygons(tmp_path / "in.geojson", box(10, 40, 20, 50), name="gully"),
         "hydrograph": tmp_path / "flow.csv",
-        "dams": write_lines(
-            tmp_path / "dam.geojson", [[[70, 4], [74, 50]]], height=9, name="wall"
-        ),
+        "dams": write_lines(tmp_path / "dam.geojson", [[[70, 4], [74, 50]]], height=9, name="wall"),
     }
 
 

@@ -59,8 +59,7 @@ DamFeet::DamFeet(const std::vector<Dam>& dams, const Terrain& terrain, bool comp
   if (dams.empty()) return;
   near_.assign(std::size_t(terrain.columns()) * std::size_t(terrain.rows()), 0);
   for (std::size_t i = 0; i < dams.size(); ++i) {
-    feet_.push_back(
-        foot_of(dams[i], terrain, compatible, "/terrain/dams/" + std::to_string(i)));
+    feet_.push_back(foot_of(dams[i], terrain, compatible, "/terrain/dams/" + std::to_string(i)));
     mark_near(feet_.back(), terrain);
   }
 }
@@ -120,9 +119,9 @@ void for_each_crossing(const DamFeet& feet, const Vec3& from, const Vec3& to, Vi
 
 /// A particle that meets dams.
 struct Passage {
-  Vec3 from, to, velocity;  // of the step
-  Vec3 normal;              // of the ground, at the end of the step
-  double thickness;         // m, of the snow at the particle before the step
+  Vec3 from, to, velocity;                        // m and m/s: start and end of the step
+  Vec3 normal;                                    // the ground at the end of the step
+  double thickness;                               // m, of the snow at the particle before the step
   double kinetic = 0.5 * velocity.squaredNorm();  // J/kg, that counts for the stop of the slide
   bool changed = false;
 };
@@ -171,7 +170,7 @@ Wall wall_at(const Model& model, const DamCrossing& c, const Passage& snow) {
 /// Follows a particle through all dams on its path; `passed` receives those that it passes.
 void follow(const Model& model, Passage& snow, std::vector<DamCrossing>& passed) {
   constexpr int max_contacts = 4;
-  constexpr double margin = 1e-6;  // of the path, by which snow stays before a wall
+  constexpr double margin = 1e-6;  // share of the path by which snow stays before a wall
   constexpr double gap = 1e-7;     // m, between snow and wall
   const Vec3 start = snow.from;
   for (int contact = 0; contact < max_contacts;) {
@@ -247,7 +246,8 @@ void reflect_as_avaframe(const Model& model, const GridFields& fields, Passage& 
   const double beyond = wall.dot(snow.to - at);
   snow.to = (1 - e) * at + e * snow.to - 2 * e * beyond * wall;
   snow.velocity = e * (snow.velocity - 2 * snow.velocity.dot(wall) * wall);
-  const double side_before = (b.x - a.x) * (snow.from.y() - a.y) - (b.y - a.y) * (snow.from.x() - a.x);
+  const double side_before =
+      (b.x - a.x) * (snow.from.y() - a.y) - (b.y - a.y) * (snow.from.x() - a.x);
   const double side_after = (b.x - a.x) * (snow.to.y() - a.y) - (b.y - a.y) * (snow.to.x() - a.x);
   if (side_before * side_after < 0) passed.push_back(c);
 
@@ -255,8 +255,7 @@ void reflect_as_avaframe(const Model& model, const GridFields& fields, Passage& 
   if (!(height > 0)) return;
   // Snow that flows over a dam loses the energy of its height, normal to the foot.
   const Vec3 across = snow.normal.cross(tangent).normalized();
-  const double lost =
-      std::min(-snow.velocity.dot(across), std::sqrt(2 * model.gravity * height));
+  const double lost = std::min(-snow.velocity.dot(across), std::sqrt(2 * model.gravity * height));
   if (!(lost > 0)) return;
   snow.velocity += lost * across;
   const double speed = snow.velocity.norm();
@@ -275,7 +274,10 @@ void apply_dams(const Model& model, State& state, Workspace& work) {
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (work.removed[i]) continue;
     const Vec3& from = work.before_dams[i];
-    Passage snow{from, {p.x[i], p.y[i], p.z[i]}, {p.ux[i], p.uy[i], p.uz[i]}, now.normal(i),
+    Passage snow{from,
+                 {p.x[i], p.y[i], p.z[i]},
+                 {p.ux[i], p.uy[i], p.uz[i]},
+                 now.normal(i),
                  work.thickness[i]};
     const geometry::CellPosition start = model.terrain.cell_position(from.x(), from.y());
     const bool is_near = model.dams.is_near(model.terrain.index(now.column[i], now.row[i])) ||

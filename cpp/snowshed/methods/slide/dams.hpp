@@ -34,7 +34,7 @@ struct DamFoot {
     double height;  // m
   };
   std::vector<Point> points;
-  std::vector<Vec3> tangents;  // of the line on the ground, one for each section
+  std::vector<Vec3> tangents;  // one for each section of the line on the ground
   double restitution;
 };
 

@@ -140,9 +140,7 @@ void EnergyRecorder::add_broken(const Model& model, const State& state, const Wo
     const double* k = &work.predicted[4 * std::size_t(bonds.first[b])];
     const double* l = &work.predicted[4 * std::size_t(bonds.second[b])];
     const double length = Vec3(l[0] - k[0], l[1] - k[1], l[2] - k[2]).norm();
-    const bool breaks = length > model.settings.min_bond_length &&
-                        std::abs(length / bonds.rest_length[b] - 1) > model.settings.max_strain;
-    if (breaks)
+    if (work.bonds_break && work.broken[b])
       e.broken += bond_energy(model.settings.bond_modulus, 0.5 * (k[3] + l[3]), length,
                               bonds.rest_length[b]);
   }

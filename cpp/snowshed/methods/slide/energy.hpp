@@ -30,8 +30,8 @@ struct EnergyBalance {
 
   double stored() const { return kinetic + potential + bonds; }
   double spent() const {
-    return coulomb + turbulent + resistance + viscosity + entrainment + broken + detrainment + dams +
-           left_terrain;
+    return coulomb + turbulent + resistance + viscosity + entrainment + broken + detrainment +
+           dams + left_terrain;
   }
   double residual() const { return stored() + spent() - added; }
 };

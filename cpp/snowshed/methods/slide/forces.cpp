@@ -88,8 +88,8 @@ ForestAction forest_action(const Model& model, const State& state, const GridFie
 
 /// Takes mass from a particle. A particle that loses all of it keeps its mass to the end of the
 /// step, because accelerations are divided by it, but is marked.
-void detrain(const Model& model, double area, double dt, double speed, std::size_t i,
-             double& mass, Workspace& work) {
+void detrain(const Model& model, double area, double dt, double speed, std::size_t i, double& mass,
+             Workspace& work) {
   if (!(speed > 0)) return;
   const double taken = model.settings.detrainment / speed * dt * area;
   work.gone[i] = taken >= mass;
@@ -139,9 +139,24 @@ void apply_ground(const Model& model, State& state, Workspace& work) {
   for_each_piece(work, n, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     chosen_kernels().ground(view, begin, end);
   });
-  if (!state.erodible.empty() || !model.resistance.empty())
-    apply_areas(model, state, work);
+  if (!state.erodible.empty() || !model.resistance.empty()) apply_areas(model, state, work);
 }
+
+namespace {
+
+/// Marks the bonds of particles that have lost half of their mass to forest. Their snow is no slab
+/// any more, and the lighter a particle is, the shorter are the steps that its bonds need.
+void mark_torn(const State& state, Workspace& work) {
+  const Particles& p = state.particles;
+  const auto is_torn = [&p](std::uint32_t i) { return p.mass[i] < 0.5 * p.fresh_mass[i]; };
+  for (std::size_t b = 0; b < state.bonds.size(); ++b)
+    if (is_torn(state.bonds.first[b]) || is_torn(state.bonds.second[b])) {
+      work.broken[b] = 1;
+      work.bonds_break = true;
+    }
+}
+
+}  // namespace
 
 void apply_neighbours(const Model& model, State& state, Workspace& work) {
   if (!work.entrained.empty() || !work.detrained.empty())
@@ -163,6 +178,7 @@ void apply_neighbours(const Model& model, State& state, Workspace& work) {
                   if (kernels.stretch_bonds(view, begin, end)) breaks = true;
                 }});
   work.bonds_break = breaks;
+  if (!work.detrained.empty() && !model.compatible()) mark_torn(state, work);
 }
 
 void mark_detrained(State& state, Workspace& work) {

@@ -113,15 +113,15 @@ std::vector<LateRelease> prepare_late_releases(const Settings& s, const Terrain&
   for (std::size_t i = 0; i < areas.secondary_release.size(); ++i) {
     late.push_back(secondary_release(s, terrain, areas, i));
     others.push_back({&areas.secondary_release[i], path_of("secondary_release", i)});
-    if (s.mode == Mode::improved) refuse_overlap(terrain, others, others.size() - 1, late.back().snow);
+    if (s.mode == Mode::improved)
+      refuse_overlap(terrain, others, others.size() - 1, late.back().snow);
   }
   for (std::size_t i = 0; i < areas.inflows.size(); ++i) {
     const Inflow& inflow = areas.inflows[i];
     check_times(s, inflow, path_of("inflows", i) + "/hydrograph");
     for (std::size_t k = 0; k < inflow.pulses.size(); ++k)
-      late.push_back(
-          pulse_release(s, terrain, inflow, inflow.pulses[k],
-                        path_of("inflows", i) + "/hydrograph/" + std::to_string(k)));
+      late.push_back(pulse_release(s, terrain, inflow, inflow.pulses[k],
+                                   path_of("inflows", i) + "/hydrograph/" + std::to_string(k)));
   }
   return late;
 }
@@ -140,9 +140,8 @@ void mark_contacts(const Model& model, State& state, const Workspace& work) {
   for (std::size_t i = 0; i < model.late.size(); ++i) {
     const LateRelease& late = model.late[i];
     if (late.trigger != Trigger::contact || state.late[i] != waiting) continue;
-    const bool entered = model.compatible()
-                             ? flows_at_nodes(late, work.fields, model.terrain)
-                             : contains_snow(late, state.particles);
+    const bool entered = model.compatible() ? flows_at_nodes(late, work.fields, model.terrain)
+                                            : contains_snow(late, state.particles);
     if (entered) state.late[i] = due;
   }
 }

@@ -373,8 +373,7 @@ std::vector<ParticleBatch> seed_release(const Settings& settings, const Terrain&
   if (settings.mode == Mode::compatible) {
     const std::vector<double> thickness = thickness_at_nodes(areas, terrain, Reach::one_cell);
     batches = {seed_nodes(settings, terrain, areas, thickness, all[0].path, stop)};
-    for (std::size_t i = 1; i < areas.size(); ++i)
-      refuse_overlap(terrain, all, i, batches.front());
+    for (std::size_t i = 1; i < areas.size(); ++i) refuse_overlap(terrain, all, i, batches.front());
     return batches;
   }
   for (std::size_t i = 0; i < areas.size(); ++i) {

@@ -102,8 +102,8 @@ void SolverImpl::append(State& state, const ParticleBatch& batch, const std::vec
       throw SimulationError("a particle at (" + std::to_string(x.x()) + ", " +
                             std::to_string(x.y()) + ") m lies outside of the terrain");
     const std::size_t i = old + k;
-    const Vec3 u = batch.fall_speed > 0 ? Vec3(batch.fall_speed * fall_line(position))
-                                        : batch.velocity;
+    const Vec3 u =
+        batch.fall_speed > 0 ? Vec3(batch.fall_speed * fall_line(position)) : batch.velocity;
     p.x[i] = x.x();
     p.y[i] = x.y();
     p.z[i] = model_.terrain.height(position);
@@ -117,8 +117,8 @@ void SolverImpl::append(State& state, const ParticleBatch& batch, const std::vec
   }
   if (!areas) return;
   // Compatible mode has bonds across gaps of the release.
-  const Bonds bonds = bonds_between(p, old, lattice_spacing(batch),
-                                    model_.compatible() ? nullptr : areas, stop);
+  const Bonds bonds =
+      bonds_between(p, old, lattice_spacing(batch), model_.compatible() ? nullptr : areas, stop);
   state.bonds.reserve(state.bonds.size() + bonds.size());
   for (std::size_t b = 0; b < bonds.size(); ++b)
     state.bonds.add(bonds.first[b], bonds.second[b], bonds.rest_length[b]);
@@ -161,7 +161,7 @@ bool SolverImpl::release_before_step() {
   if (compatible) refuse_snow_in_inflows(model_, next);
   append_due(next, Trigger::time);
   if (!compatible) append_due(next, Trigger::contact);
-  if (!compatible) next.peak_kinetic = 0;  // the slide begins anew
+  if (!compatible) next.peak_kinetic = 0;  // the later snow may be faster or slower
   Workspace work;
   refresh(model_, next, work, &next.peaks);
   choose_step(next, work);
@@ -340,7 +340,8 @@ void SolverImpl::step() {
   if (size() == 0) state_.stopped = true;
   mark_contacts(model_, state_, workspace_);
   // In the compatible mode the slide stops without the snow to come, as in AvaFrame.
-  if (!model_.compatible() && (any_due(model_, state_.late, Trigger::contact) || awaits_time(model_, state_)))
+  if (!model_.compatible() &&
+      (any_due(model_, state_.late, Trigger::contact) || awaits_time(model_, state_)))
     state_.stopped = false;
   if (!std::isfinite(state_.kinetic_energy)) {
     soundness_.lose();

@@ -55,7 +55,7 @@ struct Model {
 /// `inflow` came later.
 struct MassBalance {
   double released = 0, secondary = 0, inflow = 0, entrained = 0;  // kg
-  double detrained = 0, left_terrain = 0;                          // kg
+  double detrained = 0, left_terrain = 0;                         // kg
   std::int64_t particles_left = 0;
 };
 
@@ -66,7 +66,7 @@ struct State {
   Bonds bonds;
   std::int64_t bonds_made = 0;
   PeakFields peaks;
-  std::vector<double> late;      // of each late release: waiting, due, or its time, s
+  std::vector<double> late;       // for each late release: waiting, due, or its time, s
   std::vector<double> over_dams;  // kg that passed each dam
   // Whether forest stands at each node; empty without detrainment, when forest is never destroyed.
   std::vector<std::uint8_t> forest;
@@ -134,8 +134,8 @@ struct Workspace {
   std::vector<char> gone;         // particles of which forest took all; empty without detrainment
   std::vector<Vec3> before_dams;  // m, positions before the step; empty without dams
   std::vector<DamCrossing> passed_dams;
-  std::vector<char> broken;       // bonds that break in this step
-  bool bonds_break = false;       // whether any bond breaks in this step
+  std::vector<char> broken;  // bonds that break in this step
+  bool bonds_break = false;  // whether any bond breaks in this step
   std::vector<std::uint32_t> new_indices;
   std::vector<double> piece_sums;
   bool no_particle_splits = false;  // no particle is too heavy, and none becomes heavier

@@ -123,8 +123,10 @@ Options slide_against_dam(double height, Mode mode = Mode::improved) {
   o.settings.mode = mode;
   o.energy = true;
   // From north to south, so that snow comes from the left.
-  o.areas.dams = {{"dam", {{80.4, 4.2, height}, {88.3, 40.1, height}, {81.7, 74.6, height}},
-                   mode == Mode::compatible ? 60.0 : 90.0, mode == Mode::compatible ? 1.0 : 0.0}};
+  o.areas.dams = {{"dam",
+                   {{80.4, 4.2, height}, {88.3, 40.1, height}, {81.7, 74.6, height}},
+                   mode == Mode::compatible ? 60.0 : 90.0,
+                   mode == Mode::compatible ? 1.0 : 0.0}};
   return o;
 }
 
@@ -164,8 +166,8 @@ TEST(SlideDam, TurnsVelocitiesAboutItsInclinedFaceInTheCompatibleMode) {
   for (const double slope : {90.0, 75.0, 60.0}) {
     const double height = 30;
     const double foot = 60 - height / std::tan(radians(slope));
-    const Options o = with_dam(level(), {{60, 20, height}, {60, 100, height}}, 1.0,
-                               Mode::compatible, slope);
+    const Options o =
+        with_dam(level(), {{60, 20, height}, {60, 100, height}}, 1.0, Mode::compatible, slope);
     const auto slide = particle(o, foot - 5e-4, 50, {10, 3, 0});
     slide->step();
     const double b = radians(slope);

@@ -100,7 +100,7 @@ Options inflow_on_slope(std::vector<Pulse> pulses) {
 TEST(SlideInflow, BringsTheIntegralOfTheHydrograph) {
   const auto slide =
       released_slide(inflow_on_slope({{0.5, 0.4, 8}, {0.123, 0.3, 0}, {1.0, 0.7, 12}}));
-  const double area = slab_mass(12, 12, 1);  // of one metre
+  const double area = slab_mass(12, 12, 1);  // kg per metre of thickness
   const double released = slide->mass_balance().released;
   double expected = 0;
   while (slide->time() < 1.2) {

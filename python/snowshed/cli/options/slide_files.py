@@ -130,7 +130,10 @@ class SlideFiles:
 
     def has_files(self) -> bool:
         """Return whether any file is given."""
-        return any(file is not None for file in (self.terrain, self.hydrograph, *self.area_files().values()))
+        return any(
+            file is not None
+            for file in (self.terrain, self.hydrograph, *self.area_files().values())
+        )
 
     def area_files(self) -> dict[str, Optional[Path]]:
         """Return the files of areas by their key in a scene's terrain."""

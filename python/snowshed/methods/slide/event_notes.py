@@ -17,9 +17,8 @@ def event_notes(facts: Mapping[str, Any]) -> tuple[str, ...]:
 
     Examples
     --------
-    >>> late = {"name": "bowl", "by_contact": True, "planned_s": 0.0, "time_s": None, "mass_kg": 9.0}
-    >>> event_notes({"late_releases": [late], "detrained_kg": 0.0, "dams": []})
-    ('Secondary release bowl never started: no snow of the slide entered it.',)
+    >>> event_notes({"late_releases": [], "detrained_kg": 12.0, "dams": []})
+    ('Forest took 12 kg of snow from the slide.',)
     """
     late = facts["late_releases"]
     by_contact = [release for release in late if release["by_contact"]]

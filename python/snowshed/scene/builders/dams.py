@@ -24,8 +24,9 @@ FIELDS = ("height", "slope", "restit")
 def read_dams(file: Path, terrain: Raster) -> tuple[list[Dam], str]:
     """Return the dams of a file of lines, and its coordinate system.
 
-    A field "height" is the height of the crown above the ground, m. Without it, the lines need z:
-    the elevation of the crown. The fields "slope" (degrees) and "restitution" are optional.
+    A field "height" is the height of the crown above the ground, m. Without it, the lines of a
+    shapefile need z: the elevation of the crown. The fields "slope" (degrees) and "restitution" are
+    optional.
 
     Raises
     ------
@@ -83,7 +84,8 @@ def _corners(line: Any, height: Optional[float], terrain: Raster, where: str) ->
         heights = np.full(len(points), height)
     elif np.isnan(crown).any():
         raise InputError(
-            f"{where}: has neither a field \"height\" nor elevations of the crown (z)"
+            f'{where}: has neither a field "height" nor elevations of the crown (z, which '
+            "only shapefiles give)"
         )
     else:
         heights = crown - ground
@@ -92,6 +94,5 @@ def _corners(line: Any, height: Optional[float], terrain: Raster, where: str) ->
             f"{where}: {heights.min():.3g} m high; its crown must be above the ground everywhere"
         )
     return [
-        DamCorner(x=float(x), y=float(y), height=float(h))
-        for x, y, h in zip(east, north, heights)
+        DamCorner(x=float(x), y=float(y), height=float(h)) for x, y, h in zip(east, north, heights)
     ]

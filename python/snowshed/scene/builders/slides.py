@@ -34,8 +34,8 @@ from snowshed.scene.builders.terrain_checks import (
     read_terrain,
 )
 from snowshed.scene.components import Events
-from snowshed.scene.terrain_components import Area, Hole, Inflow, Pulse, ResistanceArea, Terrain
 from snowshed.scene.scene import Scene
+from snowshed.scene.terrain_components import Area, Hole, Inflow, Pulse, ResistanceArea, Terrain
 
 if TYPE_CHECKING:
     import xarray
@@ -104,7 +104,8 @@ def slide_scene(
         A CSV file with the columns timestep [s], thickness [m] and velocity [m/s, down the slope].
     dams
         Lines of dams: a file whose field "height" is the height of the crown above the ground [m],
-        or whose lines have the elevation of the crown as z. A field "restitution" is optional.
+        or a shapefile whose lines have the elevation of the crown as z. A field "restitution" is
+        optional.
     layers
         Layers of GeoPackages with several, by purpose: "release", "entrainment", "resistance",
         "secondary_release", "inflow".
@@ -188,9 +189,7 @@ def slide_scene(
             ]
             or None,
             inflows=[
-                Inflow(
-                    name=area.name, outline=area.outline, holes=_holes(area), hydrograph=pulses
-                )
+                Inflow(name=area.name, outline=area.outline, holes=_holes(area), hydrograph=pulses)
                 for area in entered
             ]
             or None,

@@ -44,7 +44,7 @@ def test_a_dam_has_the_height_of_its_crown_above_the_ground(tmp_path):
     project = write_project(tmp_path)
     ground = 1500.0 - 0.7812856265 * 60.0  # a plane of 38 degrees
     line = [[60.0, 8.0, ground + 4.0], [60.0, 40.0, ground + 7.0]]
-    write_lines(project / "Inputs/DAM/dam.geojson", [line], slope=60, name="wall")
+    write_lines(project / "Inputs/DAM/dam.shp", [line], slope=60, name="wall")
     (dam,) = avaframe_scene(project).resolve().data["terrain"]["dams"]
     assert [corner["height"] for corner in dam["corners"]] == pytest.approx([4.0, 7.0], abs=1e-3)
     assert (dam["name"], dam["slope"], dam["restitution"]) == ("wall", 60.0, 1.0)
@@ -55,7 +55,7 @@ def test_a_dam_has_the_height_of_its_crown_above_the_ground(tmp_path):
 def test_the_restitution_is_cut_as_in_avaframe(tmp_path):
     project = write_project(tmp_path, "restitutionCoefficient = 0.5\n")
     line = [[60.0, 8.0, 1500.0], [60.0, 40.0, 1500.0]]
-    write_lines(project / "Inputs/DAM/dam.geojson", [line], slope=60)
+    write_lines(project / "Inputs/DAM/dam.shp", [line], slope=60)
     with pytest.warns(SnowshedNote, match="0.5 is taken as 0, as in AvaFrame"):
         scene = avaframe_scene(project)
     assert scene.terrain.dams[0].restitution == 0.0
@@ -67,14 +67,14 @@ def test_the_restitution_is_cut_as_in_avaframe(tmp_path):
         ([[[60, 8, 1500], [60, 40, 1500]]], {}, 'the dam needs a field "slope"'),
         ([[[60, 8], [60, 40]]], {"slope": 60}, 'neither a field "height" nor elevations'),
         ([[[60, 8, 10], [60, 40, 10]]], {"slope": 60}, "its crown must be above the ground"),
-        ([[[60, 8, 1500], [600, 40, 1500]]], {"slope": 60}, "reaches beyond the terrain"),
+        ([[[60, 8, 1500], [600, 40, 1500]]], {"slope": 60}, "is outside the raster"),
         ([[[60, 8, 1500], [60, 40, 1500]]] * 2, {"slope": 60}, "2 lines; AvaFrame takes one dam"),
         ([[[60, 8, 1500], [60, 40, 1500]]], {"slope": "steep"}, "slope 'steep' is not a number"),
     ],
 )
 def test_dams_that_avaframe_does_not_take_are_refused(tmp_path, lines, fields, message):
     project = write_project(tmp_path)
-    write_lines(project / "Inputs/DAM/dam.geojson", lines, **fields)
+    write_lines(project / "Inputs/DAM/dam.shp", lines, **fields)
     with pytest.raises(InputError, match=re.escape(message)):
         avaframe_scene(project)
 

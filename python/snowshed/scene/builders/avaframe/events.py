@@ -47,7 +47,7 @@ def set_dam(terrain: Terrain, project: ProjectSettings, file: Optional[Path]) ->
         raise InputError(f"{file}: {len(terrain.dams)} lines; AvaFrame takes one dam")
     (dam,) = terrain.dams
     if "slope" not in dam.given():
-        raise InputError(f"{file}: the dam needs a field \"slope\", degrees")
+        raise InputError(f'{file}: the dam needs a field "slope", degrees')
     dam.restitution = float(int(project.restitution))
     if dam.restitution != project.restitution:
         issue_note(

@@ -99,9 +99,10 @@ OTHER_FRICTION = (
     "obrienandjulien", "herschelandbulkley", "bingham",
 )  # fmt: skip
 OWN_KEYS = (
-    "dam", "detk", "detrainment", "dissdam", "entth", "entthfromfile", "entthifmissinginshp", "explicitfriction", "frictmodel",
-    "niterdam", "releasescenario", "relth", "relthfromfile", "restitutioncoefficient", "restype",
-    "secondaryrelth", "secondaryrelthfromfile", "secrelarea", "simtypelist", "snowslide",
-    "sphkernelradius", "tend", "thresholdpointinrel", "timedependentrelease",
-    "timedependentreleasescenarios", "tsteps", *(key for key, _ in FRICTION.values()),
+    "dam", "detk", "detrainment", "dissdam", "entth", "entthfromfile", "entthifmissinginshp",
+    "explicitfriction", "frictmodel", "niterdam", "releasescenario", "relth", "relthfromfile",
+    "restitutioncoefficient", "restype", "secondaryrelth", "secondaryrelthfromfile", "secrelarea",
+    "simtypelist", "snowslide", "sphkernelradius", "tend", "thresholdpointinrel",
+    "timedependentrelease", "timedependentreleasescenarios", "tsteps",
+    *(key for key, _ in FRICTION.values()),
 )  # fmt: skip
