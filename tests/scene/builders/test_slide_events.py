@@ -1,11 +1,13 @@
 """Secondary releases, inflows and dams of slides from files."""
 
+import json
 import re
 
 import pytest
 from helpers.slide_files import box, plane, write_lines, write_polygons
 
 from snowshed import InputError, run
+from snowshed.cli.main import main
 from snowshed.io.raster.raster import write_ascii_grid
 from snowshed.scene import slide_scene
 
@@ -55,3 +57,30 @@ def test_a_secondary_release_without_contact_is_noted(files, tmp_path):
     scene = slide_scene(**parts).set("events.max_time", 0.1)
     notes = run(scene, tmp_path / "out", pictures=False).summary.notes
     assert "Secondary release bowl never started: no snow of the slide entered it." in notes
+
+
+def test_the_command_takes_all_parts(files, tmp_path, undrawn):
+    options = {
+        "--terrain": files["raster"],
+        "--release": files["release"],
+        "--secondary-release": files["secondary_release"],
+        "--inflow": files["inflow"],
+        "--hydrograph": files["hydrograph"],
+        "--dams": files["dams"],
+    }
+    words = [str(word) for pair in options.items() for word in pair]
+    out = tmp_path / "out"
+    assert main(["slide", *words, "-o", str(out), "-q", "--max-time", "0.2"]) == 0
+    terrain = json.loads((out / "scene.json").read_text())["terrain"]
+    assert [area["name"] for area in terrain["secondary_release"]] == ["bowl"]
+    assert [len(inflow["hydrograph"]) for inflow in terrain["inflows"]] == [2]
+    assert [dam["corners"][0]["height"] for dam in terrain["dams"]] == [9.0]
+    balance = json.loads((out / "run.json").read_text())["mass_balance"]
+    assert balance["secondary_release_kg"] == 0.0
+    assert abs(balance["residual_kg"]) < 1e-6 * balance["released_kg"]
+
+
+def test_an_avaframe_project_refuses_files_beside_it(files, tmp_path, capsys):
+    command = ["slide", "--avaframe", str(tmp_path), "--dams", str(files["dams"])]
+    assert main([*command, "-o", str(tmp_path / "out")]) == 2
+    assert "the project's folders ENT, RES, SECREL, DAM and REL hold" in capsys.readouterr().err
