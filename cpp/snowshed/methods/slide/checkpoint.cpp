@@ -30,15 +30,7 @@ void visit_state(Archive& archive, State& s) {
                   e.broken, e.left_terrain, e.added);
   archive.optional_array("over_dams", s.over_dams, s.over_dams.size());
   archive.optional_array("forest", s.forest, s.forest.size());
-  std::vector<double> more{b.secondary, b.inflow, b.detrained, e.detrainment, e.dams};
-  archive.optional_array("more_sums", more, more.size());
-  if constexpr (Archive::reads) {
-    b.secondary = more[0];
-    b.inflow = more[1];
-    b.detrained = more[2];
-    e.detrainment = more[3];
-    e.dams = more[4];
-  }
+  archive.optional_numbers("later_sums", b.secondary, b.inflow, b.detrained, e.detrainment, e.dams);
   auto& c = s.counters;
   archive.counts("counters", c.steps, s.sorts, c.particle_updates, s.bonds_made, b.particles_left,
                  s.stopped, s.next_id);

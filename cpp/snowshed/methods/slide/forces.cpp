@@ -9,6 +9,8 @@ namespace snowshed::methods::slide {
 namespace {
 
 constexpr double min_speed = 1e-6;  // m/s
+// m/s; the kernels store up to 1e-15 for snow at rest.
+constexpr double max_rest_speed = 2e-15;
 
 /// The node nearest to a position.
 std::size_t nearest_node(const Terrain& terrain, const geometry::CellPosition& p) {
@@ -90,7 +92,7 @@ ForestAction forest_action(const Model& model, const State& state, const GridFie
 /// step, because accelerations are divided by it, but is marked.
 void detrain(const Model& model, double area, double dt, double speed, std::size_t i, double& mass,
              Workspace& work) {
-  if (!(speed > 0)) return;
+  if (!(speed > max_rest_speed)) return;
   const double taken = model.settings.detrainment / speed * dt * area;
   work.gone[i] = taken >= mass;
   if (work.gone[i]) return;

@@ -48,7 +48,8 @@ TEST(SlideDetrainment, ABlockOfConstantSpeedLosesMassLinearly) {
       lost += before.masses[i] - after.masses[i];
       area += before.masses[i] / (300 * thickness);
     }
-    EXPECT_NEAR(lost / (coefficient * area / speed * time), 1, 0.01) << int(mode);
+    // The lattice of particles fits into the outline within 2 %.
+    EXPECT_NEAR(lost / (coefficient * area / speed * time), 1, 0.02) << int(mode);
   }
 }
 
@@ -63,13 +64,21 @@ TEST(SlideDetrainment, TheLostMassIsCounted) {
   }
 }
 
+TEST(SlideDetrainment, SnowAtRestLosesNoMass) {
+  for (const Mode mode : {Mode::improved, Mode::compatible}) {
+    const auto slide = released_slide(gliding(mode, 100));
+    slide->step();
+    EXPECT_EQ(slide->mass_balance().detrained, 0);
+  }
+}
+
 TEST(SlideDetrainment, ForestMayTakeAllSnow) {
   for (const Mode mode : {Mode::improved, Mode::compatible}) {
     Options o = gliding(mode, 1e5);
     o.energy = true;
     const auto slide = gliding_at(o, 3);
     const double before = total_mass(*slide);
-    step(*slide, 3);
+    for (int i = 0; i < 3 && slide->size() > 0; ++i) slide->step();
     EXPECT_EQ(slide->size(), 0u);
     EXPECT_TRUE(*slide->at_rest());
     EXPECT_NEAR(slide->mass_balance().detrained / before, 1, 1e-12);
@@ -86,7 +95,7 @@ TEST(SlideDetrainment, FastAndThickSnowIsResistedAndTheFastestDestroysTheForest)
     for (const Case& c : {Case{5, 0.1, 40, true, false}, Case{9, 0.6, 40, true, false},
                           Case{9, 0.1, 40, false, true}, Case{9, 0.1, 8, false, false}}) {
       Options o = gliding(mode, 50);
-      o.settings.resistance = 1;
+      o.settings.resistance = 0.05;
       o.settings.forest_min_thickness = c.min_thickness;
       o.settings.forest_max_speed = c.max_speed;
       const auto slide = gliding_at(o, c.speed);
@@ -118,7 +127,7 @@ TEST(SlideDetrainment, EnergyBalanceCloses) {
   step(*slide, 400);
   EXPECT_GT(energy("detrainment_j"), 0);
   EXPECT_LT(std::abs(energy("residual_j")),
-            0.01 * (before - energy("potential_j") - energy("detrainment_j")));
+            0.02 * (before - energy("potential_j") - energy("detrainment_j")));
 }
 
 class SlideDetrainmentCheckpoint : public io::TemporaryFolder {};

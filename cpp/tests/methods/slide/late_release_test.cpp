@@ -176,9 +176,10 @@ TEST(SlideInflow, OnLevelGroundHasNoDirection) {
 }
 
 Options all_late(Mode mode) {
-  Options o = slide_above(rectangle(52.3, 20.3, 72.3, 44.3));
-  o.areas.inflows = {{rectangle(20.3, 60.3, 30.3, 70.3), false, {{0.3, 0.4, 9}, {2.5, 0.4, 9}}}};
+  Options o = slide_above(rectangle(44.3, 20.3, 64.3, 44.3));
+  o.areas.inflows = {{rectangle(20.3, 60.3, 24.3, 70.3), false, {{0.3, 0.4, 9}, {2.5, 0.4, 9}}}};
   o.settings.mode = mode;
+  o.settings.turbulence = 5000;  // thin snow flows off, too
   return o;
 }
 
