@@ -46,7 +46,7 @@ def scene_with_dam(folder: Path, seconds: float) -> Scene:
     scene.terrain.secondary_release = [Area(name="bowl", outline=BOWL, thickness=0.4)]
     scene.terrain.resistance = [ResistanceArea(name="forest", outline=FOREST)]
     corners = [DamCorner(x=x, y=y, height=2.0) for x, y in DAM]
-    scene.terrain.dams = [Dam(name="dam", corners=corners)]
+    scene.terrain.dams = [Dam(name="lower", corners=corners)]
     return scene.update(
         {"numerics.detrainment": 20.0, "numerics.resistance": 0.05, "events.max_time": seconds}
     )
