@@ -154,6 +154,7 @@ void mark_torn(const State& state, Workspace& work) {
   for (std::size_t b = 0; b < state.bonds.size(); ++b)
     if (is_torn(state.bonds.first[b]) || is_torn(state.bonds.second[b])) {
       work.broken[b] = 1;
+      std::fill_n(&work.bond_force[4 * b], 4, 0.0);  // it would throw the light particle away
       work.bonds_break = true;
     }
 }

@@ -130,6 +130,20 @@ TEST(SlideDetrainment, EnergyBalanceCloses) {
             0.02 * (before - energy("potential_j") - energy("detrainment_j")));
 }
 
+TEST(SlideDetrainment, BondsThrowNoLightParticleAway) {
+  Options o = slide_on(inclined(36, 100, 40), rectangle(20.3, 20.3, 50.3, 60.3));
+  o.settings.detrainment = 20;
+  o.areas.resistance = {rectangle(40, 2, 120, 76)};
+  const auto slide = released_slide(o);
+  double fastest = 0;
+  for (int i = 0; i < 400; ++i) {
+    slide->step();
+    for (const Vec3& u : slide->state().velocities) fastest = std::max(fastest, u.norm());
+  }
+  EXPECT_LT(fastest, 8);  // a block without friction would have 23 m/s, one with it 4 m/s
+  EXPECT_EQ(slide->mass_balance().left_terrain, 0);
+}
+
 class SlideDetrainmentCheckpoint : public io::TemporaryFolder {};
 
 TEST_F(SlideDetrainmentCheckpoint, ResumesWithTheForestThatStandsOnAnyNumberOfThreads) {
