@@ -89,15 +89,15 @@ ForestAction forest_action(const Model& model, const State& state, const GridFie
 }
 
 /// Default mode: forest takes all of a particle of which less than this share is left.
-constexpr double least_share = 0.01;
+constexpr double min_share = 0.01;
 
 /// Takes mass from a particle. A particle that loses all of it keeps its mass to the end of the
 /// step, because accelerations are divided by it, but is marked.
 void detrain(const Model& model, double area, double dt, double speed, std::size_t i, double& mass,
-             double least_mass, Workspace& work) {
+             double min_mass, Workspace& work) {
   if (!(speed > max_rest_speed)) return;
   const double taken = model.settings.detrainment / speed * dt * area;
-  work.gone[i] = taken >= mass - least_mass;
+  work.gone[i] = taken >= mass - min_mass;
   if (work.gone[i]) return;
   work.detrained[i] = taken;
   mass -= taken;
@@ -119,7 +119,7 @@ void apply_areas(const Model& model, State& state, Workspace& work) {
     const ForestAction action = forest_action(model, state, work.fields, node);
     if (action == ForestAction::detrains)
       detrain(model, before / (h * model.settings.density), state.step, v.speed[i], i, p.mass[i],
-              model.compatible() ? 0.0 : least_share * p.fresh_mass[i], work);
+              model.compatible() ? 0.0 : min_share * p.fresh_mass[i], work);
     if (action == ForestAction::resists) v.drag[i] += model.resistance[node] / h;
     if (model.compatible() && p.mass[i] != before) {  // there forces act on the mass before
       const double share = before / p.mass[i];
