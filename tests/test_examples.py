@@ -20,6 +20,7 @@ ARGUMENTS = {
     "panel_2d.py": ["out", "0.02"],
     "resume.py": ["out", "0.02"],
     "slab_and_bonds.py": ["out", "1.0"],
+    "slide_dam.py": ["out", "1.0"],
 }
 #: Scripts that take most of a minute.
 LONG = {"image_to_stack.py"}

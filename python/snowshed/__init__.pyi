@@ -27,7 +27,6 @@ from .results.reader import Results as Results
 from .running.run import run as run
 from .running.run import run_events as run_events
 from .running.simulation import Simulation as Simulation
-from .scene.components import Area as Area
 from .scene.components import Body as Body
 from .scene.components import Domain as Domain
 from .scene.components import Events as Events
@@ -39,7 +38,6 @@ from .scene.components import Panel as Panel
 from .scene.components import Seeding as Seeding
 from .scene.components import Slab as Slab
 from .scene.components import Snow as Snow
-from .scene.components import Terrain as Terrain
 from .scene.loading import Cone as Cone
 from .scene.loading import LoadingStage as LoadingStage
 from .scene.loading import Sample as Sample
@@ -47,6 +45,8 @@ from .scene.output import Output as Output
 from .scene.scene import ResolvedScene as ResolvedScene
 from .scene.scene import Scene as Scene
 from .scene.shape import Shape as Shape
+from .scene.terrain_components import Area as Area
+from .scene.terrain_components import Terrain as Terrain
 from .season.driver import run_season as run_season
 from .snow.stack.measure import StackMeasure as StackMeasure
 from .snow.stack.measure import measure_stack as measure_stack

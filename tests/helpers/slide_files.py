@@ -40,6 +40,43 @@ def write_features(path, features, crs="EPSG:31287"):
     return path
 
 
+def write_lines(path, lines, **fields):
+    """Write a file of lines: GeoJSON, or a shapefile, whose corners may have z."""
+    if path.suffix == ".shp":
+        return write_line_shapes(path, lines, fields)
+    collection = {
+        "type": "FeatureCollection",
+        "crs": {"type": "name", "properties": {"name": "EPSG:31287"}},
+        "features": [
+            {
+                "type": "Feature",
+                "properties": fields,
+                "geometry": {"type": "LineString", "coordinates": line},
+            }
+            for line in lines
+        ],
+    }
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps(collection))
+    return path
+
+
+def write_line_shapes(path, lines, fields):
+    import pyogrio
+    import shapely
+
+    path.parent.mkdir(parents=True, exist_ok=True)
+    pyogrio.raw.write(
+        path,
+        geometry=shapely.to_wkb([shapely.LineString(line) for line in lines], output_dimension=3),
+        field_data=[np.array([value] * len(lines)) for value in fields.values()],
+        fields=list(fields),
+        geometry_type="LineString Z" if len(lines[0][0]) == 3 else "LineString",
+        crs="EPSG:31287",
+    )
+    return path
+
+
 def plane(degrees=38.0, columns=40, rows=30, cell=2.0):
     """Return the raster of a plane that falls toward the east."""
     fall = math.tan(math.radians(degrees)) * cell * np.arange(columns)

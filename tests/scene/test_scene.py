@@ -46,7 +46,7 @@ def check_mirror(record: type[Record], node: dict, checked: set) -> None:
 def test_fields_agree_with_the_cores_schema():
     checked: set = set()
     check_mirror(Scene, SCHEMA, checked)
-    assert len(checked) == 22  # every record except the settings of other methods
+    assert len(checked) == 26  # every record except the settings of other methods
 
 
 @pytest.mark.parametrize("method", METHODS)

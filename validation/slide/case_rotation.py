@@ -10,7 +10,7 @@ from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.arrays import Floats
 from snowshed.io.raster.raster import Raster
 from snowshed.methods.slide.maps import SlideMaps
-from snowshed.scene.components import Area
+from snowshed.scene.terrain_components import Area
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import TimedEventDriver
 from validation.slide.site import Site, maps_of, node_axes, slide_drive

@@ -15,8 +15,9 @@ from snowshed.base.arrays import Floats
 from snowshed.io.raster.raster import Raster, write_ascii_grid
 from snowshed.methods.slide.maps import SlideMaps, slide_maps
 from snowshed.methods.slide.settings import SlideSettings
-from snowshed.scene.components import Area, Events, Terrain
+from snowshed.scene.components import Events
 from snowshed.scene.scene import Scene
+from snowshed.scene.terrain_components import Area, Terrain
 from validation.framework.drive import TimedEventDriver
 
 GRAVITY = 9.81  # m/s2

@@ -50,6 +50,27 @@ py::dict slide_facts(const run::Simulation& sim) {
   d["entrained_kg"] = m.entrained;
   d["left_terrain_kg"] = m.left_terrain;
   d["left_terrain"] = m.particles_left;
+  d["secondary_kg"] = m.secondary;
+  d["inflow_kg"] = m.inflow;
+  d["detrained_kg"] = m.detrained;
+  py::list releases, dams;
+  for (const LateReleaseFact& fact : slide.late_releases()) {
+    py::dict release;
+    release["name"] = fact.name;
+    release["by_contact"] = fact.trigger == Trigger::contact;
+    release["planned_s"] = fact.planned;
+    release["time_s"] = fact.time < 0 ? py::object(py::none()) : py::object(py::float_(fact.time));
+    release["mass_kg"] = fact.mass;
+    releases.append(release);
+  }
+  for (const DamFact& fact : slide.dams()) {
+    py::dict dam;
+    dam["name"] = fact.name;
+    dam["passed_kg"] = fact.passed;
+    dams.append(dam);
+  }
+  d["late_releases"] = releases;
+  d["dams"] = dams;
   return d;
 }
 

@@ -86,6 +86,11 @@ class StateWriter {
   void numbers(const std::string& name, const T&... values) {
     out_.add(name, std::vector<double>{double(values)...});
   }
+  /// Numbers that files of earlier states may lack.
+  template <class... T>
+  void optional_numbers(const std::string& name, const T&... values) {
+    numbers(name, values...);
+  }
   template <class... T>
   void counts(const std::string& name, const T&... values) {
     out_.add(name, std::vector<std::int64_t>{std::int64_t(values)...});
@@ -157,6 +162,10 @@ class StateReader {
     check_finite(given);
     std::size_t next = 0;
     ((values = T(given[next++])), ...);
+  }
+  template <class... T>
+  void optional_numbers(const std::string& name, T&... values) const {
+    if (in_.has(name)) numbers(name, values...);
   }
   template <class... T>
   void counts(const std::string& name, T&... values) const {

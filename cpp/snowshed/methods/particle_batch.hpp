@@ -13,8 +13,9 @@ namespace snowshed::methods {
 struct ParticleBatch {
   std::vector<Vec3> positions;   // m
   Vec3 velocity = Vec3::Zero();  // m/s
-  double mass = 0;               // kg each (per metre of width in 2D)
-  std::vector<double> masses;    // kg each, in place of `mass`; empty if all are equal
+  double fall_speed = 0;  // m/s down the slope of the ground, in place of `velocity`; on terrain
+  double mass = 0;        // kg each (per metre of width in 2D)
+  std::vector<double> masses;  // kg each, in place of `mass`; empty if all are equal
   int event = 1;
   int material_id = 0;
 

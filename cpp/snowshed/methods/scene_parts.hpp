@@ -30,6 +30,35 @@ struct ResistanceSpec {
   std::vector<HoleSpec> holes;
 };
 
+/// Snow that enters an area at one time.
+struct PulseSpec {
+  double time = 0.0;       // s
+  double thickness = 0.0;  // m, normal to the ground
+  double speed = 0.0;      // m/s, down the slope
+};
+
+/// Snow that enters an area at given times.
+struct InflowSpec {
+  std::string name;
+  geometry::Ring outline;
+  std::vector<HoleSpec> holes;
+  bool bonds = false;
+  std::vector<PulseSpec> hydrograph;
+};
+
+/// A corner of a dam's line on the map.
+struct DamCornerSpec {
+  double x = 0.0, y = 0.0;  // m, in the terrain's coordinates
+  double height = 0.0;      // m, of the crown above the ground
+};
+
+struct DamSpec {
+  std::string name;
+  std::vector<DamCornerSpec> corners;
+  double slope = 90.0;       // degrees, of its face
+  double restitution = 0.0;  // share of the speed that snow keeps
+};
+
 /// Ground from a raster of elevations, and the areas on it.
 struct TerrainSpec {
   std::string file;  // ESRI ASCII grid
@@ -39,8 +68,12 @@ struct TerrainSpec {
   double max_thickness = 10;   // m, of the snow in the areas
   double max_slope = 70;       // degrees, of cliffs under a release
   std::string notes;           // assumptions about the files; results repeat them
-  std::vector<AreaSpec> release, entrainment;
+  double release_speed = 0;    // m/s, of the released snow, down the slope
+  std::vector<AreaSpec> release, secondary_release;
+  std::vector<InflowSpec> inflows;
+  std::vector<AreaSpec> entrainment;
   std::vector<ResistanceSpec> resistance;
+  std::vector<DamSpec> dams;
 };
 
 /// Segmented snow to be loaded.

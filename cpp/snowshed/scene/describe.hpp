@@ -30,6 +30,7 @@
 #include "snowshed/methods/allowed.hpp"
 #include "snowshed/methods/enum_names.hpp"
 #include "snowshed/methods/settings_visitor.hpp"
+#include "snowshed/scene/describe_terrain.hpp"
 #include "snowshed/scene/scene.hpp"
 
 namespace snowshed::methods {
@@ -223,52 +224,6 @@ void describe(V& v, scene::Ground& g) {
   v.choice("condition", g.condition, condition_doc);
   v.number("friction", g.friction, "", methods::allowed::coefficient.usual(0.01, 2),
            "Coulomb coefficient; unused when sticky");
-}
-
-template <class V>
-void describe(V& v, methods::HoleSpec& h) {
-  v.outline("outline", h.outline, "Corners, in the terrain's coordinates");
-}
-
-template <class V>
-void describe(V& v, methods::AreaSpec& a) {
-  v.text("name", a.name, "Name in messages and results");
-  v.outline("outline", a.outline, "Corners, in the terrain's coordinates");
-  v.list("holes", a.holes, methods::between(0, 1000),
-         "Parts within the outline that do not belong to it");
-  v.number("thickness", a.thickness, "m", methods::positive.up_to(100.0).required().usual(0.02, 4),
-           "Thickness of the snow, normal to the ground");
-}
-
-template <class V>
-void describe(V& v, methods::ResistanceSpec& r) {
-  v.text("name", r.name, "Name in messages and results");
-  v.outline("outline", r.outline, "Corners, in the terrain's coordinates");
-  v.list("holes", r.holes, methods::between(0, 1000),
-         "Parts within the outline that do not belong to it");
-}
-
-template <class V>
-void describe(V& v, methods::TerrainSpec& t) {
-  v.file("file", t.file, "Elevations, m: an ESRI ASCII grid; relative to the scene file");
-  v.text("crs", t.crs, "Coordinate system of the raster and the areas, passed on to the results");
-  v.flag("single_precision", t.single_precision,
-         "Whether the mode \"compatible\" rounds elevations to single precision, as AvaFrame reads "
-         "text");
-  v.text("thickness_file", t.thickness_file,
-         "Thickness of the released snow, m, in place of that of the areas: an ESRI ASCII grid; "
-         "relative to the scene file");
-  v.number("max_thickness", t.max_thickness, "m", methods::positive.up_to(100.0),
-           "Largest thickness of the snow that is released or entrained");
-  v.number("max_slope", t.max_slope, "deg", methods::positive.up_to(90.0),
-           "Steepest ground between neighbouring nodes under a release, where they differ by more "
-           "than 10 m in height");
-  v.text("notes", t.notes, "Assumptions about the files, one a line, passed on to the results");
-  v.list("release", t.release, methods::between(1, 10000).required(), "Areas of release");
-  v.list("entrainment", t.entrainment, methods::between(0, 10000),
-         "Areas where the slide entrains snow");
-  v.list("resistance", t.resistance, methods::between(0, 10000),
-         "Areas where forest or buildings resist the slide");
 }
 
 /// Largest number of stages in a loading, so that its curve fits into memory.

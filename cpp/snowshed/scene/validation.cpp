@@ -202,6 +202,14 @@ class SceneRules {
       check_area(area);
       if (!from_map) check_thickness(area, terrain);
     }
+    for (const methods::AreaSpec& area : terrain.secondary_release) {
+      check_area(area);
+      check_thickness(area, terrain);
+    }
+    for (const methods::InflowSpec& inflow : terrain.inflows) {
+      check_area(inflow);
+      for (const methods::PulseSpec& pulse : inflow.hydrograph) check_thickness(pulse, terrain);
+    }
     for (const methods::AreaSpec& area : terrain.entrainment) {
       check_area(area);
       check_thickness(area, terrain);
@@ -209,7 +217,8 @@ class SceneRules {
     for (const methods::ResistanceSpec& area : terrain.resistance) check_area(area);
   }
 
-  void check_thickness(const methods::AreaSpec& area, const methods::TerrainSpec& terrain) const {
+  template <class Snow>
+  void check_thickness(const Snow& area, const methods::TerrainSpec& terrain) const {
     if (area.thickness > terrain.max_thickness)
       fail(area.thickness, show(area.thickness) + " m of snow; at most " +
                                show(terrain.max_thickness) +

@@ -1,6 +1,7 @@
 // Valid scenes with every field at random.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -136,8 +137,12 @@ inline void mend_slide(Randomizer& randomizer, Scene& scene) {
     scene.terrain->thickness_file.clear();
     settings.columns = usual.columns;
     settings.mixing_rate = usual.mixing_rate;
+    for (methods::InflowSpec& inflow : scene.terrain->inflows) inflow.bonds = false;
+    scene.terrain->dams.resize(std::min<std::size_t>(1, scene.terrain->dams.size()));
+    for (methods::DamSpec& dam : scene.terrain->dams) dam.restitution = std::round(dam.restitution);
   } else {
     settings.artificial_viscosity = usual.artificial_viscosity;
+    for (methods::DamSpec& dam : scene.terrain->dams) dam.slope = 90;
   }
 }
 

@@ -58,13 +58,25 @@ inline auto tied(const methods::ResistanceSpec& s) {
   auto& [a, b, c] = s;
   return std::tie(a, b, c);
 }
+inline auto tied(const methods::PulseSpec& s) { return std::tie(s.time, s.thickness, s.speed); }
+inline auto tied(const methods::InflowSpec& s) {
+  auto& [a, b, c, d, e] = s;
+  return std::tie(a, b, c, d, e);
+}
+inline auto tied(const methods::DamCornerSpec& s) { return std::tie(s.x, s.y, s.height); }
+inline auto tied(const methods::DamSpec& s) {
+  auto& [a, b, c, d] = s;
+  return std::tie(a, b, c, d);
+}
 inline auto tied(const methods::TerrainSpec& s) {
-  auto& [a, b, c, d, e, f, g, h, i, j] = s;
-  return std::tie(a, b, c, d, e, f, g, h, i, j);
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n);
 }
 inline auto tied(const methods::slide::Settings& s) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u, v, w, x, y] = s;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u, v, w, x, y);
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u, v, w, x, y, z, a2, b2, c2,
+         d2] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u, v, w, x, y, z, a2, b2,
+                  c2, d2);
 }
 inline auto tied(const methods::Seeding& s) {
   auto& [a, b, c, d] = s;

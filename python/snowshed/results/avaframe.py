@@ -53,6 +53,11 @@ NUMERICS: Mapping[str, str] = {
     "cohesiveSurfaceTension": "bond_modulus",
     "minDistCohesion": "min_bond_length",
     "cResH": "resistance",
+    "detK": "detrainment",
+    "forestVMin": "forest_min_speed",
+    "forestThMin": "forest_min_thickness",
+    "forestVMax": "forest_max_speed",
+    "forestThMax": "forest_max_thickness",
     "subgridMixingFactor": "artificial_viscosity",
     "rhoEnt": "entrained_density",
     "entEroEnergy": "erosion_energy",
@@ -238,7 +243,11 @@ def _configuration(
         "xsivoellmy": repr(numerics["turbulence"]),
         "explicitFriction": str(int(numerics["explicit_friction"])),
         "snowSlide": str(int(numerics["bonds"])),
-        "secRelArea": "False",
+        "secRelArea": str(bool(terrain.get("secondary_release"))),
+        "dam": str(bool(terrain.get("dams"))),
+        "detrainment": str(numerics["detrainment"] > 0.0),
+        "timeDependentRelease": str(bool(simulation.hydrograph)),
+        "timeDependentReleaseScenarios": simulation.hydrograph,
         "relThFromFile": str(project.release_thickness is None),
         "relTh": "" if project.release_thickness is None else repr(project.release_thickness),
         "entThFromFile": str(project.entrained_thickness is None),
@@ -310,13 +319,19 @@ def _add_row(file: Path, row: Mapping[str, str]) -> None:
 
 def _mass_table(summary: SlideSummary) -> str:
     lines = ["time, current, entrained, detrained, detrainedTotal, stopped, initialized"]
-    on_terrain = summary.released_kg + summary.entrained_kg - summary.left_terrain_kg
-    for time, now, entrained, released in (
-        (0.0, summary.released_kg, 0.0, summary.released_kg),
-        (summary.sim_time_s, on_terrain, summary.entrained_kg, 0.0),
+    late = summary.secondary_kg + summary.inflow_kg
+    for time, now, entrained, detrained, released in (
+        (0.0, summary.released_kg, 0.0, 0.0, summary.released_kg),
+        (
+            summary.sim_time_s,
+            summary.on_terrain_kg,
+            summary.entrained_kg,
+            summary.detrained_kg,
+            late,
+        ),
     ):
         lines.append(
-            f"{time:.2f},    {now:.6f},    {entrained:.6f},   {0.0:.6f},    {0.0:.6f},    "
-            f"{0.0:.6f},    {released:.6f}"
+            f"{time:.2f},    {now:.6f},    {entrained:.6f},   {0.0 - detrained:.6f},    "
+            f"{0.0 - detrained:.6f},    {0.0:.6f},    {released:.6f}"
         )
     return "\n".join(lines) + "\n"

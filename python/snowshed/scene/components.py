@@ -7,7 +7,6 @@ None takes a value back. Vectors are (x, y, z), in 2D (x, z). Tables follow ``sn
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar, List, Literal, Optional, Union
@@ -26,9 +25,6 @@ Between = Literal["carry", "reseed"]
 MisplacedSnow = Literal["refuse", "allow"]
 
 PROVENANCE = "provenance"  # key under which a snow's file says where it comes from
-
-#: Corners (x, y) of an area on the map, m.
-Outline = Sequence[Sequence[float]]
 
 
 @checked
@@ -207,104 +203,6 @@ class Ground(Record):
     tilt: Optional[float] = default(0.0)
     condition: Optional[Condition] = default("sticky")
     friction: Optional[float] = default(0.3)
-
-
-@dataclass
-class Hole(Record):
-    """A part of an area that does not belong to it.
-
-    Attributes
-    ----------
-    outline : sequence of (x, y)
-        Corners, in the terrain's coordinates [m]. Required.
-    """
-
-    outline: Optional[Outline] = None
-
-
-@dataclass
-class Area(Record):
-    """An area on the map with snow on it.
-
-    Attributes
-    ----------
-    name : str
-        Name in messages and results.
-    outline : sequence of (x, y)
-        Corners, in the terrain's coordinates [m]. Required.
-    holes : list of Hole
-        Parts within the outline that do not belong to it.
-    thickness : float
-        Thickness of the snow, normal to the ground [m]. 0 < value <= 100; required.
-    """
-
-    name: Optional[str] = default("")
-    outline: Optional[Outline] = None
-    holes: Optional[List[Hole]] = None
-    thickness: Optional[float] = None
-
-
-@dataclass
-class ResistanceArea(Record):
-    """An area on the map that holds snow back.
-
-    Attributes
-    ----------
-    name : str
-        Name in messages and results.
-    outline : sequence of (x, y)
-        Corners, in the terrain's coordinates [m]. Required.
-    holes : list of Hole
-        Parts within the outline that do not belong to it.
-    """
-
-    name: Optional[str] = default("")
-    outline: Optional[Outline] = None
-    holes: Optional[List[Hole]] = None
-
-
-@dataclass
-class Terrain(Record):
-    """Ground from a raster of elevations, and where snow lies on it.
-
-    Attributes
-    ----------
-    file : str or path
-        Elevations, m: an ESRI ASCII grid; relative to the scene file. Required.
-    crs : str
-        Coordinate system of the raster and the areas, passed on to the results.
-    single_precision : bool
-        Whether the mode "compatible" rounds elevations to single precision, as AvaFrame reads
-        text. Default True.
-    thickness_file : str
-        Thickness of the released snow, m, in place of that of the areas: an ESRI ASCII grid;
-        relative to the scene file.
-    max_thickness : float
-        Largest thickness of the snow that is released or entrained [m]. 0 < value <= 100; default
-        10.
-    max_slope : float
-        Steepest ground between neighbouring nodes under a release, where they differ by more than
-        10 m in height [deg]. 0 < value <= 90; default 70.
-    notes : str
-        Assumptions about the files, one a line, passed on to the results.
-    release : list of Area
-        Areas of release. Required.
-    entrainment : list of Area
-        Areas where the slide entrains snow.
-    resistance : list of ResistanceArea
-        Areas where forest or buildings resist the slide.
-    """
-
-    file: Optional[PathLike] = None
-    crs: Optional[str] = default("")
-    single_precision: Optional[bool] = default(True)
-    thickness_file: Optional[str] = default("")
-    max_thickness: Optional[float] = default(10.0)
-    max_slope: Optional[float] = default(70.0)
-    notes: Optional[str] = default("")
-    release: Optional[List[Area]] = None
-    entrainment: Optional[List[Area]] = None
-    resistance: Optional[List[ResistanceArea]] = None
 
 
 @dataclass

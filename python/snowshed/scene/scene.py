@@ -37,7 +37,6 @@ from snowshed.scene.components import (
     Seeding,
     Slab,
     Snow,
-    Terrain,
 )
 from snowshed.scene.loading import Cone, LoadingStage, Sample
 from snowshed.scene.named_files import with_named_files
@@ -46,6 +45,7 @@ from snowshed.scene.resolved import ResolvedScene
 from snowshed.scene.scene_html import scene_html
 from snowshed.scene.scene_paths import locate
 from snowshed.scene.scene_repr import scene_repr
+from snowshed.scene.terrain_components import Terrain
 
 __all__ = ["ResolvedScene", "Scene", "SceneLike", "resolve_scene"]
 

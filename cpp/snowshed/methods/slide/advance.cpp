@@ -22,6 +22,9 @@ void advance(const Model& model, State& state, Workspace& work) {
       (std::ptrdiff_t(p.size()) + particles_in_piece - 1) / particles_in_piece;
   state.kinetic_energy =
       std::accumulate(work.piece_sums.begin(), work.piece_sums.begin() + pieces, 0.0);
+}
+
+void find_stop(const Model& model, State& state) {
   state.peak_kinetic = std::max(state.peak_kinetic, state.kinetic_energy);
   state.stopped = state.kinetic_energy <= model.settings.stop_ratio * state.peak_kinetic;
 }
@@ -59,7 +62,7 @@ void remove_marked(State& state, Workspace& work) {
   std::uint32_t count = 0;
   for (std::size_t i = 0; i < p.size(); ++i) {
     new_index[i] = work.removed[i] ? removed_particle : count++;
-    if (!work.removed[i]) continue;
+    if (!work.removed[i] || (!work.gone.empty() && work.gone[i])) continue;
     state.balance.left_terrain += p.mass[i];
     ++state.balance.particles_left;
   }

@@ -6,11 +6,14 @@
 namespace snowshed::methods::slide {
 
 /// Computes new velocities and positions, and brings the positions back onto the ground. Particles
-/// that leave the terrain are marked in `work.removed`. Updates the kinetic energy and whether the
-/// slide has stopped.
+/// that leave the terrain are marked in `work.removed`. Updates the kinetic energy.
 void advance(const Model&, State&, Workspace&);
 
-/// Removes the marked particles and their bonds, and counts their mass as `left_terrain`.
+/// Finds from the kinetic energy whether the slide has stopped.
+void find_stop(const Model&, State&);
+
+/// Removes the marked particles and their bonds. Counts their mass as `left_terrain`, unless forest
+/// took it.
 void remove_marked(State&, Workspace&);
 
 /// Splits particles that have become too heavy.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "snowshed/geometry/polygon.hpp"
+#include "snowshed/methods/slide/dams.hpp"
 #include "snowshed/methods/slide/terrain.hpp"
 
 namespace snowshed::methods::slide {
@@ -21,8 +22,23 @@ struct Area {
   double max_thickness = 100;  // m, that the map may give
 };
 
+/// Snow that enters an area at one time.
+struct Pulse {
+  double time, thickness, speed;  // s; m, normal to the ground; m/s down the slope
+};
+
+/// An area that snow enters at given times.
+struct Inflow {
+  Area area;
+  bool bonds = false;
+  std::vector<Pulse> pulses;
+};
+
 struct Areas {
-  std::vector<Area> release, entrainment, resistance;
+  std::vector<Area> release, secondary_release, entrainment, resistance;
+  std::vector<Inflow> inflows;
+  std::vector<Dam> dams;
+  double release_speed = 0;  // m/s down the slope
 };
 
 /// Distance around an area within which a node still belongs to it.

@@ -43,9 +43,11 @@ class CellLists {
   double* y() { return y_.data(); }
   double* z() { return z_.data(); }
   double* mass() { return mass_.data(); }
-  /// Copies masses that have changed.
-  void copy_masses(const AlignedVector<double>& masses) {
-    for (std::size_t e = 0; e < order_.size(); ++e) mass_[e] = masses[order_[e]];
+  /// Copies masses that have changed; those of the particles that are `gone` are 0. `gone` may be
+  /// empty.
+  void copy_masses(const AlignedVector<double>& masses, const std::vector<char>& gone) {
+    for (std::size_t e = 0; e < order_.size(); ++e)
+      mass_[e] = !gone.empty() && gone[order_[e]] ? 0.0 : masses[order_[e]];
   }
 
   std::size_t bytes() const {

@@ -1,4 +1,5 @@
 // Saving and restoring a slide. The workspace follows from the state, so any time is a safe point.
+#include <cmath>
 #include <string>
 
 #include "snowshed/methods/archive.hpp"
@@ -20,12 +21,16 @@ void visit_state(Archive& archive, State& s) {
   archive.array("peaks/thickness", s.peaks.thickness, s.peaks.thickness.size());
   archive.array("peaks/speed", s.peaks.speed, s.peaks.speed.size());
   archive.array("erodible", s.erodible, s.erodible.size());
+  archive.optional_array("late_releases", s.late, s.late.size());
   auto& b = s.balance;
   archive.numbers("clock", s.time, s.dt, s.kinetic_energy, s.peak_kinetic, b.released, b.entrained,
                   b.left_terrain, s.step);
   auto& e = s.energy;
   archive.numbers("energy", e.coulomb, e.turbulent, e.resistance, e.viscosity, e.entrainment,
                   e.broken, e.left_terrain, e.added);
+  archive.optional_array("over_dams", s.over_dams, s.over_dams.size());
+  archive.optional_array("forest", s.forest, s.forest.size());
+  archive.optional_numbers("later_sums", b.secondary, b.inflow, b.detrained, e.detrainment, e.dams);
   auto& c = s.counters;
   archive.counts("counters", c.steps, s.sorts, c.particle_updates, s.bonds_made, b.particles_left,
                  s.stopped, s.next_id);
@@ -47,12 +52,24 @@ void check_bonds(const StateReader& archive, const Bonds& bonds, std::size_t par
       archive.refuse("a bond is not sound");
 }
 
+void check_later(const StateReader& archive, const State& s) {
+  for (const double late : s.late)
+    if (late != waiting && late != due && !(late >= 0 && late <= s.time))
+      archive.refuse("the time of a release is not sound");
+  const MassBalance& b = s.balance;
+  for (const double mass : {b.secondary, b.inflow, b.detrained})
+    if (!(mass >= 0 && std::isfinite(mass))) archive.refuse("a mass is not sound");
+  for (const double mass : s.over_dams)
+    if (!(mass >= 0 && std::isfinite(mass))) archive.refuse("a mass is not sound");
+}
+
 State read_state(const io::BinaryReader& in, const Model& model) {
   const StateReader archive(in);
   State next(model);
   visit_state(archive, next);
   check_positions(archive, next.particles, model.terrain);
   check_bonds(archive, next.bonds, next.particles.size());
+  check_later(archive, next);
   if (!(next.step > 0)) archive.refuse("the time step is not sound");
   next.counters.smallest_dt = next.step;
   return next;

@@ -69,6 +69,10 @@ std::vector<Feature> features_of(const Settings& s, const SceneView& scene) {
            (s.mode == Mode::compatible ? s.artificial_viscosity : s.mixing_rate) > 0},
           {"entrainment and splitting", !scene.terrain->entrainment.empty()},
           {"resistance areas", !scene.terrain->resistance.empty()},
+          {"detrainment", s.detrainment > 0 && !scene.terrain->resistance.empty()},
+          {"secondary releases", !scene.terrain->secondary_release.empty()},
+          {"inflows", !scene.terrain->inflows.empty()},
+          {"dams", !scene.terrain->dams.empty()},
           {"resampled terrain", s.cell > 0},
           {"snapshots during the slide", scene.output.snapshot_interval > 0}};
 }

@@ -24,6 +24,20 @@ void describe(SettingsVisitor& v, Settings& s) {
          "Friction from the speed before the step; in the compatible mode only");
   v.number("resistance", s.resistance, "", non_negative.up_to(1e9),
            "Drag coefficient within resistance areas (forest, buildings)");
+  v.number("detrainment", s.detrainment, "Pa", non_negative.up_to(1e6).usual(1, 200),
+           "Detrainment coefficient K within resistance areas: snow of speed u loses the mass K/u "
+           "per area and time; 0: none");
+  v.number(
+      "forest_min_speed", s.forest_min_speed, "m/s", non_negative.up_to(1000.0),
+      "With detrainment, forest takes mass from snow up to this speed, and resists faster snow");
+  v.number(
+      "forest_min_thickness", s.forest_min_thickness, "m", non_negative.up_to(100.0),
+      "With detrainment, forest takes mass from snow up to this thickness, and resists thicker "
+      "snow");
+  v.number("forest_max_speed", s.forest_max_speed, "m/s", positive.up_to(1000.0),
+           "With detrainment, faster snow destroys the forest");
+  v.number("forest_max_thickness", s.forest_max_thickness, "m", positive.up_to(100.0),
+           "With detrainment, thicker snow destroys the forest");
   v.number("artificial_viscosity", s.artificial_viscosity, "", non_negative.up_to(1e6),
            "AvaFrame's artificial viscosity; in the compatible mode only");
   v.choice("columns", s.columns,

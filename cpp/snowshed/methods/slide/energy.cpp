@@ -33,7 +33,7 @@ Drag drag_parts(const Model& model, const Workspace& work, std::size_t i) {
 }
 
 /// The sum over the neighbours of a particle of m_l (R - r)^3; R is the width of a cell.
-double kernel_mass_sum(const Particles& p, const CellLists& cells,
+double kernel_mass_sum(const Particles& p, const double* masses, const CellLists& cells,
                        const CellPositions& cell_positions, std::uint32_t i, double radius) {
   const int column = cell_positions.column[i] - cells.first_column();
   const int row = cell_positions.row[i] - cells.first_row();
@@ -43,7 +43,7 @@ double kernel_mass_sum(const Particles& p, const CellLists& cells,
       const std::uint32_t l = cells.particle(e);
       const double distance = std::hypot(p.x[l] - p.x[i], p.y[l] - p.y[i], p.z[l] - p.z[i]);
       const double inside = std::max(0.0, radius - distance);
-      sum += p.mass[l] * inside * inside * inside;
+      sum += masses[l] * inside * inside * inside;
     }
   return sum;
 }
@@ -61,19 +61,21 @@ double raised_integral(double n) {
 
 /// The potential energy of the pressure (columns.hpp), J: sum_k m_k g f_k h_k / 2, raised where
 /// neighbours are few.
-double pressure_energy(const Model& model, const State& state, const Workspace& work) {
+double pressure_energy(const Model& model, const State& state, const Workspace& work,
+                       const double* masses) {
   const double radius = model.terrain.cell();
   const Particles& p = state.particles;
   double sum = 0;
   for (std::uint32_t i = 0; i < p.size(); ++i) {
-    const double mass_sum = kernel_mass_sum(p, work.cells, work.cell_positions, i, radius);
-    const double neighbours = 10 / (radius * radius * radius) * mass_sum / p.mass[i];
-    const double thickness_of_one = p.mass[i] / (pi * radius * radius * model.settings.density);
+    if (masses[i] == 0) continue;
+    const double mass_sum = kernel_mass_sum(p, masses, work.cells, work.cell_positions, i, radius);
+    const double neighbours = 10 / (radius * radius * radius) * mass_sum / masses[i];
+    const double thickness_of_one = masses[i] / (pi * radius * radius * model.settings.density);
     const bool across_flow = model.settings.columns == Columns::across_flow;
     const double factor =
         column_factor(across_flow, work.cell_positions.nz[i], p.ux[i], p.uy[i], p.uz[i]);
     sum +=
-        0.5 * p.mass[i] * model.gravity * factor * thickness_of_one * raised_integral(neighbours);
+        0.5 * masses[i] * model.gravity * factor * thickness_of_one * raised_integral(neighbours);
   }
   return sum;
 }
@@ -85,14 +87,15 @@ NamedEnergies named_energies(const EnergyBalance& e) {
           {"bonds_j", e.bonds},         {"coulomb_j", e.coulomb},
           {"turbulent_j", e.turbulent}, {"resistance_j", e.resistance},
           {"viscosity_j", e.viscosity}, {"entrainment_j", e.entrainment},
-          {"broken_bonds_j", e.broken}, {"left_terrain_j", e.left_terrain},
+          {"broken_bonds_j", e.broken}, {"detrainment_j", e.detrainment},
+          {"dams_j", e.dams},           {"left_terrain_j", e.left_terrain},
           {"added_j", e.added},         {"residual_j", e.residual()}};
 }
 
 void store_energy(const Model& model, const State& state, const Workspace& work, EnergyBalance& e) {
   const Particles& p = state.particles;
   e.kinetic = e.bonds = 0;
-  e.potential = pressure_energy(model, state, work);
+  e.potential = pressure_energy(model, state, work, p.mass.data());
   for (std::size_t i = 0; i < p.size(); ++i) {
     e.kinetic += 0.5 * p.mass[i] * velocity_at(state, i).squaredNorm();
     e.potential += p.mass[i] * model.gravity * p.z[i];
@@ -122,10 +125,28 @@ void EnergyRecorder::after_ground(const Model& model, const State& state, const 
     const Vec3 u = velocity_at(state, i);
     const double mass = state.particles.mass[i];
     e.viscosity += 0.5 * masses_[i] * (before_[i].squaredNorm() - after_viscosity);
-    e.entrainment += 0.5 * (masses_[i] * after_viscosity - mass * u.squaredNorm());
-    e.added += (mass - masses_[i]) * model.gravity * heights_[i];
+    const double detrained = work.detrained.empty() ? 0.0 : work.detrained[i];
+    const double grown = mass + detrained;
+    e.entrainment += 0.5 * (masses_[i] * after_viscosity - grown * u.squaredNorm());
+    if (detrained > 0)
+      e.detrainment += detrained * (0.5 * u.squaredNorm() + model.gravity * heights_[i]);
+    e.added += (grown - masses_[i]) * model.gravity * heights_[i];
     before_[i] = u;
   }
+  add_detrained_thickness(model, state, work, e);
+}
+
+/// Adds the energy of the thickness by which detrainment thins the snow.
+void EnergyRecorder::add_detrained_thickness(const Model& model, const State& state,
+                                             const Workspace& work, EnergyBalance& e) {
+  if (work.detrained.empty()) return;
+  const Particles& p = state.particles;
+  const std::size_t n = p.size();
+  masses_.resize(n);
+  for (std::size_t i = 0; i < n; ++i) masses_[i] = p.mass[i] + work.detrained[i];
+  e.detrainment += pressure_energy(model, state, work, masses_.data());
+  for (std::size_t i = 0; i < n; ++i) masses_[i] = work.gone[i] ? 0.0 : p.mass[i];
+  e.detrainment -= pressure_energy(model, state, work, masses_.data());
 }
 
 /// Adds the energy of the bonds that break in this step.
@@ -136,9 +157,7 @@ void EnergyRecorder::add_broken(const Model& model, const State& state, const Wo
     const double* k = &work.predicted[4 * std::size_t(bonds.first[b])];
     const double* l = &work.predicted[4 * std::size_t(bonds.second[b])];
     const double length = Vec3(l[0] - k[0], l[1] - k[1], l[2] - k[2]).norm();
-    const bool breaks = length > model.settings.min_bond_length &&
-                        std::abs(length / bonds.rest_length[b] - 1) > model.settings.max_strain;
-    if (breaks)
+    if (work.bonds_break && work.broken[b])
       e.broken += bond_energy(model.settings.bond_modulus, 0.5 * (k[3] + l[3]), length,
                               bonds.rest_length[b]);
   }
@@ -150,8 +169,12 @@ void EnergyRecorder::after_motion(const Model& model, const State& state, const 
   const Loads& l = work.loads;
   for (std::size_t i = 0; i < before_.size(); ++i) {
     const double mass = state.particles.mass[i];
-    if (work.removed[i]) {
-      e.left_terrain += mass * (0.5 * before_[i].squaredNorm() + model.gravity * heights_[i]);
+    const bool is_gone = !work.gone.empty() && work.gone[i];
+    if (work.removed[i] || is_gone) {
+      if (is_gone && !work.removed[i])
+        e.detrainment += mass * (0.5 * before_[i].squaredNorm() + model.gravity * heights_[i]);
+      else
+        e.left_terrain += mass * (0.5 * before_[i].squaredNorm() + model.gravity * heights_[i]);
       continue;
     }
     // Friction reduces the velocity, and afterwards the ground turns it.

@@ -23,12 +23,15 @@ struct EnergyBalance {
   double viscosity = 0;               // artificial
   double entrainment = 0;             // to accelerate entrained snow and to break it loose
   double broken = 0;                  // energy of bonds when they broke
+  double detrainment = 0;             // energy of snow that forest took
+  double dams = 0;                    // loss to dams
   double left_terrain = 0;            // energy of snow that left the terrain
   double added = 0;                   // energy of snow when it was released or entrained
 
   double stored() const { return kinetic + potential + bonds; }
   double spent() const {
-    return coulomb + turbulent + resistance + viscosity + entrainment + broken + left_terrain;
+    return coulomb + turbulent + resistance + viscosity + entrainment + broken + detrainment +
+           dams + left_terrain;
   }
   double residual() const { return stored() + spent() - added; }
 };
@@ -57,6 +60,7 @@ class EnergyRecorder {
   void after_motion(const Model&, const State&, const Workspace&, EnergyBalance&) const;
 
  private:
+  void add_detrained_thickness(const Model&, const State&, const Workspace&, EnergyBalance&);
   void add_broken(const Model&, const State&, const Workspace&, EnergyBalance&) const;
 
   std::vector<Vec3> before_;  // m/s

@@ -93,12 +93,37 @@ PointCloud SolverImpl::snapshot() const {
 ReportsRun::Section SolverImpl::run_section() const {
   const MassBalance& m = state_.balance;
   const double on_terrain = compensated_sum(state_.particles.mass.data(), size());
-  return {"mass_balance",
-          {{"released_kg", m.released},
-           {"entrained_kg", m.entrained},
-           {"left_terrain_kg", m.left_terrain},
-           {"on_terrain_kg", on_terrain},
-           {"residual_kg", m.released + m.entrained - m.left_terrain - on_terrain}}};
+  Section section{"mass_balance", {{"released_kg", m.released}}};
+  const auto report = [&](bool is_used, const char* name, double mass) {
+    if (is_used) section.facts.push_back({name, mass});
+  };
+  report(!model_.areas.secondary_release.empty(), "secondary_release_kg", m.secondary);
+  report(!model_.areas.inflows.empty(), "inflow_kg", m.inflow);
+  report(true, "entrained_kg", m.entrained);
+  report(model_.detrains(), "detrained_kg", m.detrained);
+  report(true, "left_terrain_kg", m.left_terrain);
+  report(true, "on_terrain_kg", on_terrain);
+  report(true, "residual_kg",
+         m.released + m.secondary + m.inflow + m.entrained - m.detrained - m.left_terrain -
+             on_terrain);
+  return section;
+}
+
+std::vector<DamFact> SolverImpl::dams() const {
+  std::vector<DamFact> facts;
+  for (std::size_t i = 0; i < model_.dams.size(); ++i)
+    facts.push_back({model_.areas.dams[i].name, state_.over_dams[i]});
+  return facts;
+}
+
+std::vector<LateReleaseFact> SolverImpl::late_releases() const {
+  std::vector<LateReleaseFact> facts;
+  for (std::size_t i = 0; i < model_.late.size(); ++i) {
+    const LateRelease& late = model_.late[i];
+    facts.push_back({late.area.name, late.trigger, late.time,
+                     state_.late[i] < 0 ? waiting : state_.late[i], late.snow.total_mass()});
+  }
+  return facts;
 }
 
 NamedEnergies SolverImpl::energies() const {

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 
 namespace snowshed::methods::slide {
 namespace {
 
 constexpr double min_speed = 1e-6;  // m/s
+// m/s; the kernels store up to 1e-15 for snow at rest.
+constexpr double max_rest_speed = 2e-15;
 
 /// The node nearest to a position.
 std::size_t nearest_node(const Terrain& terrain, const geometry::CellPosition& p) {
@@ -57,20 +60,72 @@ double entrain_by(const Model& model, const State& state, View& v, Particles& p,
   return entrained_mass;
 }
 
-/// Applies entrainment, and the resistance of forest and buildings.
-void apply_entrainment_and_resistance(const Model& model, State& state, Workspace& work) {
+/// Destroys the forest where snow is too fast or too thick.
+void destroy_forest(const Settings& s, const Terrain& terrain, const GridFields& fields,
+                    std::vector<std::uint8_t>& forest) {
+  for (int j = 0; j < fields.rows(); ++j)
+    for (int i = 0; i < fields.columns(); ++i) {
+      const int column = fields.first_column() + i, row = fields.first_row() + j;
+      if (column < 0 || row < 0 || column >= terrain.columns() || row >= terrain.rows()) continue;
+      if (fields.speed_at(column, row) > s.forest_max_speed ||
+          fields.thickness_at(column, row) > s.forest_max_thickness)
+        forest[terrain.index(column, row)] = 0;
+    }
+}
+
+/// Whether forest takes snow at a node, or resists it.
+enum class ForestAction { none, detrains, resists };
+
+ForestAction forest_action(const Model& model, const State& state, const GridFields& fields,
+                           std::size_t node) {
+  if (state.forest.empty())
+    return model.resistance.empty() ? ForestAction::none : ForestAction::resists;
+  if (!state.forest[node]) return ForestAction::none;
+  const int columns = model.terrain.columns();
+  const int column = int(node) % columns, row = int(node) / columns;
+  const bool passes = fields.speed_at(column, row) > model.settings.forest_min_speed &&
+                      fields.thickness_at(column, row) > model.settings.forest_min_thickness;
+  return passes ? ForestAction::resists : ForestAction::detrains;
+}
+
+/// Default mode: forest takes all of a particle of which less than this share is left.
+constexpr double min_share = 0.01;
+
+/// Takes mass from a particle. A particle that loses all of it keeps its mass to the end of the
+/// step, because accelerations are divided by it, but is marked.
+void detrain(const Model& model, double area, double dt, double speed, std::size_t i, double& mass,
+             double min_mass, Workspace& work) {
+  if (!(speed > max_rest_speed)) return;
+  const double taken = model.settings.detrainment / speed * dt * area;
+  work.gone[i] = taken >= mass - min_mass;
+  if (work.gone[i]) return;
+  work.detrained[i] = taken;
+  mass -= taken;
+}
+
+/// Applies entrainment, and detrainment and resistance in forest.
+void apply_areas(const Model& model, State& state, Workspace& work) {
   View v = view_of(model, state, work);
   Particles& p = state.particles;
+  std::fill(work.detrained.begin(), work.detrained.end(), 0.0);
+  std::fill(work.gone.begin(), work.gone.end(), 0);
+  if (!state.forest.empty())
+    destroy_forest(model.settings, model.terrain, work.fields, state.forest);
   for (std::size_t i = 0; i < p.size(); ++i) {
     const std::size_t node = nearest_node(model.terrain, work.cell_positions.at(i));
+    const double before = p.mass[i], h = std::max(v.thickness[i], min_thickness);
     if (!work.entrained.empty())
       work.entrained[i] = state.erodible[node] > 0 ? entrain_by(model, state, v, p, i, node) : 0.0;
-    if (!model.resistance.empty())
-      v.drag[i] += model.resistance[node] / std::max(v.thickness[i], min_thickness);
-    if (model.compatible() && !work.entrained.empty()) {  // there forces act on the mass before
-      const double share = 1 - work.entrained[i] / p.mass[i];
+    const ForestAction action = forest_action(model, state, work.fields, node);
+    if (action == ForestAction::detrains)
+      detrain(model, before / (h * model.settings.density), state.step, v.speed[i], i, p.mass[i],
+              model.compatible() ? 0.0 : min_share * p.fresh_mass[i], work);
+    if (action == ForestAction::resists) v.drag[i] += model.resistance[node] / h;
+    if (model.compatible() && p.mass[i] != before) {  // there forces act on the mass before
+      const double share = before / p.mass[i];
       for (double* load : {v.ax, v.ay, v.az, v.coulomb_deceleration, v.drag}) load[i] *= share;
     }
+    if (!work.detrained.empty()) state.balance.detrained += work.detrained[i];
   }
   for (std::size_t i = 0; i < work.entrained.size(); ++i) {
     if (work.entrained[i] == 0) continue;
@@ -89,12 +144,29 @@ void apply_ground(const Model& model, State& state, Workspace& work) {
   for_each_piece(work, n, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     chosen_kernels().ground(view, begin, end);
   });
-  if (!state.erodible.empty() || !model.resistance.empty())
-    apply_entrainment_and_resistance(model, state, work);
+  if (!state.erodible.empty() || !model.resistance.empty()) apply_areas(model, state, work);
 }
 
+namespace {
+
+/// Marks the bonds of particles that have lost half of their mass to forest. Their snow is no slab
+/// any more, and the lighter a particle is, the shorter are the steps that its bonds need.
+void mark_torn(const State& state, Workspace& work) {
+  const Particles& p = state.particles;
+  const auto is_torn = [&p](std::uint32_t i) { return p.mass[i] < 0.5 * p.fresh_mass[i]; };
+  for (std::size_t b = 0; b < state.bonds.size(); ++b)
+    if (is_torn(state.bonds.first[b]) || is_torn(state.bonds.second[b])) {
+      work.broken[b] = 1;
+      std::fill_n(&work.bond_force[4 * b], 4, 0.0);  // it would throw the light particle away
+      work.bonds_break = true;
+    }
+}
+
+}  // namespace
+
 void apply_neighbours(const Model& model, State& state, Workspace& work) {
-  if (!work.entrained.empty()) work.cells.copy_masses(state.particles.mass);
+  if (!work.entrained.empty() || !work.detrained.empty())
+    work.cells.copy_masses(state.particles.mass, work.gone);
   const View view = view_of(model, state, work);
   const Kernels& kernels = chosen_kernels();
   const std::ptrdiff_t rows = work.cells.rows() - 2;  // the margin holds no particles
@@ -112,6 +184,22 @@ void apply_neighbours(const Model& model, State& state, Workspace& work) {
                   if (kernels.stretch_bonds(view, begin, end)) breaks = true;
                 }});
   work.bonds_break = breaks;
+  if (!work.detrained.empty() && !model.compatible()) mark_torn(state, work);
+}
+
+void mark_detrained(State& state, Workspace& work) {
+  if (work.gone.empty() || !std::memchr(work.gone.data(), 1, work.gone.size())) return;
+  const Particles& p = state.particles;
+  for (std::size_t i = 0; i < work.gone.size(); ++i) {
+    if (!work.gone[i] || work.removed[i]) {
+      work.gone[i] = 0;
+      continue;
+    }
+    work.removed[i] = 1;
+    state.balance.detrained += p.mass[i];
+    const double square = p.ux[i] * p.ux[i] + p.uy[i] * p.uy[i] + p.uz[i] * p.uz[i];
+    state.kinetic_energy -= 0.5 * p.mass[i] * square;
+  }
 }
 
 void remove_broken(State& state, Workspace& work) {

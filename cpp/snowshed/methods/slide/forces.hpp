@@ -5,8 +5,8 @@
 
 namespace snowshed::methods::slide {
 
-/// Applies the mixing of velocities, gravity, friction, resistance and entrainment, one particle at
-/// a time. Changes velocities, and masses where snow is entrained.
+/// Applies the mixing of velocities, gravity, friction, entrainment, and resistance and detrainment
+/// in forest, one particle at a time. Changes velocities and masses.
 void apply_ground(const Model&, State&, Workspace&);
 
 /// Finds the forces between particles: the gradient of the snow's own pressure by smoothed particle
@@ -14,6 +14,9 @@ void apply_ground(const Model&, State&, Workspace&);
 /// kernels/surface_pressure.hpp and kernels/map_pressure.hpp), and the forces of the bonds. Marks
 /// the bonds that are strained too much.
 void apply_neighbours(const Model&, State&, Workspace&);
+
+/// Marks the particles of which forest took all mass as removed, after they have moved.
+void mark_detrained(State&, Workspace&);
 
 /// Removes the bonds that are marked.
 void remove_broken(State&, Workspace&);

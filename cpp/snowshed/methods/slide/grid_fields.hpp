@@ -1,6 +1,7 @@
 // The snow at the nodes of the terrain: thickness, velocity, and their peaks so far.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "snowshed/core/aligned_vector.hpp"
@@ -48,6 +49,22 @@ class GridFields {
   int first_column() const { return first_column_; }
   int first_row() const { return first_row_; }
   int columns() const { return columns_; }
+  int rows() const { return rows_; }
+
+  /// The thickness at a node of the terrain, m; 0 outside of the rectangle.
+  double thickness_at(int column, int row) const {
+    const int i = column - first_column_, j = row - first_row_;
+    const bool inside = i >= 0 && i < columns_ && j >= 0 && j < rows_;
+    return inside ? nodes_[std::size_t(j) * std::size_t(columns_) + std::size_t(i)].thickness : 0.0;
+  }
+
+  /// The speed there, m/s.
+  double speed_at(int column, int row) const {
+    const int i = column - first_column_, j = row - first_row_;
+    if (i < 0 || i >= columns_ || j < 0 || j >= rows_) return 0;
+    const Node& n = nodes_[std::size_t(j) * std::size_t(columns_) + std::size_t(i)];
+    return std::sqrt(n.vx * n.vx + n.vy * n.vy + n.vz * n.vz);
+  }
 
   /// One value for each node of the terrain.
   std::vector<double> thickness_everywhere(const Terrain& terrain) const;

@@ -75,9 +75,21 @@ Areas read_areas(const TerrainSpec& terrain, const geometry::HeightField& field,
   for (std::size_t i = 0; i < areas.release.size(); ++i)
     check_cliff("/terrain/release/" + std::to_string(i),
                 cliff_under(areas.release[i].polygon, field, terrain.max_slope), terrain.max_slope);
+  areas.release_speed = terrain.release_speed;
+  areas.secondary_release = areas_of(terrain.secondary_release, field);
+  for (const InflowSpec& spec : terrain.inflows) {
+    areas.inflows.push_back({area_of(spec, field), spec.bonds, {}});
+    for (const PulseSpec& pulse : spec.hydrograph)
+      areas.inflows.back().pulses.push_back({pulse.time, pulse.thickness, pulse.speed});
+  }
   areas.entrainment = areas_of(terrain.entrainment, field);
   for (const ResistanceSpec& spec : terrain.resistance)
     areas.resistance.push_back(area_of(spec, field));
+  for (const DamSpec& spec : terrain.dams) {
+    areas.dams.push_back({spec.name, {}, spec.slope, spec.restitution});
+    for (const DamCornerSpec& c : spec.corners)
+      areas.dams.back().corners.push_back({c.x - field.west, c.y - field.south, c.height});
+  }
   return areas;
 }
 

@@ -27,6 +27,37 @@ void check_mode(const Settings& s) {
   check("mixing_rate", s.mixing_rate != usual.mixing_rate, Mode::improved);
 }
 
+void check_inflows(const TerrainSpec& terrain, Mode mode) {
+  for (std::size_t i = 0; i < terrain.inflows.size(); ++i)
+    if (terrain.inflows[i].bonds && mode == Mode::compatible)
+      throw InputError("/terrain/inflows/" + std::to_string(i) + "/bonds",
+                       "only in the mode \"improved\"");
+}
+
+/// Refuses dams that the mode would change.
+void check_dams(const TerrainSpec& terrain, Mode mode) {
+  const bool compatible = mode == Mode::compatible;
+  if (compatible && terrain.dams.size() > 1)
+    throw InputError("/terrain/dams",
+                     show(terrain.dams.size()) + " dams; the mode \"compatible\" has at most 1");
+  for (std::size_t i = 0; i < terrain.dams.size(); ++i) {
+    const DamSpec& dam = terrain.dams[i];
+    const std::string path = "/terrain/dams/" + std::to_string(i);
+    for (std::size_t k = 1; k < dam.corners.size(); ++k)
+      if (dam.corners[k].x == dam.corners[k - 1].x && dam.corners[k].y == dam.corners[k - 1].y)
+        throw InputError(path + "/corners/" + std::to_string(k), "is the corner before it");
+    if (!compatible && dam.slope != 90)
+      throw InputError(path + "/slope", show(dam.slope) +
+                                            "; dams are vertical in the mode \"improved\": draw "
+                                            "the foot of the face, and leave the slope out");
+    if (compatible && dam.restitution != 0 && dam.restitution != 1)
+      throw InputError(path + "/restitution",
+                       show(dam.restitution) +
+                           "; allowed in the mode \"compatible\": 0 and 1 (AvaFrame takes all "
+                           "values below 1 as 0)");
+  }
+}
+
 class Descriptor final : public DescriptorBase<Descriptor, Settings> {
  public:
   const MethodInfo& info() const override {
@@ -51,6 +82,8 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
     if (!scene.terrain->thickness_file.empty() && settings_.mode == Mode::compatible)
       throw InputError("/terrain/thickness_file", "AvaFrame's com5SnowSlide takes no such raster");
     check_mode(settings_);
+    check_inflows(*scene.terrain, settings_.mode);
+    check_dams(*scene.terrain, settings_.mode);
   }
   std::shared_ptr<const MethodInput> read(const SceneView& scene,
                                           const std::filesystem::path& base_dir) const override {

@@ -17,9 +17,9 @@ const double row_distance = std::sqrt(3.0) / 2;
 /// The side of a triangular lattice with this number of points per area.
 double lattice_side(double area, double points) { return std::sqrt(area / points / row_distance); }
 
-[[noreturn]] void refuse_area(std::size_t index, const std::string& name, const std::string& why) {
-  throw InputError("/terrain/release/" + std::to_string(index),
-                   (name.empty() ? "" : "\"" + name + "\" ") + why);
+[[noreturn]] void refuse_area(const std::string& path, const std::string& name,
+                              const std::string& why) {
+  throw InputError(path, (name.empty() ? "" : "\"" + name + "\" ") + why);
 }
 
 void place_on_ground(const Terrain& terrain, double x, double y, double mass,
@@ -58,44 +58,6 @@ double projected_share(const Terrain& terrain, const std::vector<double>& thickn
       projected += terrain.cell() * terrain.cell();
     }
   return projected / sloping;
-}
-
-std::vector<ParticleBatch> seed_as_avaframe(const Settings& s, const Terrain& terrain,
-                                            const std::vector<Area>& areas,
-                                            const StopRequest& stop) {
-  StopCheck give_up(stop);
-  const double cell = terrain.cell();
-  const std::vector<double> thickness = thickness_at_nodes(areas, terrain, Reach::one_cell);
-  const double share = projected_share(terrain, thickness);
-  std::vector<geometry::Ring> outlines;
-  for (const Area& area : areas)
-    outlines.push_back(widened_as_avaframe(area.polygon.outline, 1e-3));
-
-  ParticleBatch batch;
-  for (int row = 0; row < terrain.rows(); ++row)
-    for (int column = 0; column < terrain.columns(); ++column) {
-      const double h = thickness[terrain.index(column, row)];
-      if (h == 0) continue;
-      const double wanted = h * (cell * cell / share) * s.density / nominal_particle_mass(s, cell);
-      const double points = std::floor(wanted);
-      if (points < 1)
-        refuse_area(0, areas[0].name,
-                    "is too thin: " + std::to_string(h) + " m make no particle of " +
-                        std::to_string(nominal_particle_mass(s, cell)) +
-                        " kg; allowed in compatible mode: at least " + std::to_string(h / wanted) +
-                        " m");
-      const double mass = terrain.node(column, row).area * h * s.density / points;
-      for_lattice_points_near(
-          column, row, cell, lattice_side(cell * cell, points), [&](double x, double y) {
-            give_up();
-            const bool is_inside = std::any_of(
-                outlines.begin(), outlines.end(),
-                [&](const geometry::Ring& ring) { return geometry::contains(ring, {x, y}); });
-            if (is_inside) place_on_ground(terrain, x, y, mass, batch);
-          });
-    }
-  if (batch.positions.empty()) refuse_area(0, areas[0].name, "holds no particle");
-  return {batch};
 }
 
 // --- improved -----------------------------------------------------------------------------------
@@ -151,7 +113,7 @@ SnowOfMap snow_of(const geometry::HeightField& map) {
 
 /// The mean thickness over an area, m. Throws InputError if the area's map does not cover all of
 /// it.
-double mean_thickness(const Area& area, const Terrain& terrain, std::size_t index) {
+double mean_thickness(const Area& area, const Terrain& terrain, const std::string& path) {
   if (!area.map) return area.thickness;
   const geometry::HeightField& m = *area.map;
   const Bounds b = bounds_of(area.polygon.outline);
@@ -161,7 +123,7 @@ double mean_thickness(const Area& area, const Terrain& terrain, std::size_t inde
   const int south = node_of(b.low[1] + rounding, m.south, m.cell);
   const int north = node_of(b.high[1] - rounding, m.south, m.cell);
   if (west < 0 || south < 0 || east >= m.columns || north >= m.rows)
-    refuse_area(index, area.name, "reaches beyond the thickness raster");
+    refuse_area(path, area.name, "reaches beyond the thickness raster");
   double volume = 0, covered = 0;
   for (int row = south; row <= north; ++row)
     for (int column = west; column <= east; ++column) {
@@ -171,7 +133,7 @@ double mean_thickness(const Area& area, const Terrain& terrain, std::size_t inde
       if (part <= rounding * m.cell) continue;
       const double h = m.height(column, row);
       if (!(h > 0 && h <= area.max_thickness))
-        refuse_area(index, area.name,
+        refuse_area(path, area.name,
                     "the thickness raster has " +
                         (std::isnan(h) ? "no value" : std::to_string(h) + " m") + " at (" +
                         std::to_string(terrain.west() + x) + ", " +
@@ -251,39 +213,51 @@ void for_lattice_points(const geometry::Ring& ring, const geometry::Point2& orig
     }
 }
 
-/// Throws if a point lies within two areas, because the amount of snow there is not defined. Areas
-/// may touch.
-void refuse_overlap(const Terrain& terrain, const std::vector<Area>& areas, std::size_t index,
-                    const ParticleBatch& batch) {
-  const double margin = 1e-6 * terrain.cell();
-  const auto well_within = [&](const geometry::Polygon& polygon, double x, double y) {
-    return geometry::contains(polygon, {x - margin, y}) &&
-           geometry::contains(polygon, {x + margin, y}) &&
-           geometry::contains(polygon, {x, y - margin}) &&
-           geometry::contains(polygon, {x, y + margin});
-  };
-  for (std::size_t other = 0; other < index; ++other) {
-    const Bounds b = bounds_of(areas[other].polygon.outline);
-    for (const Vec3& p : batch.positions) {
-      if (p.x() < b.low[0] || p.x() > b.high[0] || p.y() < b.low[1] || p.y() > b.high[1]) continue;
-      if (!well_within(areas[other].polygon, p.x(), p.y()) ||
-          !well_within(areas[index].polygon, p.x(), p.y()))
-        continue;
-      refuse_area(index, areas[index].name,
-                  "overlaps /terrain/release/" + std::to_string(other) + " at (" +
-                      std::to_string(terrain.west() + p.x()) + ", " +
-                      std::to_string(terrain.south() + p.y()) +
-                      "); cut one of them, or make them one area");
+}  // namespace
+
+ParticleBatch seed_nodes(const Settings& s, const Terrain& terrain, const std::vector<Area>& areas,
+                         const std::vector<double>& thickness, const std::string& path,
+                         const StopRequest& stop) {
+  StopCheck give_up(stop);
+  const double cell = terrain.cell();
+  const double share = projected_share(terrain, thickness);
+  std::vector<geometry::Ring> outlines;
+  for (const Area& area : areas)
+    outlines.push_back(widened_as_avaframe(area.polygon.outline, 1e-3));
+
+  ParticleBatch batch;
+  for (int row = 0; row < terrain.rows(); ++row)
+    for (int column = 0; column < terrain.columns(); ++column) {
+      const double h = thickness[terrain.index(column, row)];
+      if (h == 0) continue;
+      const double wanted = h * (cell * cell / share) * s.density / nominal_particle_mass(s, cell);
+      const double points = std::floor(wanted);
+      if (points < 1)
+        refuse_area(path, areas[0].name,
+                    "is too thin: " + std::to_string(h) + " m make no particle of " +
+                        std::to_string(nominal_particle_mass(s, cell)) +
+                        " kg; allowed in compatible mode: at least " + std::to_string(h / wanted) +
+                        " m");
+      const double mass = terrain.node(column, row).area * h * s.density / points;
+      for_lattice_points_near(
+          column, row, cell, lattice_side(cell * cell, points), [&](double x, double y) {
+            give_up();
+            const bool is_inside = std::any_of(
+                outlines.begin(), outlines.end(),
+                [&](const geometry::Ring& ring) { return geometry::contains(ring, {x, y}); });
+            if (is_inside) place_on_ground(terrain, x, y, mass, batch);
+          });
     }
-  }
+  if (batch.positions.empty()) refuse_area(path, areas[0].name, "holds no particle");
+  return batch;
 }
 
-ParticleBatch seed_area(const Settings& s, const Terrain& terrain, const Area& area,
-                        std::size_t index, const StopRequest& stop) {
+ParticleBatch seed_polygon(const Settings& s, const Terrain& terrain, const Area& area,
+                           const std::string& path, const StopRequest& stop) {
   StopCheck give_up(stop);
   const double cell = terrain.cell();
   const Ground ground = ground_under(terrain, area.polygon);
-  const double thickness = mean_thickness(area, terrain, index);
+  const double thickness = mean_thickness(area, terrain, path);
   const double mass = thickness * ground.stretch * map_area(area.polygon) * s.density;
   const double cell_mass = thickness * ground.stretch * cell * cell * s.density;
   const double points = std::max(1.0, std::floor(cell_mass / nominal_particle_mass(s, cell)));
@@ -299,12 +273,43 @@ ParticleBatch seed_area(const Settings& s, const Terrain& terrain, const Area& a
                        seeded += share;
                      });
   if (batch.positions.empty())
-    refuse_area(index, area.name, "holds no particle: it is smaller than the area of one particle");
+    refuse_area(path, area.name, "holds no particle: it is smaller than the area of one particle");
   for (double& share : batch.masses) share *= mass / seeded;
   return batch;
 }
 
-}  // namespace
+std::vector<NamedArea> named_areas(const std::vector<Area>& areas, const std::string& list) {
+  std::vector<NamedArea> named;
+  for (std::size_t i = 0; i < areas.size(); ++i)
+    named.push_back({&areas[i], "/terrain/" + list + "/" + std::to_string(i)});
+  return named;
+}
+
+void refuse_overlap(const Terrain& terrain, const std::vector<NamedArea>& areas, std::size_t last,
+                    const ParticleBatch& batch) {
+  const double margin = 1e-6 * terrain.cell();
+  const auto well_within = [&](const geometry::Polygon& polygon, double x, double y) {
+    return geometry::contains(polygon, {x - margin, y}) &&
+           geometry::contains(polygon, {x + margin, y}) &&
+           geometry::contains(polygon, {x, y - margin}) &&
+           geometry::contains(polygon, {x, y + margin});
+  };
+  const NamedArea& own = areas[last];
+  for (std::size_t other = 0; other < last; ++other) {
+    const Bounds b = bounds_of(areas[other].area->polygon.outline);
+    for (const Vec3& p : batch.positions) {
+      if (p.x() < b.low[0] || p.x() > b.high[0] || p.y() < b.low[1] || p.y() > b.high[1]) continue;
+      if (!well_within(areas[other].area->polygon, p.x(), p.y()) ||
+          !well_within(own.area->polygon, p.x(), p.y()))
+        continue;
+      refuse_area(own.path, own.area->name,
+                  "overlaps " + areas[other].path + " at (" +
+                      std::to_string(terrain.west() + p.x()) + ", " +
+                      std::to_string(terrain.south() + p.y()) +
+                      "); cut one of them, or make them one area");
+    }
+  }
+}
 
 double nominal_particle_mass(const Settings& s, double cell) {
   return s.density * cell * cell * s.layer_thickness;
@@ -364,15 +369,16 @@ std::vector<ParticleBatch> seed_release(const Settings& settings, const Terrain&
                                         const std::vector<Area>& areas, const StopRequest& stop) {
   if (areas.empty()) throw InputError("/terrain/release", "names no area");
   std::vector<ParticleBatch> batches;
+  const std::vector<NamedArea> all = named_areas(areas, "release");
   if (settings.mode == Mode::compatible) {
-    batches = seed_as_avaframe(settings, terrain, areas, stop);
-    for (std::size_t i = 1; i < areas.size(); ++i)
-      refuse_overlap(terrain, areas, i, batches.front());
+    const std::vector<double> thickness = thickness_at_nodes(areas, terrain, Reach::one_cell);
+    batches = {seed_nodes(settings, terrain, areas, thickness, all[0].path, stop)};
+    for (std::size_t i = 1; i < areas.size(); ++i) refuse_overlap(terrain, all, i, batches.front());
     return batches;
   }
   for (std::size_t i = 0; i < areas.size(); ++i) {
-    batches.push_back(seed_area(settings, terrain, areas[i], i, stop));
-    refuse_overlap(terrain, areas, i, batches.back());
+    batches.push_back(seed_polygon(settings, terrain, areas[i], all[i].path, stop));
+    refuse_overlap(terrain, all, i, batches.back());
   }
   return batches;
 }

@@ -1,6 +1,7 @@
 // The particles that a slide begins with.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "snowshed/core/stop_request.hpp"
@@ -21,6 +22,27 @@ double lattice_spacing(const ParticleBatch& batch);
 /// Throws InputError if the release has so many particles or corners that setting it up takes more
 /// than some seconds or a gigabyte.
 void check_effort(const Settings& settings, const Terrain& terrain, const std::vector<Area>& areas);
+
+/// An area, and its path in the scene.
+struct NamedArea {
+  const Area* area;
+  std::string path;
+};
+std::vector<NamedArea> named_areas(const std::vector<Area>& areas, const std::string& list);
+
+/// Throws InputError if a particle lies within the area `last` and an earlier one, because the
+/// amount of snow there is not defined. Areas may touch.
+void refuse_overlap(const Terrain& terrain, const std::vector<NamedArea>& areas, std::size_t last,
+                    const ParticleBatch& batch);
+
+/// Improved mode: the particles of one area; see `seed_release`. Errors name `path`.
+ParticleBatch seed_polygon(const Settings& settings, const Terrain& terrain, const Area& area,
+                           const std::string& path, const StopRequest& stop = {});
+
+/// Compatible mode: the particles of areas with the given thickness at the nodes.
+ParticleBatch seed_nodes(const Settings& settings, const Terrain& terrain,
+                         const std::vector<Area>& areas, const std::vector<double>& thickness,
+                         const std::string& path, const StopRequest& stop = {});
 
 /// Returns the particles of all release areas, on triangular lattices, a batch for each area.
 ///

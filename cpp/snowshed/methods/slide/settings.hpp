@@ -22,10 +22,17 @@ struct Settings {
   double layer_thickness = 0.25;  // m, thickness of snow that makes one particle in a cell
 
   FrictionLaw friction_law = FrictionLaw::voellmy;
-  double friction = 0.325;            // Coulomb coefficient mu
-  double turbulence = 58;             // m/s2, Voellmy's xi
-  bool explicit_friction = false;     // compatible mode only
-  double resistance = 30000;          // drag coefficient within the resistance areas
+  double friction = 0.325;         // Coulomb coefficient mu
+  double turbulence = 58;          // m/s2, Voellmy's xi
+  bool explicit_friction = false;  // compatible mode only
+  double resistance = 30000;       // drag coefficient within the resistance areas
+  double detrainment = 0;          // Pa, Feistl's K within the resistance areas; 0: none
+  // With detrainment, forest stops slower or thinner snow than the minima, resists snow between
+  // them, and is destroyed by snow above the maxima.
+  double forest_min_speed = 6;        // m/s
+  double forest_min_thickness = 0.6;  // m
+  double forest_max_speed = 40;       // m/s
+  double forest_max_thickness = 10;   // m
   double artificial_viscosity = 100;  // compatible mode only
   // Improved mode only.
   Columns columns = Columns::vertical;

@@ -61,7 +61,7 @@ void check_on_terrain(const Terrain& terrain, const std::vector<Area>& areas,
             where, "reaches beyond the terrain, which extends from (" + on_map(terrain, 0, 0) +
                        ") to (" + on_map(terrain, terrain.columns() - 1, terrain.rows() - 1) + ")");
     }
-    if (kind == "release") check_no_hole(terrain, areas[i].polygon, where);
+    check_no_hole(terrain, areas[i].polygon, where);
   }
 }
 
@@ -74,12 +74,22 @@ std::unique_ptr<Solver> make_solver(Options options) {
 SolverImpl::SolverImpl(Options o)
     : model_(o.settings, o.gravity, o.terrain, std::move(o.areas), o.energy), state_(model_) {
   check_on_terrain(model_.terrain, model_.areas.release, "release");
-  check_effort(model_.settings, model_.terrain, model_.areas.release);
+  std::vector<Area> areas = late_areas(model_.areas);
+  std::vector<Area> inflows;
+  for (const Inflow& inflow : model_.areas.inflows) inflows.push_back(inflow.area);
+  check_on_terrain(model_.terrain, model_.areas.secondary_release, "secondary_release");
+  check_on_terrain(model_.terrain, inflows, "inflows");
+  areas.insert(areas.begin(), model_.areas.release.begin(), model_.areas.release.end());
+  check_effort(model_.settings, model_.terrain, areas);
+  model_.late = prepare_late_releases(model_.settings, model_.terrain, model_.areas);
+  state_ = State(model_);
   state_.counters.smallest_dt = longest_step(model_.settings);
 }
 
-/// Appends a batch and bonds its particles with each other.
-void SolverImpl::append(State& state, const ParticleBatch& batch, const StopRequest& stop) const {
+/// Appends a batch and bonds its particles with each other. Bonds do not cross the outlines of
+/// `areas`; null: no bonds.
+void SolverImpl::append(State& state, const ParticleBatch& batch, const std::vector<Area>* areas,
+                        const StopRequest& stop) const {
   check_batch(batch, 1);
   Particles& p = state.particles;
   const std::size_t old = p.size();
@@ -92,26 +102,88 @@ void SolverImpl::append(State& state, const ParticleBatch& batch, const StopRequ
       throw SimulationError("a particle at (" + std::to_string(x.x()) + ", " +
                             std::to_string(x.y()) + ") m lies outside of the terrain");
     const std::size_t i = old + k;
+    const Vec3 u =
+        batch.fall_speed > 0 ? Vec3(batch.fall_speed * fall_line(position)) : batch.velocity;
     p.x[i] = x.x();
     p.y[i] = x.y();
     p.z[i] = model_.terrain.height(position);
-    p.ux[i] = batch.velocity.x();
-    p.uy[i] = batch.velocity.y();
-    p.uz[i] = batch.velocity.z();
+    p.ux[i] = u.x();
+    p.uy[i] = u.y();
+    p.uz[i] = u.z();
     p.mass[i] = batch.mass_of(k);
     p.fresh_mass[i] = model_.compatible() ? fresh_mass : p.mass[i];
     p.id[i] = state.next_id++;
     p.event[i] = std::uint16_t(batch.event);
   }
-  state.balance.released += compensated_sum(p.mass.data() + old, batch.positions.size());
-  if (!model_.settings.bonds) return;
+  if (!areas) return;
   // Compatible mode has bonds across gaps of the release.
-  const Bonds bonds = bonds_between(p, old, lattice_spacing(batch),
-                                    model_.compatible() ? nullptr : &model_.areas.release, stop);
+  const Bonds bonds =
+      bonds_between(p, old, lattice_spacing(batch), model_.compatible() ? nullptr : areas, stop);
   state.bonds.reserve(state.bonds.size() + bonds.size());
   for (std::size_t b = 0; b < bonds.size(); ++b)
     state.bonds.add(bonds.first[b], bonds.second[b], bonds.rest_length[b]);
   state.bonds_made += std::int64_t(bonds.size());
+}
+
+/// The unit vector of steepest descent; zero on level ground.
+Vec3 SolverImpl::fall_line(const geometry::CellPosition& position) const {
+  const Vec3 n = model_.terrain.normal(position);
+  const Vec3 down = n.z() * n - Vec3::UnitZ();
+  const double length = down.norm();
+  return length > 0 ? Vec3(down / length) : Vec3(Vec3::Zero());
+}
+
+/// Appends the snow of the releases with this trigger that are due. Those of the compatible mode
+/// have no bonds, so that nothing is allocated if there is memory for the particles.
+void SolverImpl::append_due(State& state, Trigger trigger) const {
+  for (std::size_t i = 0; i < model_.late.size(); ++i) {
+    const LateRelease& late = model_.late[i];
+    if (state.late[i] != due || late.trigger != trigger) continue;
+    const std::vector<Area> own = late.bonds ? std::vector<Area>{late.area} : std::vector<Area>();
+    append(state, late.snow, late.bonds ? &own : nullptr, {});
+    const double mass = late.snow.total_mass();
+    (trigger == Trigger::contact ? state.balance.secondary : state.balance.inflow) += mass;
+    state.late[i] = state.time;
+  }
+}
+
+/// Adds the snow that is due before a step; in the compatible mode only that of inflows. The state
+/// and its workspace change together, or not at all. Returns whether snow was added.
+bool SolverImpl::release_before_step() {
+  if (model_.late.empty()) return false;
+  const std::vector<double> marked = with_timed_marked(model_, state_);
+  const bool compatible = model_.compatible();
+  if (!any_due(model_, marked, Trigger::time) &&
+      (compatible || !any_due(model_, marked, Trigger::contact)))
+    return false;
+  State next = state_;
+  next.late = marked;
+  if (compatible) refuse_snow_in_inflows(model_, next);
+  append_due(next, Trigger::time);
+  if (!compatible) append_due(next, Trigger::contact);
+  if (!compatible) next.peak_kinetic = 0;  // the later snow may be faster or slower
+  Workspace work;
+  refresh(model_, next, work, &next.peaks);
+  choose_step(next, work);
+  count_as_added(next, work, next.energy);
+  work.reserve_memory(model_, next);
+  state_ = std::move(next);
+  workspace_ = std::move(work);
+  order_.forget();
+  return true;
+}
+
+/// Compatible mode: adds the snow of secondary releases at the end of a step, before the fields
+/// are computed. `reserve_memory` has provided for it.
+void SolverImpl::release_in_step() {
+  if (!model_.compatible() || !any_due(model_, state_.late, Trigger::contact)) return;
+  const std::size_t old = size();
+  append_due(state_, Trigger::contact);
+  for (std::size_t i = old; i < size(); ++i)
+    state_.energy.added += state_.particles.mass[i] * model_.gravity * state_.particles.z[i];
+  workspace_.cell_positions.resize(size());
+  refresh_cell_positions(model_, state_, workspace_, old, size());
+  workspace_.bond_lists.update(state_.bonds, size());
 }
 
 /// Shortens the steps for the bonds. With these steps snow may pile up to four times its thickness
@@ -147,16 +219,28 @@ void SolverImpl::accept(State next) {
   Workspace work;
   refresh(model_, next, work, &next.peaks);
   choose_step(next, work);
+  mark_contacts(model_, next, work);
   count_as_added(next, work, next.energy);
   state_ = std::move(next);
   workspace_ = std::move(work);
   order_.forget();
 }
 
+/// Appends the snow that an event begins with.
+void SolverImpl::append_all(State& state, const std::vector<ParticleBatch>& batches,
+                            const StopRequest& stop) const {
+  for (const ParticleBatch& batch : batches) {
+    append(state, batch, model_.settings.bonds ? &model_.areas.release : nullptr, stop);
+    state.balance.released += compensated_sum(
+        state.particles.mass.data() + (state.particles.size() - batch.positions.size()),
+        batch.positions.size());
+  }
+}
+
 void SolverImpl::add(const std::vector<ParticleBatch>& batches, const StopRequest& stop) {
   soundness_.require();
   State next = state_;
-  for (const ParticleBatch& batch : batches) append(next, batch, stop);
+  append_all(next, batches, stop);
   next.stopped = false;
   next.peak_kinetic = 0;
   accept(std::move(next));
@@ -171,8 +255,11 @@ void SolverImpl::replace(const std::vector<ParticleBatch>& batches) {
   next.next_id = state_.next_id;
   next.peaks = state_.peaks;
   next.erodible = state_.erodible;
+  next.late = state_.late;
+  next.over_dams = state_.over_dams;
+  next.forest = state_.forest;
   next.energy = state_.energy;
-  for (const ParticleBatch& batch : batches) append(next, batch, {});
+  append_all(next, batches, {});
   accept(std::move(next));
 }
 
@@ -203,6 +290,12 @@ void SolverImpl::sort_if_due() {
   ++state_.sorts;
 }
 
+/// Keeps the positions before a step, because dams act on the paths of particles.
+void SolverImpl::keep_positions() {
+  const Particles& p = state_.particles;
+  for (std::size_t i = 0; i < p.size(); ++i) workspace_.before_dams[i] = {p.x[i], p.y[i], p.z[i]};
+}
+
 void SolverImpl::choose_threads() {
   const int max_threads = model_.threads_for(size());
   const bool by_trial = size() < particles_for_threads;
@@ -211,9 +304,12 @@ void SolverImpl::choose_threads() {
 
 void SolverImpl::step() {
   soundness_.require();
-  if (size() == 0) throw SimulationError("there is no snow on the terrain");
-  workspace_.reserve_memory(model_, state_);
-  sort_if_due();
+  const bool awaits_snow = !model_.compatible() && awaits_time(model_, state_);
+  if (size() == 0 && !awaits_snow) throw SimulationError("there is no snow on the terrain");
+  if (!release_before_step()) {
+    workspace_.reserve_memory(model_, state_);
+    sort_if_due();
+  }
   choose_threads();
   // Nothing from here on allocates.
   const bool keeps_energy = model_.keeps_energy;
@@ -222,11 +318,16 @@ void SolverImpl::step() {
   apply_ground(model_, state_, workspace_);
   if (keeps_energy) recorder.after_ground(model_, state_, workspace_, state_.energy);
   apply_neighbours(model_, state_, workspace_);
+  if (!model_.dams.empty()) keep_positions();
   advance(model_, state_, workspace_);
   if (keeps_energy) recorder.after_motion(model_, state_, workspace_, state_.energy);
+  mark_detrained(state_, workspace_);
+  if (!model_.dams.empty()) apply_dams(model_, state_, workspace_);
+  find_stop(model_, state_);
   remove_broken(state_, workspace_);
   remove_marked(state_, workspace_);
   split_heavy(model_, state_, workspace_);
+  release_in_step();
   refresh_fields(model_, state_, workspace_, &state_.peaks);
   state_.dt = state_.step;
   ++state_.counters.steps;
@@ -237,6 +338,11 @@ void SolverImpl::step() {
   order_.forget();
   workspace_.thread_choice.end();
   if (size() == 0) state_.stopped = true;
+  mark_contacts(model_, state_, workspace_);
+  // In the compatible mode the slide stops without the snow to come, as in AvaFrame.
+  if (!model_.compatible() &&
+      (any_due(model_, state_.late, Trigger::contact) || awaits_time(model_, state_)))
+    state_.stopped = false;
   if (!std::isfinite(state_.kinetic_energy)) {
     soundness_.lose();
     soundness_.fail("a particle is not finite after " + std::to_string(state_.time) + " s");

@@ -25,7 +25,7 @@ struct Options {
 /// (`seed_release`).
 class Solver : public Method, public SeedsItself, public KeepsEnergy, public ReportsRun {
  public:
-  /// Number of particles that `seed` returns.
+  /// Number of particles that `seed` returns, and of those that come later.
   virtual std::size_t count_seeds() const = 0;
   virtual const Terrain& terrain() const = 0;
   virtual const PeakFields& peaks() const = 0;
@@ -33,6 +33,8 @@ class Solver : public Method, public SeedsItself, public KeepsEnergy, public Rep
   virtual const Bonds& bonds() const = 0;
   virtual std::int64_t bonds_made() const = 0;
   virtual const MassBalance& mass_balance() const = 0;
+  virtual std::vector<LateReleaseFact> late_releases() const = 0;
+  virtual std::vector<DamFact> dams() const = 0;
 };
 
 /// Throws InputError if a release area reaches beyond the terrain or into a hole of it, or makes

@@ -43,13 +43,19 @@ class SolverImpl final : public Solver {
 
   using SeedsItself::seed;
   std::vector<ParticleBatch> seed(const StopRequest& stop) const override {
-    return seed_release(model_.settings, model_.terrain, model_.areas.release, stop);
+    std::vector<ParticleBatch> batches =
+        seed_release(model_.settings, model_.terrain, model_.areas.release, stop);
+    for (ParticleBatch& batch : batches) batch.fall_speed = model_.areas.release_speed;
+    return batches;
   }
   std::size_t count_seeds() const override {
     std::size_t count = 0;
     for (const ParticleBatch& batch : seed()) count += batch.positions.size();
+    for (const LateRelease& late : model_.late) count += late.snow.positions.size();
     return count;
   }
+  std::vector<LateReleaseFact> late_releases() const override;
+  std::vector<DamFact> dams() const override;
   const Terrain& terrain() const override { return model_.terrain; }
   const PeakFields& peaks() const override { return state_.peaks; }
   const GridFields& flow() const override { return workspace_.fields; }
@@ -58,9 +64,16 @@ class SolverImpl final : public Solver {
   const MassBalance& mass_balance() const override { return state_.balance; }
 
  private:
-  void append(State&, const ParticleBatch&, const StopRequest&) const;
+  void append(State&, const ParticleBatch&, const std::vector<Area>* areas,
+              const StopRequest&) const;
+  void append_all(State&, const std::vector<ParticleBatch>&, const StopRequest&) const;
+  void append_due(State&, Trigger) const;
+  Vec3 fall_line(const geometry::CellPosition&) const;
+  bool release_before_step();
+  void release_in_step();
   void accept(State);
   void sort_if_due();
+  void keep_positions();
   void choose_threads();
   void choose_step(State& next, const Workspace& work) const;
   void count_as_added(const State& next, const Workspace& work, EnergyBalance& sums) const;

@@ -13,12 +13,17 @@ BorderSlope border_slope(const Settings& s) {
   return s.mode == Mode::compatible ? BorderSlope::level_in_the_south_west : BorderSlope::one_sided;
 }
 
-std::vector<double> resistance_at_nodes(const Settings& s, const Areas& areas,
-                                        const Terrain& terrain) {
+/// 1 at nodes within areas of resistance, 0 elsewhere; empty without areas.
+std::vector<double> covered_nodes(const Areas& areas, const Terrain& terrain) {
   if (areas.resistance.empty()) return {};
   std::vector<Area> covered = areas.resistance;
   for (Area& area : covered) area.thickness = 1;
-  std::vector<double> values = thickness_at_nodes(covered, terrain, Reach::edge);
+  return thickness_at_nodes(covered, terrain, Reach::edge);
+}
+
+std::vector<double> resistance_at_nodes(const Settings& s, const Areas& areas,
+                                        const Terrain& terrain) {
+  std::vector<double> values = covered_nodes(areas, terrain);
   for (double& value : values) value = value > 0 ? s.resistance : 0.0;
   return values;
 }
@@ -36,6 +41,14 @@ std::vector<double> erodible_at_nodes(const Model& model) {
   return values;
 }
 
+/// Whether forest stands at each node, if it can be destroyed.
+std::vector<std::uint8_t> forest_at_nodes(const Model& model) {
+  if (!model.detrains()) return {};
+  std::vector<std::uint8_t> values;
+  for (const double share : covered_nodes(model.areas, model.terrain)) values.push_back(share > 0);
+  return values;
+}
+
 }  // namespace
 
 double longest_step(const Settings& s) {
@@ -50,17 +63,23 @@ Model::Model(const Settings& s, double g, const geometry::HeightField& field, Ar
       areas(std::move(a)),
       friction(BasalFriction::from(s, g)),
       resistance(resistance_at_nodes(s, areas, terrain)),
+      dams(areas.dams, terrain, s.mode == Mode::compatible),
       threads(threads_to_use(s.threads)),
       keeps_energy(keeps) {}
 
 State::State(const Model& model)
     : peaks(std::size_t(model.terrain.columns()) * std::size_t(model.terrain.rows())),
+      late(model.late.size(), waiting),
+      over_dams(model.dams.size(), 0.0),
+      forest(forest_at_nodes(model)),
       erodible(erodible_at_nodes(model)),
       step(longest_step(model.settings)) {}
 
 void Workspace::reserve_memory(const Model& model, State& state) {
   // Each particle may split.
-  const std::size_t now = state.particles.size(), most = state.erodible.empty() ? now : 2 * now;
+  const std::size_t now = state.particles.size();
+  const std::size_t grown = state.erodible.empty() ? now : 2 * now;
+  const std::size_t most = grown + due_particles(model, state);
   state.particles.for_each_array([most](const char*, auto& array) { array.reserve(most); });
   CellPositions::for_each_array(cell_positions, [most](auto& array) { array.reserve(most); });
   thickness.reserve(most);
@@ -69,6 +88,12 @@ void Workspace::reserve_memory(const Model& model, State& state) {
   pressure_force.resize(4 * now);
   entrained.resize(state.erodible.empty() ? 0 : now);
   removed.resize(now);
+  detrained.resize(state.forest.empty() ? 0 : now);
+  gone.resize(state.forest.empty() ? 0 : now);
+  if (!model.dams.empty()) {
+    before_dams.resize(now);
+    passed_dams.reserve(model.dams.sections());
+  }
   new_indices.reserve(most);
   piece_sums.resize(most / std::size_t(particles_in_piece) + 1);
   bond_force.resize(4 * state.bonds.size());

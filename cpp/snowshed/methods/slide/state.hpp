@@ -17,6 +17,7 @@
 #include "snowshed/methods/slide/friction.hpp"
 #include "snowshed/methods/slide/grid_fields.hpp"
 #include "snowshed/methods/slide/kernel_api.hpp"
+#include "snowshed/methods/slide/late_release.hpp"
 #include "snowshed/methods/slide/particles.hpp"
 #include "snowshed/methods/slide/settings.hpp"
 #include "snowshed/methods/slide/terrain.hpp"
@@ -31,6 +32,7 @@ inline constexpr std::size_t particles_for_threads = 20000;
 struct Model {
   Model(const Settings&, double gravity, const geometry::HeightField&, Areas, bool keeps_energy);
 
+  bool detrains() const { return settings.detrainment > 0 && !areas.resistance.empty(); }
   bool compatible() const { return settings.mode == Mode::compatible; }
   /// Maximum number of threads for a step of this number of particles.
   int threads_for(std::size_t particles) const {
@@ -43,13 +45,17 @@ struct Model {
   Areas areas;
   BasalFriction friction;
   std::vector<double> resistance;  // coefficient at each node; empty without areas
+  DamFeet dams;
   int threads;
   bool keeps_energy;
+  std::vector<LateRelease> late;  // made after the areas have been checked
 };
 
-/// Masses of the snow that was released, that was entrained, and that left the terrain.
+/// Masses of the snow that came and went. `released` is the snow at the start; `secondary` and
+/// `inflow` came later.
 struct MassBalance {
-  double released = 0, entrained = 0, left_terrain = 0;  // kg
+  double released = 0, secondary = 0, inflow = 0, entrained = 0;  // kg
+  double detrained = 0, left_terrain = 0;                         // kg
   std::int64_t particles_left = 0;
 };
 
@@ -60,6 +66,10 @@ struct State {
   Bonds bonds;
   std::int64_t bonds_made = 0;
   PeakFields peaks;
+  std::vector<double> late;       // for each late release: waiting, due, or its time, s
+  std::vector<double> over_dams;  // kg that passed each dam
+  // Whether forest stands at each node; empty without detrainment, when forest is never destroyed.
+  std::vector<std::uint8_t> forest;
   std::vector<double> erodible;  // kg/m2 of snow left to entrain at each node; may be empty
   MassBalance balance;
   double time = 0, dt = 0;                      // s
@@ -119,9 +129,13 @@ struct Workspace {
   AlignedVector<double> pressure_force;  // records of four for each particle
   AlignedVector<double> bond_force;      // records of four for each bond
   std::vector<double> entrained;  // kg, by each particle in this step; empty without entrainment
+  std::vector<double> detrained;  // kg, from each particle in this step; empty without detrainment
   std::vector<char> removed;      // particles that left the terrain
-  std::vector<char> broken;       // bonds that break in this step
-  bool bonds_break = false;       // whether any bond breaks in this step
+  std::vector<char> gone;         // particles of which forest took all; empty without detrainment
+  std::vector<Vec3> before_dams;  // m, positions before the step; empty without dams
+  std::vector<DamCrossing> passed_dams;
+  std::vector<char> broken;  // bonds that break in this step
+  bool bonds_break = false;  // whether any bond breaks in this step
   std::vector<std::uint32_t> new_indices;
   std::vector<double> piece_sums;
   bool no_particle_splits = false;  // no particle is too heavy, and none becomes heavier

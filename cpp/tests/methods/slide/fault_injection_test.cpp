@@ -12,6 +12,10 @@ std::unique_ptr<Solver> eroding_slide() {
   Options o = slide_on(inclined(38, 45, 25), rectangle(56.3, 18.3, 84.3, 32.3));
   o.areas.entrainment = {rectangle(60, 6, 86, 42, 0.3)};
   o.areas.resistance = {rectangle(70, 10, 80, 20)};
+  o.areas.secondary_release = {rectangle(60.3, 38.3, 66.3, 44.3)};
+  o.areas.inflows = {{rectangle(20.3, 20.3, 26.3, 26.3), true, {{0.31, 0.4, 6}}}};
+  o.areas.dams = {{"dam", {{78, 20, 1}, {80, 30, 1}}, 90, 0.2}};
+  o.settings.detrainment = 20;
   return make_solver(o);
 }
 
@@ -53,6 +57,8 @@ TEST_F(SlideFaultInjection, FailedAllocationsLeaveTheStateUnchanged) {
   if (HasFailure()) return;
   EXPECT_GT(reference.method->mass_balance().entrained, 0);
   EXPECT_GT(max_left, 0);
+  EXPECT_GT(reference.method->mass_balance().inflow, 0);
+  EXPECT_GT(reference.method->mass_balance().detrained, 0);
   RecordProperty("faults", faults);
   EXPECT_GE(faults, 500);
 }

@@ -163,8 +163,11 @@ def _check_project_files(files: SlideFiles, *, example: bool) -> None:
         raise InputError("--avaframe: keep one layer in each file of areas")
     if files.terrain or files.release or files.thickness_raster or example:
         raise InputError(INPUTS)
-    if files.entrainment or files.resistance:
-        raise InputError("--avaframe: the project's folders ENT and RES hold the areas")
+    if any((*files.area_files().values(), files.hydrograph)):
+        raise InputError(
+            "--avaframe: the project's folders ENT, RES, SECREL, DAM and REL hold the areas, dams "
+            "and hydrographs"
+        )
 
 
 def _steps(text: Optional[str]) -> list[int]:

@@ -23,6 +23,10 @@ UNCHANGED_OPTIONS = (
     "release",
     "thickness_raster",
     "thickness",
+    "secondary_release",
+    "inflow",
+    "hydrograph",
+    "dams",
     "band",
     "thickness_band",
 )
@@ -53,6 +57,18 @@ def file_options(command: Command) -> Command:
             help="Layer of the GeoPackage of entrainment areas.",
         ),
         click.option("--layer", metavar="NAME", help="Layer of the GeoPackage of release areas."),
+        click.option("--dams", type=PATH, help="Lines of dams."),
+        click.option(
+            "--hydrograph",
+            type=PATH,
+            help="Table (CSV) of the times, thicknesses and velocities of the inflow.",
+        ),
+        click.option("--inflow", type=PATH, help="Polygons that snow enters at given times."),
+        click.option(
+            "--secondary-release",
+            type=PATH,
+            help="Polygons that are released when snow enters them.",
+        ),
         click.option("--resistance-areas", type=PATH, help="Polygons of forest."),
         click.option("--entrainment-areas", type=PATH, help="Polygons of the entrainment areas."),
         click.option(
@@ -81,6 +97,10 @@ class SlideFiles:
     entrainment: Optional[Path]
     resistance: Optional[Path]
     thickness: Optional[float]
+    secondary_release: Optional[Path] = None
+    inflow: Optional[Path] = None
+    hydrograph: Optional[Path] = None
+    dams: Optional[Path] = None
     band: Optional[int] = None
     thickness_band: Optional[int] = None
     layers: Mapping[str, str] = field(default_factory=dict)
@@ -110,7 +130,10 @@ class SlideFiles:
 
     def has_files(self) -> bool:
         """Return whether any file is given."""
-        return any(file is not None for file in (self.terrain, *self.area_files().values()))
+        return any(
+            file is not None
+            for file in (self.terrain, self.hydrograph, *self.area_files().values())
+        )
 
     def area_files(self) -> dict[str, Optional[Path]]:
         """Return the files of areas by their key in a scene's terrain."""
@@ -118,6 +141,9 @@ class SlideFiles:
             "release": self.release or self.thickness_raster,
             "entrainment": self.entrainment,
             "resistance": self.resistance,
+            "secondary_release": self.secondary_release,
+            "inflows": self.inflow,
+            "dams": self.dams,
         }
 
     def scene(
@@ -156,6 +182,10 @@ class SlideFiles:
             thickness_raster=self.thickness_raster,
             entrainment=self.entrainment,
             resistance=self.resistance,
+            secondary_release=self.secondary_release,
+            inflow=self.inflow,
+            hydrograph=self.hydrograph,
+            dams=self.dams,
             layers=self.layers,
             settings=SlideSettings.from_data(dict(settings)),
             ascii_copy=terrain_copy(folder),

@@ -13,8 +13,8 @@ from snowshed.analysis.accuracy.incline import GRAVITY
 from snowshed.io.raster.raster import Raster, write_ascii_grid
 from snowshed.methods.slide.settings import SlideSettings
 from snowshed.running.event_driver import EventDriver
-from snowshed.scene.components import Area, Terrain
 from snowshed.scene.scene import Scene
+from snowshed.scene.terrain_components import Area, Terrain
 
 TILT = 35.0  # degrees
 FRICTION = 0.325

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 #: Fields are read if their names begin with these words.
-FIELD_PREFIXES = ("name", "thick", "d0")
+FIELD_PREFIXES = ("name", "thick", "d0", "height", "slope", "restit")
 
 
 @dataclass(frozen=True)

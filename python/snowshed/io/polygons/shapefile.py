@@ -43,7 +43,7 @@ def read_shapefile(path: Path, *, lines: bool = False) -> PolygonLayer:
                 fields = [str(field) for field in pyogrio.read_info(file)["fields"]]
                 wanted = [field for field in fields if is_wanted(field)]
                 meta, _, shapes, columns = pyogrio.raw.read(
-                    file, columns=wanted, max_features=MAX_POLYGONS, force_2d=True
+                    file, columns=wanted, max_features=MAX_POLYGONS, force_2d=not lines
                 )
             shapes = shapely.from_wkb(shapes)
         except (

@@ -29,6 +29,7 @@ import snowshed._core as _core
 from snowshed.io.atomic import replacing
 from snowshed.io.film import FILM, Film
 from snowshed.io.raster.output import write_raster
+from snowshed.methods.slide.event_notes import event_notes
 from snowshed.methods.slide.frames import Frame, slide_frames
 from snowshed.methods.slide.maps import PEAKS_FILE, RASTERS, PeakMaps, SlideMaps, slide_maps
 from snowshed.methods.slide.summary import SlideSummary
@@ -135,13 +136,17 @@ def _summary(
         peak_pressure_kpa=float(maps.peak_pressure.max()),
         reached_m2=float(reached.sum()) * maps.cell**2,
         run_out_m=float(distance.max(initial=0.0)),
+        secondary_kg=slide["secondary_kg"],
+        inflow_kg=slide["inflow_kg"],
+        detrained_kg=slide["detrained_kg"],
         drop_m=float(maps.terrain[reached].max() - elevations.min()) if elevations.size else 0.0,
     )
     of_files = str(scene["terrain"].get("notes", "")).splitlines()
     of_border = _border_notes(slide["left_terrain_kg"], maps)
+    of_events = event_notes(slide)
     validity = validity_notes(areas, scene["numerics"], asdict(summary))
     of_steps = _step_notes(facts, scene["numerics"]["time_step"])
-    return replace(summary, notes=(*of_files, *of_border, *validity, *of_steps))
+    return replace(summary, notes=(*of_files, *of_events, *of_border, *validity, *of_steps))
 
 
 def _step_notes(facts: Mapping[str, Any], time_step: float) -> tuple[str, ...]:

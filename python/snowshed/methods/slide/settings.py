@@ -42,6 +42,19 @@ class SlideSettings(MethodSettings):
     resistance : float
         Drag coefficient within resistance areas (forest, buildings). 0 <= value <= 1e+09; default
         30000.
+    detrainment : float
+        Detrainment coefficient K within resistance areas: snow of speed u loses the mass K/u per
+        area and time; 0: none [Pa]. 0 <= value <= 1e+06; default 0.
+    forest_min_speed : float
+        With detrainment, forest takes mass from snow up to this speed, and resists faster snow
+        [m/s]. 0 <= value <= 1000; default 6.
+    forest_min_thickness : float
+        With detrainment, forest takes mass from snow up to this thickness, and resists thicker
+        snow [m]. 0 <= value <= 100; default 0.6.
+    forest_max_speed : float
+        With detrainment, faster snow destroys the forest [m/s]. 0 < value <= 1000; default 40.
+    forest_max_thickness : float
+        With detrainment, thicker snow destroys the forest [m]. 0 < value <= 100; default 10.
     artificial_viscosity : float
         AvaFrame's artificial viscosity; in the compatible mode only. 0 <= value <= 1e+06; default
         100.
@@ -87,6 +100,11 @@ class SlideSettings(MethodSettings):
     turbulence: Optional[float] = default(58.0)
     explicit_friction: Optional[bool] = default(False)
     resistance: Optional[float] = default(30000.0)
+    detrainment: Optional[float] = default(0.0)
+    forest_min_speed: Optional[float] = default(6.0)
+    forest_min_thickness: Optional[float] = default(0.6)
+    forest_max_speed: Optional[float] = default(40.0)
+    forest_max_thickness: Optional[float] = default(10.0)
     artificial_viscosity: Optional[float] = default(100.0)
     columns: Optional[Literal["vertical", "across_flow"]] = default("vertical")
     mixing_rate: Optional[float] = default(8.0)

@@ -21,8 +21,11 @@ class SlideSummary(Summary):
         Duration of the slide, s.
     final_particles
         Number of particles at the end.
-    released_kg, entrained_kg
-        Mass that was released and taken up.
+    released_kg, secondary_kg, inflow_kg
+        Mass that was released at the start, by snow that entered a secondary release, and by
+        inflows.
+    entrained_kg, detrained_kg
+        Mass that the slide took up, and that forest took from it.
     left_terrain_kg, on_terrain_kg
         Mass that left the terrain or fell into its holes, and mass on the terrain at the end.
     bonds_made, bonds_broken
@@ -54,6 +57,9 @@ class SlideSummary(Summary):
     reached_m2: float
     run_out_m: float
     drop_m: float
+    secondary_kg: float = 0.0
+    inflow_kg: float = 0.0
+    detrained_kg: float = 0.0
     notes: tuple[str, ...] = ()
 
     FILE: ClassVar[str] = "slide.json"

@@ -22,7 +22,9 @@ from snowshed.io.raster.arrays import areas_of, raster_of
 from snowshed.io.raster.raster import Raster, is_single, read_raster, write_ascii_grid
 from snowshed.io.raster.release import areas_of_depth, snow_part
 from snowshed.methods.slide.settings import SlideSettings
+from snowshed.scene.builders.dams import read_dams
 from snowshed.scene.builders.hillside import hillside
+from snowshed.scene.builders.hydrographs import read_hydrograph
 from snowshed.scene.builders.terrain_checks import (
     MAX_SLOPE,
     check_apart,
@@ -31,8 +33,9 @@ from snowshed.scene.builders.terrain_checks import (
     common_system,
     read_terrain,
 )
-from snowshed.scene.components import Area, Events, Hole, ResistanceArea, Terrain
+from snowshed.scene.components import Events
 from snowshed.scene.scene import Scene
+from snowshed.scene.terrain_components import Area, Hole, Inflow, Pulse, ResistanceArea, Terrain
 
 if TYPE_CHECKING:
     import xarray
@@ -40,8 +43,10 @@ if TYPE_CHECKING:
 MAX_TIME = 400.0  # s, as in AvaFrame
 MIN_THICKNESS = 0.01  # m, smallest thickness of snow for a slide
 MAX_THICKNESS = 10.0  # m, largest plausible thickness of snow, as in the core
+#: Purposes of files of polygons.
+PARTS = ("release", "entrainment", "resistance", "secondary_release", "inflow")
 #: Arguments that name the layer of a file.
-LAYER_OPTIONS = {part: f"`layers['{part}']=`" for part in ("release", "entrainment", "resistance")}
+LAYER_OPTIONS = {part: f"`layers['{part}']=`" for part in PARTS}
 
 
 @checked
@@ -54,6 +59,11 @@ def slide_scene(
     entrainment: Optional[object] = None,
     entrained_thickness: Optional[float] = None,
     resistance: Optional[object] = None,
+    secondary_release: Optional[object] = None,
+    secondary_thickness: Optional[float] = None,
+    inflow: Optional[object] = None,
+    hydrograph: Optional[PathLike] = None,
+    dams: Optional[PathLike] = None,
     layers: Optional[Mapping[str, str]] = None,
     settings: Optional[SlideSettings] = None,
     ascii_copy: Optional[PathLike] = None,
@@ -83,8 +93,22 @@ def slide_scene(
         Polygons of entrainment areas, and of forest.
     entrained_thickness
         Thickness of the erodible snow [m], instead of the thickness in the file.
+    secondary_release
+        Polygons of areas that are released when snow of the slide enters them; the thickness is
+        that of the file.
+    secondary_thickness
+        Thickness of their snow [m], instead of the thickness in the file.
+    inflow
+        Polygons that snow enters at the times of `hydrograph`.
+    hydrograph
+        A CSV file with the columns timestep [s], thickness [m] and velocity [m/s, down the slope].
+    dams
+        Lines of dams: a file whose field "height" is the height of the crown above the ground [m],
+        or a shapefile whose lines have the elevation of the crown as z. A field "restitution" is
+        optional.
     layers
-        Layers of GeoPackages with several, by purpose: "release", "entrainment", "resistance".
+        Layers of GeoPackages with several, by purpose: "release", "entrainment", "resistance",
+        "secondary_release", "inflow".
     settings
         Settings of the method; None: its defaults.
     ascii_copy
@@ -120,10 +144,16 @@ def slide_scene(
         areas = _release_areas(release, thickness, depth, polygons)
         eroded = polygons.areas(entrainment, "entrainment")
         held = polygons.areas(resistance, "resistance")
+        waiting = polygons.areas(secondary_release, "secondary_release")
+        entered = polygons.areas(inflow, "inflow")
+        pulses = _pulses(inflow, hydrograph)
+        walls, walls_crs = ([], "") if dams is None else read_dams(Path(dams), terrain)
     check_place(terrain, areas)
     check_apart(areas)
     files = [(terrain.name, terrain.crs)]
-    files += [(area.file, area.crs) for area in areas + eroded + held]
+    files += [(area.file, area.crs) for area in areas + eroded + held + waiting + entered]
+    if walls:
+        files.append((str(dams), walls_crs))
     if depth is not None:
         files.append((depth.name, depth.crs))
     crs = common_system(files)
@@ -153,6 +183,17 @@ def slide_scene(
                 for area in eroded
             ]
             or None,
+            secondary_release=[
+                _snow_area(area, secondary_thickness, most, argument="secondary_thickness")
+                for area in waiting
+            ]
+            or None,
+            inflows=[
+                Inflow(name=area.name, outline=area.outline, holes=_holes(area), hydrograph=pulses)
+                for area in entered
+            ]
+            or None,
+            dams=walls or None,
             resistance=[
                 ResistanceArea(name=area.name, outline=area.outline, holes=_holes(area))
                 for area in held
@@ -246,8 +287,14 @@ class _Polygons:
             file,
             self.layers.get(part),
             option=LAYER_OPTIONS[part],
-            with_thickness=part != "resistance",
+            with_thickness=part not in ("resistance", "inflow"),
         )
+
+
+def _pulses(inflow: Optional[object], hydrograph: Optional[PathLike]) -> list[Pulse]:
+    if (inflow is None) != (hydrograph is None):
+        raise InputError("give both the polygons of an inflow and its hydrograph")
+    return [] if hydrograph is None else read_hydrograph(Path(hydrograph))
 
 
 def _release_areas(

@@ -40,7 +40,11 @@ def test_each_law_of_friction_has_its_own_coefficient(tmp_path):
     ("ini", "message"),
     [
         ("sphOption = 2", "sphoption: '2' is not available; allowed: 1"),
-        ("detrainment = True", "detrainment: 'True' is not available; allowed: false"),
+        ("detK = -1", "detk: '-1'; allowed: at least 0"),
+        ("restitutionCoefficient = 2", "restitutioncoefficient: '2'; allowed: at least 0 and at"),
+        ("nIterDam = 3", "niterdam: '3' is not available; allowed: 1"),
+        ("adaptSfcStopped = 1", "adaptsfcstopped: '1' is not available; allowed: 0"),
+        ("timeDependentRelease = True", "timeDependentRelease needs a table (*.csv) here"),
         ("ResistanceModel = cRes", "resistancemodel: 'cRes' is not available"),
         ("frictModel = samosAT", "frictmodel: 'samosAT' is not available; allowed: Voellmy, Coul"),
         ("muvoelmy = 0.4", "unknown key; did you mean"),
@@ -155,19 +159,11 @@ def test_the_ini_chooses_among_types_and_releases(tmp_path):
 
 @pytest.mark.parametrize(
     ("folder", "message"),
-    [("SECREL", "secondary release areas are not available"), ("DAM", "dams are not available")],
-)
-def test_unavailable_features_are_refused_unless_switched_off(tmp_path, folder, message):
-    project = write_project(tmp_path)
-    write_polygons(project / "Inputs" / folder / "more.geojson", thickness=1)
-    with pytest.raises(InputError, match=message):
-        avaframe_scene(project)
-    assert avaframe_scene(write_project(tmp_path, "secRelArea = False\ndam = False\n"))
-
-
-@pytest.mark.parametrize(
-    ("folder", "message"),
-    [("REL", "takes no release from a raster"), ("ENT", "are taken from polygons only")],
+    [
+        ("REL", "takes no release from a raster"),
+        ("ENT", "are taken from polygons only"),
+        ("SECREL", "are taken from polygons only"),
+    ],
 )
 def test_rasters_of_areas_are_refused(tmp_path, folder, message):
     project = write_project(tmp_path)

@@ -56,6 +56,13 @@ class ProjectSettings:
         Maps to write, and their times before the end, s.
     with_dam, with_secondary_release
         Whether to take dams and secondary release areas, if there are any.
+    restitution
+        Restitution of dams.
+    secondary_thickness
+        Thickness of all secondary release areas [m]; None: from the file.
+    hydrographs
+        Names of the tables of a time-dependent release; empty: all in the folder REL. None: the
+        release does not depend on time.
     positions
         Positions of the values in the ini, by their names.
     """
@@ -71,6 +78,9 @@ class ProjectSettings:
     saved_times: tuple[float, ...] = ()
     with_dam: bool = True
     with_secondary_release: bool = True
+    restitution: float = 1.0
+    secondary_thickness: Optional[float] = None
+    hydrographs: Optional[tuple[str, ...]] = None
     positions: dict[str, str] = field(default_factory=dict)
 
     def located(self, error: InputError) -> InputError:
@@ -117,6 +127,10 @@ def read_ini(file: Optional[Path]) -> ProjectSettings:
     project.positions["saved_times"] = given.where("tsteps")
     project.with_dam = given.switch("dam", True)
     project.with_secondary_release = given.switch("secrelarea", True)
+    project.secondary_thickness = _forced_thickness(given, "secondaryrelth")
+    project.values["detrainment"] = _detrainment(given)
+    project.restitution = _restitution(given, project.with_dam)
+    project.hydrographs = _hydrographs(given)
     _check_kernel_radius(given, project.values["cell"])
     given.refuse_the_rest()
     return project
@@ -297,6 +311,37 @@ def _forced_thickness(given: _Keys, key: str) -> Optional[float]:
             return given.thickness("entthifmissinginshp", 0.3)
         raise InputError(f"{given.where(key)}: missing, though {key}fromfile is False")
     return given.thickness(key)
+
+
+def _detrainment(given: _Keys) -> float:
+    """Return Feistl's coefficient, Pa; 0 without detrainment."""
+    coefficient = given.setting("detk", "detrainment", 5.0)
+    return coefficient if given.switch("detrainment") else 0.0
+
+
+def _restitution(given: _Keys, with_dam: bool) -> float:
+    """Return the restitution of dams; AvaFrame cuts it to a whole number."""
+    value = given.number("restitutioncoefficient", 1.0, least=0.0, most=1.0)
+    if not with_dam:
+        return value
+    for key in ("niterdam", "dissdam"):
+        if given.number(key, 1.0) != 1.0:
+            raise InputError(
+                f"{given.where(key)}: {quoted(given.text(key))} is not available; allowed: 1"
+            )
+    return value
+
+
+def _hydrographs(given: _Keys) -> Optional[tuple[str, ...]]:
+    if not given.switch("timedependentrelease"):
+        return None
+    if given.number("thresholdpointinrel", 0.01) != 0.01:
+        raise InputError(
+            f"{given.where('thresholdpointinrel')}: {quoted(given.text('thresholdpointinrel'))} is "
+            "not available; allowed: 0.01"
+        )
+    names = given.text("timedependentreleasescenarios").split("|")
+    return tuple(name.strip().removesuffix(".csv") for name in names if name.strip())
 
 
 def _result_types(given: _Keys) -> tuple[str, ...]:

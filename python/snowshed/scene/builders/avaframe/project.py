@@ -16,6 +16,11 @@ from snowshed.io.raster.areas import read_areas
 from snowshed.io.raster.raster import GEOTIFF, read_raster, write_ascii_grid
 from snowshed.io.raster.resampling import resampled_raster
 from snowshed.methods.slide.settings import SlideSettings
+from snowshed.scene.builders.avaframe.events import (
+    set_dam,
+    set_inflows,
+    time_dependent_release,
+)
 from snowshed.scene.builders.avaframe.files import InputFile, check_own_file, project_inputs
 from snowshed.scene.builders.avaframe.ini import SIM_TYPES, ProjectSettings, read_ini
 from snowshed.scene.builders.slides import slide_scene
@@ -39,6 +44,8 @@ class AvaFrameSimulation:
         Name of the release file, without ending.
     sim_type
         "entres", "ent", "res" or "null": with areas of entrainment, of resistance, or neither.
+    hydrograph
+        Name of the table of a time-dependent release, without ending; empty: none.
     project
         The settings of the ini file.
     folder
@@ -59,6 +66,7 @@ class AvaFrameSimulation:
     files: Mapping[str, Optional[Path]]
     inputs: Sequence[InputFile]
     terrain: Path
+    hydrograph: str = ""
 
 
 def avaframe_simulations(
@@ -70,15 +78,15 @@ def avaframe_simulations(
 ) -> list[AvaFrameSimulation]:
     """Return the simulations of an AvaFrame project folder, in the compatible mode.
 
-    Every combination of a release file and a type of simulation gives a simulation; the first one
-    has all requested areas.
+    Every combination of a release file, a type of simulation and, if the release depends on time, a
+    hydrograph gives a simulation; the first one has all requested areas.
 
     Parameters
     ----------
     folder
         The project: ``Inputs`` with the terrain (.asc or .tif), ``REL`` and, where there are any,
-        ``ENT`` and ``RES``; the ini of com5SnowSlide, if any, in ``Inputs/CFGs``, ``Inputs`` or the
-        folder.
+        ``ENT``, ``RES``, ``SECREL`` and ``DAM``; the ini of com5SnowSlide, if any, in
+        ``Inputs/CFGs``, ``Inputs`` or the folder.
     settings
         Settings that override those of the ini, by their names in `SlideSettings`.
     thickness
@@ -105,26 +113,40 @@ def avaframe_simulations(
     project.values["mode"] = "compatible"
     if thickness is not None:
         project.release_thickness = thickness
-    _refuse_what_is_not_done(inputs, project)
     areas = {
         "ent": _one_if_any(inputs / "ENT", "entrainment"),
         "res": _one_if_any(inputs / "RES", "resistance"),
+        "secrel": None,
+        "dam": None,
     }
+    if project.with_secondary_release:
+        areas["secrel"] = _one_if_any(inputs / "SECREL", "secondary release")
+    if project.with_dam:
+        areas["dam"] = _one_if_any(inputs / "DAM", "dams")
     raster = _only_file(inputs, RASTERS, "terrain")
     terrain = _terrain(raster, project, ascii_copy)
     _check_saved_maps(terrain, project)
     return [
         AvaFrameSimulation(
-            _scene(root, raster, terrain, release, areas, sim_type, project, ascii_copy),
+            _scene(root, raster, terrain, release, areas, sim_type, project, ascii_copy, table),
             release.stem,
             sim_type,
             project,
             root,
-            {"release": release, "entrainment": areas["ent"], "resistance": areas["res"]},
+            {
+                "release": release,
+                "entrainment": areas["ent"],
+                "resistance": areas["res"],
+                "secondary_release": areas["secrel"],
+                "dams": areas["dam"],
+                "inflows": table,
+            },
             own,
             raster,
+            "" if table is None else table.stem,
         )
         for release in _releases(inputs / "REL", project)
+        for table in _hydrographs(inputs / "REL", project)
         for sim_type in _sim_types(project, areas, inputs)
     ]
 
@@ -156,28 +178,40 @@ def _scene(
     sim_type: str,
     project: ProjectSettings,
     ascii_copy: Optional[PathLike],
+    hydrograph: Optional[Path],
 ) -> Scene:
+    pulses = None if hydrograph is None else time_dependent_release(hydrograph, project)
     entrainment = areas["ent"] if sim_type.startswith("ent") else None
     resistance = areas["res"] if sim_type.endswith("res") else None
     scene = slide_scene(
         terrain,
         release,
-        thickness=project.release_thickness,
+        thickness=project.release_thickness if pulses is None else pulses[0].thickness,
         entrainment=entrainment,
         entrained_thickness=_entrained_thickness(entrainment, project),
         resistance=resistance,
+        secondary_release=areas["secrel"],
+        secondary_thickness=project.secondary_thickness,
+        dams=areas["dam"],
         settings=SlideSettings.from_data(project.values),
         ascii_copy=ascii_copy,
         title=f"{root.resolve().name} (AvaFrame)",
         max_cells=MAX_RASTER_CELLS,
     )
     if scene.terrain is not None:
-        for area in (*(scene.terrain.release or ()), *(scene.terrain.entrainment or ())):
+        for area in (
+            *(scene.terrain.release or ()),
+            *(scene.terrain.entrainment or ()),
+            *(scene.terrain.secondary_release or ()),
+        ):
             if area.holes:
                 raise InputError(f"{area.name}: has a hole, which AvaFrame does not allow")
         # AvaFrame reads GeoTIFF in double precision, also its own resampled files.
         if raster.suffix.lower() in GEOTIFF:
             scene.terrain.single_precision = False
+        set_dam(scene.terrain, project, areas["dam"])
+        if pulses is not None:
+            set_inflows(scene.terrain, pulses)
     return scene.set("events.max_time", project.max_time)
 
 
@@ -259,16 +293,18 @@ def _sim_types(
     return [name for name in SIM_TYPES if name in wanted]
 
 
-def _refuse_what_is_not_done(inputs: Path, project: ProjectSettings) -> None:
-    secondary = _files(inputs / "SECREL", (*POLYGONS, *RASTERS))
-    if secondary and project.with_secondary_release:
-        raise InputError(
-            f"{secondary[0]}: secondary release areas are not available; set secRelArea = False to "
-            "leave them out"
-        )
-    dams = _files(inputs / "DAM", POLYGONS)
-    if dams and project.with_dam:
-        raise InputError(f"{dams[0]}: dams are not available; set dam = False to leave them out")
+def _hydrographs(folder: Path, project: ProjectSettings) -> list[Optional[Path]]:
+    """Return the tables of a time-dependent release; [None] without one."""
+    if project.hydrographs is None:
+        return [None]
+    files = {file.stem: file for file in _files(folder, ("*.csv",))}
+    for name in project.hydrographs:
+        if name not in files:
+            raise InputError(f"{folder}: no hydrograph {quoted(name)}.csv")
+    chosen = [files[name] for name in project.hydrographs] or list(files.values())
+    if not chosen:
+        raise InputError(f"{folder}: timeDependentRelease needs a table (*.csv) here")
+    return list(chosen)
 
 
 def _find_ini(*folders: Path) -> Optional[Path]:
