@@ -70,6 +70,7 @@ DEFERRED = (
     ("calibrate", "calibrate", "Find the snow whose simulated stacks agree with measured ones."),
     ("view", "view", "Write the moving view of a run as a page, or as a video."),
     ("grid", "grid", "Write the grid's mass, velocity and density for ParaView."),
+    ("maps", "maps", "Write the maps of a slide as NetCDF."),
     ("vdb", "vdb", "Write the snow of a run as OpenVDB files."),
     ("self-test", "self_test", "Test this installation against known answers, in seconds."),
     ("reproduce", "reproduce", "Reproduce a publication; needs the source of snowshed."),
