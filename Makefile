@@ -36,10 +36,10 @@ SHELL := bash
 
 CORE := CMakeLists.txt pyproject.toml $(shell find cmake cpp/apps cpp/bindings cpp/snowshed cpp/vdb -type f)
 CPP_FILES = $(shell find cpp -name '*.[ch]pp')
-PYTHON_FOLDERS := python reproductions validation tests tools examples benchmarks lua_compat
+PYTHON_FOLDERS := python reproductions validation tests tools examples benchmarks lua_compat qgis
 
 .PHONY: help build release demo validation thesis test test-cpp test-py test-slow sanitize sanitize-address \
-  sanitize-thread fuzz mutants bench docs components format lint tidy clean
+  sanitize-thread fuzz mutants bench docs qgis components format lint tidy clean
 .NOTPARALLEL:
 
 help:
@@ -54,6 +54,7 @@ help:
 	@echo "make bench      speed of the solver and of the laboratory events, kept in benchmarks/results"
 	@echo "make docs       the documentation as HTML"
 	@echo "make release    a source distribution, and a wheel that is tried in a clean environment"
+	@echo "make qgis       the QGIS plugin as an archive that QGIS installs"
 	@echo "make components the scene's components in Python, from the core's description"
 	@echo "make format     format all sources"
 	@echo "make lint       check format, style and types (tidy: clang-tidy, slow)"
@@ -209,6 +210,12 @@ bench: build
 docs: build $(VENV)/.docs-tools
 	$(BIN)/sphinx-build -W --keep-going -b html docs build/docs
 	@echo "Open build/docs/index.html"
+
+# The styles have the colours of the project's pictures.
+qgis: build
+	$(BIN)/python -m tools.qgis_styles
+	$(BIN)/python -m tools.qgis_archive build/snowshed_qgis.zip
+	@echo "Install it in QGIS: Plugins, Install from ZIP: $(CURDIR)/build/snowshed_qgis.zip"
 
 # The fields of the scene's components in Python, from the core's description of a scene.
 components: build $(VENV)/.dev-tools

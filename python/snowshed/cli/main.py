@@ -1,7 +1,8 @@
 """The command line: the list of commands, and their exit codes.
 
 ``panel|run|lua`` run a scene, ``slide`` a slide on terrain, ``grains`` a loading test of segmented
-snow. ``scene|structure|schema`` describe a scene. ``study`` computes many runs, ``season`` a
+snow. ``release-areas`` finds candidates for the release of slides.
+``scene|structure|schema`` describe a scene. ``study`` computes many runs, ``season`` a
 winter, and ``clearance`` many winters, to find the height that a panel needs.
 ``compare|sensitivity|calibrate`` answer questions about runs, and ``geometry|regress|predict``
 treat the data set of panels.
@@ -51,6 +52,7 @@ DEFERRED = (
     ("run", "run", "Run a scene file."),
     ("extend", "extend", "Add slide-offs to a finished run, in a new folder."),
     ("slide", "slide", "Run a small snow slide on terrain."),
+    ("release-areas", "release_areas", "Find candidate release areas by the terrain's shape."),
     ("grains", "grains", "Segment images of snow, and run loading tests of its grains."),
     ("scene", "scene", "Write the scene that the same options of panel would run."),
     ("structure", "structure", "Write scenes of roofs, rows, tables, trackers and terrain."),
@@ -68,6 +70,7 @@ DEFERRED = (
     ("calibrate", "calibrate", "Find the snow whose simulated stacks agree with measured ones."),
     ("view", "view", "Write the moving view of a run as a page, or as a video."),
     ("grid", "grid", "Write the grid's mass, velocity and density for ParaView."),
+    ("maps", "maps", "Write the maps of a slide as NetCDF."),
     ("vdb", "vdb", "Write the snow of a run as OpenVDB files."),
     ("self-test", "self_test", "Test this installation against known answers, in seconds."),
     ("reproduce", "reproduce", "Reproduce a publication; needs the source of snowshed."),

@@ -13,13 +13,20 @@ from snowshed.cli.exit_codes import Stopped
 from snowshed.cli.options.check import check_can_be_measured, check_run
 from snowshed.cli.output.dry_run import print_cost
 from snowshed.cli.output.terminal import say
+from snowshed.io.raster.output import MapFormat
 from snowshed.methods.registry import DEFAULT, SETTINGS_KEY, method_of
 from snowshed.scene.scene import ResolvedScene
 
 ANNOUNCED_FROM_S = 600.0  # s; longer runs are announced
 
 
-def run_scene(resolved: ResolvedScene, folder: Path, resume: bool, quiet: bool) -> None:
+def run_scene(
+    resolved: ResolvedScene,
+    folder: Path,
+    resume: bool,
+    quiet: bool,
+    map_format: MapFormat = "ascii",
+) -> None:
     """Run a scene into a folder with a progress bar, and print its results."""
     from snowshed.cli.output.progress import progress_bar
     from snowshed.running.run import run
@@ -29,7 +36,7 @@ def run_scene(resolved: ResolvedScene, folder: Path, resume: bool, quiet: bool) 
     try:
         with progress_bar(quiet=quiet) as show:
             progress = None if show is None else announcing_long_run(resolved, show)
-            results = run(resolved, folder, resume=resume, progress=progress)
+            results = run(resolved, folder, resume=resume, progress=progress, map_format=map_format)
     except Interrupted as interrupted:
         raise Stopped(str(interrupted)) from None
     if not quiet:
@@ -46,6 +53,7 @@ def run_or_cost(
     dry_run: bool,
     quiet: bool,
     check: bool = False,
+    map_format: MapFormat = "ascii",
 ) -> None:
     """Run a scene as `run_scene` does; a dry run prints its cost only.
 
@@ -53,13 +61,15 @@ def run_or_cost(
     ----------
     check
         Whether to measure the error of the stack, too.
+    map_format
+        Format of the maps, if the method has them.
     """
     if check:
         check_can_be_measured(resolved)
     if dry_run:
         print_cost(resolved)
         return
-    run_scene(resolved, folder, resume, quiet)
+    run_scene(resolved, folder, resume, quiet, map_format)
     if check:
         check_run(folder, quiet)
 

@@ -17,6 +17,7 @@ from snowshed.cli.options.slide_files import notes_for_summary, refuse_changed_a
 from snowshed.cli.output.dry_run import print_cost
 from snowshed.cli.output.terminal import say
 from snowshed.cli.run_scene import run_scene
+from snowshed.io.raster.output import MapFormat
 from snowshed.scene.builders.terrain_copy import copies_removed_on_failure, terrain_copy
 from snowshed.scene.scene import ResolvedScene
 
@@ -34,6 +35,7 @@ def run_project(
     thickness: Optional[float],
     max_time: Optional[float],
     steps: Sequence[int],
+    map_format: MapFormat = "ascii",
 ) -> None:
     """Run the simulations of an AvaFrame project.
 
@@ -66,7 +68,7 @@ def run_project(
                 if resumes:
                     refuse_changed_areas(scenes[number], results, simulation.files)
                 with _locating_in_ini(simulation), deferred_interrupts() as interrupt:
-                    run_scene(scenes[number], results, resumes, quiet)
+                    run_scene(scenes[number], results, resumes, quiet, map_format)
                 if interrupt.requested:  # an interrupt came while pictures were drawn
                     raise KeyboardInterrupt
                 _write_outputs(simulation, folder, results, scenes[number], steps)

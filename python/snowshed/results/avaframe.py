@@ -33,7 +33,7 @@ from snowshed.base.messages import csv_cell, printable
 from snowshed.io.atomic import write_text
 from snowshed.io.raster.output import write_raster
 from snowshed.io.raster.raster import GEOTIFF, Raster, read_raster
-from snowshed.methods.slide.maps import SlideMaps, slide_maps
+from snowshed.methods.slide.maps import RASTERS, SlideMaps, map_file, slide_maps
 from snowshed.methods.slide.summary import SlideSummary
 from snowshed.scene.builders.avaframe.project import AvaFrameSimulation
 from snowshed.scene.scene import ResolvedScene
@@ -150,8 +150,10 @@ def particle_table(quantities: Mapping[str, Numbers]) -> pd.DataFrame:
 
 def _final_maps(results: Path, resolved: ResolvedScene) -> dict[str, Raster]:
     """Return the maps at the end by type, from a results folder."""
-    maps = {kind: read_raster(results / f"peaks/{kind}.asc") for kind in ("ppr", "pft", "pfv")}
-    maps.update({kind: read_raster(results / f"flow/{kind}.asc") for kind in ("FT", "FV")})
+    maps = {
+        stem.rpartition("/")[2]: read_raster(map_file(results, name))
+        for name, stem in RASTERS.items()
+    }
     maps["P"] = replace(maps["FV"], heights=_pressure(resolved, maps["FV"].heights))
     crs = _crs(resolved)
     return {kind: replace(raster, crs=crs) for kind, raster in maps.items()}

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Optional, Union
 
 import snowshed._core as _core
 from snowshed.io.csv_table import Table
+from snowshed.io.raster.output import MapFormat
 from snowshed.results.energies import draw_energies, write_energy_history
 from snowshed.results.folder import ENERGY, RunFolder
 from snowshed.results.reader import HISTORY, Results
@@ -29,6 +30,7 @@ class RunOptions:
     ageing: Optional[Ageing] = None
     pictures: bool = True
     compact: bool = False
+    map_format: MapFormat = "ascii"
 
 
 class MethodRun:

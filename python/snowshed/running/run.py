@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Optional
 
 import snowshed._core as _core
 from snowshed.base.arguments import checked
+from snowshed.base.extras import require
 from snowshed.base.interrupt import Interrupted, InterruptRequest, deferred_interrupts
 from snowshed.base.log import LOGGER
 from snowshed.base.machine import machine_facts
@@ -23,6 +24,8 @@ from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Progress, Reporter
 from snowshed.io.folders import check_empty
+from snowshed.io.raster.output import MapFormat
+from snowshed.methods.method import Method
 from snowshed.methods.registry import method_of
 from snowshed.results.reader import Results
 from snowshed.results.replacement import replaced_results
@@ -56,6 +59,7 @@ def run(
     progress: Optional[Reporter] = None,
     pictures: bool = True,
     compact: bool = False,
+    map_format: MapFormat = "ascii",
 ) -> Results:
     """Simulate a scene of any method, and write a results folder.
 
@@ -86,6 +90,9 @@ def run(
     compact
         Whether to leave out large files that follow from smaller ones, as in a study of many runs:
         for a slide, ``peaks.npz`` replaces the rasters.
+    map_format
+        Format of maps, for a method that has them: "ascii", or "geotiff" (extra ``terrain``), which
+        is compressed and exact.
 
     Returns
     -------
@@ -95,8 +102,9 @@ def run(
     Raises
     ------
     InputError
-        If the scene is wrong, the folder is not empty, there is nothing to resume, or the method
-        has no stack that could age; nothing has been written then.
+        If the scene is wrong, the folder is not empty, there is nothing to resume, the method has
+        no stack that could age or no maps, or rasterio is missing for GeoTIFF; nothing has been
+        written then.
     SimulationError
         If the simulation cannot continue; a checkpoint holds its last good state.
     Interrupted
@@ -117,8 +125,9 @@ def run(
         if resume or overwrite:
             raise _core.InputError("folder: missing; resume and overwrite need it")
         return _run_in_temporary_folder(
-            scene, ageing=ageing, laws=laws, progress=progress, pictures=pictures, compact=compact
-        )
+            scene, ageing=ageing, laws=laws, progress=progress, pictures=pictures, compact=compact,
+            map_format=map_format,
+        )  # fmt: skip
     resolved, recorded = resolve_scene(scene), recorded_run(scene)
     method = method_of(resolved.data)
     if recorded is not None:
@@ -134,7 +143,9 @@ def run(
         raise _core.InputError("resume, overwrite: give one of the two")
     if not resume and not overwrite:
         check_empty(folder, NOT_EMPTY)
-    options = RunOptions(resume, ageing, pictures, compact)
+    if map_format != "ascii":
+        _check_maps(method, map_format)
+    options = RunOptions(resume, ageing, pictures, compact, map_format)
     replaced = replaced_results(folder) if overwrite else nullcontext()
     with replaced, kept_inputs(resolved, folder) as resolved:
         sequence = open_sequence(resolved, folder, resume=resume, laws=laws)
@@ -155,6 +166,13 @@ def run(
     if pictures:
         method_run.draw()
     return Results.of_run(folder, resolved)
+
+
+def _check_maps(method: Method, map_format: MapFormat) -> None:
+    """Refuse a format of maps that the run could not write at its end."""
+    if "maps" not in method.results:
+        raise _core.InputError(f'map_format: the method "{method.name}" has no maps')
+    require("rasterio", "terrain", f"the format {map_format} of maps")
 
 
 def _title(scene: ResolvedScene) -> str:

@@ -1,4 +1,4 @@
-"""Maps of many slides: the probability that snow reaches a place, and its intensity."""
+"""Candidate release areas, and maps of many slides: the probability and intensity of snow."""
 
 import lazy_loader as _lazy
 

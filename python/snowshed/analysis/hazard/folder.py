@@ -2,8 +2,8 @@
 
 ================ ============================================================================
 probability/     share of the runs in which a value is exceeded, and the ends of its 95 % interval
-                 (``_low``, ``_high``), as ESRI ASCII grids,
-                 with their coordinate system in a .prj where it is known
+                 (``_low``, ``_high``), as ESRI ASCII grids, with their coordinate system in a .prj
+                 where it is known, or as GeoTIFF
 percentiles/     percentiles of peak thickness (pft, m), speed (pfv, m/s), pressure (ppr, kPa)
 hazard.json      runs, areas by probability, intervals, percentiles of the figures of the slides
 hazard.png       the probability of being reached, on the terrain
@@ -35,7 +35,7 @@ from snowshed.analysis.hazard.maps import (
 from snowshed.base.arrays import Floats
 from snowshed.base.paths import PathLike
 from snowshed.io.atomic import write_text
-from snowshed.io.raster.output import write_raster
+from snowshed.io.raster.output import ENDINGS, MapFormat, write_raster
 from snowshed.methods.registry import SETTINGS_KEY
 from snowshed.methods.slide.validity import MAX_BROKEN_SHARE, release_areas, validity_notes
 from snowshed.plot.figure_style import save_figure
@@ -62,6 +62,7 @@ def write_hazard(
     *,
     reached: float = REACHED_THICKNESS,
     pressures: Sequence[float] = PRESSURES,
+    map_format: MapFormat = "ascii",
 ) -> HazardMaps:
     """Write the maps of a study of slides into a folder, and return them.
 
@@ -71,8 +72,10 @@ def write_hazard(
         Folder of the files.
     store, study, reached, pressures
         As for `hazard_maps`, which raises the same errors.
+    map_format
+        Format of the rasters.
     """
-    place = Path(folder)
+    place, suffix = Path(folder), ENDINGS[map_format]
     maps = hazard_maps(store, study, reached=reached, pressures=pressures)
     for exceedance in maps.exceedances:
         for ending, values in (
@@ -80,9 +83,11 @@ def write_hazard(
             ("_low", exceedance.lower),
             ("_high", exceedance.upper),
         ):
-            _write(place / "probability" / f"{exceedance.name}{ending}.asc", maps, values)
+            _write(place / "probability" / f"{exceedance.name}{ending}{suffix}", maps, values)
     for (quantity, percentile), values in maps.percentiles.items():
-        _write(place / "percentiles" / f"{QUANTITIES[quantity][1]}_p{percentile}.asc", maps, values)
+        _write(
+            place / "percentiles" / f"{QUANTITIES[quantity][1]}_p{percentile}{suffix}", maps, values
+        )
     table = read_table(store, study)
     with Store.open(store) as opened:
         scene = scene_data(opened.runs(study)[0].scene)

@@ -7,11 +7,12 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, Optional
+from typing import Any, Optional, get_args
 
 import click
 
 from snowshed._core import InputError
+from snowshed.base.extras import require
 from snowshed.base.notes import held_notes, issue_notes_on_failure, record_notes
 from snowshed.cli.commands.slide_ranges import (
     RangeOptions,
@@ -31,6 +32,7 @@ from snowshed.cli.options.slide_files import (
 )
 from snowshed.cli.run_scene import run_or_cost
 from snowshed.cli.slide_project import print_project_cost, run_project, write_particles
+from snowshed.io.raster.output import MapFormat
 from snowshed.scene.builders.terrain_copy import copies_removed_on_failure
 from snowshed.scene.scene import ResolvedScene
 
@@ -44,6 +46,7 @@ class SlideOptions:
     max_time: Optional[float]
     ranges: RangeOptions
     steps: Sequence[int]
+    map_format: MapFormat
     resume: bool
     dry_run: bool
     quiet: bool
@@ -56,6 +59,13 @@ class SlideOptions:
 @click.option("--example", is_flag=True, help="Run the example: a slide on a synthetic slope.")
 @click.option("--compatible", is_flag=True, help="Reproduce the steps of AvaFrame 2.1.")
 @click.option("--max-time", type=float, help="Longest duration of the slide [s].")
+@click.option(
+    "--map-format",
+    type=click.Choice(get_args(MapFormat)),
+    default="ascii",
+    show_default=True,
+    help="Format of the maps; geotiff is compressed.",
+)
 @click.option("--particles-at", metavar="STEPS", help="Write the particles after these steps.")
 @range_options
 @settings_options("slide", without=["mode"])
@@ -69,6 +79,7 @@ def slide(
     compatible: bool,
     max_time: Optional[float],
     particles_at: Optional[str],
+    map_format: MapFormat,
     **others: Any,
 ) -> None:
     """Run a small snow slide on terrain, and write the maps of its peak speed and thickness.
@@ -83,8 +94,18 @@ def slide(
     files, ranges = SlideFiles.pop_from(others), RangeOptions.pop_from(others)
     settings = given_values(others) | ({"mode": "compatible"} if compatible else {})
     options = SlideOptions(
-        example, settings, max_time, ranges, _steps(particles_at), resume, dry_run, quiet
+        example,
+        settings,
+        max_time,
+        ranges,
+        _steps(particles_at),
+        map_format,
+        resume,
+        dry_run,
+        quiet,
     )
+    if map_format == "geotiff":
+        require("rasterio", "terrain", "the format geotiff of maps")
     if example or avaframe is not None:
         files.refuse_terrain_options()
     with _results_folder(folder, dry_run) as results:
@@ -109,11 +130,25 @@ def _run_or_cost_project(
         "max_time": options.max_time,
     }
     if options.ranges.sample is not None:
-        run_project_ranges(project, results, options.ranges, dry_run=options.dry_run, **common)
+        run_project_ranges(
+            project,
+            results,
+            options.ranges,
+            dry_run=options.dry_run,
+            map_format=options.map_format,
+            **common,
+        )
     elif options.dry_run:
         print_project_cost(project, results, **common)
     else:
-        run_project(project, results, resume=options.resume, steps=options.steps, **common)
+        run_project(
+            project,
+            results,
+            resume=options.resume,
+            steps=options.steps,
+            map_format=options.map_format,
+            **common,
+        )
 
 
 def _run_or_cost_files(
@@ -136,14 +171,28 @@ def _run_or_cost_files(
         if options.max_time is not None:
             scene.set("events.max_time", options.max_time)
         if sampled:
-            run_ranges(scene, results, options.ranges, dry_run=dry_run, quiet=quiet)
+            run_ranges(
+                scene,
+                results,
+                options.ranges,
+                dry_run=dry_run,
+                quiet=quiet,
+                map_format=options.map_format,
+            )
             return None
         resolved = scene.resolve()
         if options.resume and not dry_run:
             refuse_changed_areas(resolved, results, files.area_files())
         in_summary = [] if dry_run else notes_for_summary(notes, scene)
     with issue_notes_on_failure(in_summary):
-        run_or_cost(resolved, results, resume=options.resume, dry_run=dry_run, quiet=quiet)
+        run_or_cost(
+            resolved,
+            results,
+            resume=options.resume,
+            dry_run=dry_run,
+            quiet=quiet,
+            map_format=options.map_format,
+        )
     return None if dry_run else resolved
 
 

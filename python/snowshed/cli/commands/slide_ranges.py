@@ -16,6 +16,7 @@ from snowshed.cli.exit_codes import Failed, Stopped
 from snowshed.cli.options.common import jobs_option, same_version_option
 from snowshed.cli.options.number_texts import named_span, numbers
 from snowshed.cli.output.terminal import PlainConsole, say
+from snowshed.io.raster.output import MapFormat
 from snowshed.methods.slide.settings import SlideSettings
 from snowshed.scene.builders.terrain_copy import copies_removed_on_failure, terrain_copy
 from snowshed.scene.scene import Scene
@@ -98,7 +99,13 @@ def range_options(command: Any) -> Any:
 
 
 def run_ranges(
-    scene: Scene, folder: Path, options: RangeOptions, *, dry_run: bool, quiet: bool
+    scene: Scene,
+    folder: Path,
+    options: RangeOptions,
+    *,
+    dry_run: bool,
+    quiet: bool,
+    map_format: MapFormat = "ascii",
 ) -> None:
     """Compute the slides of a sample of the ranges, and write their maps of probability.
 
@@ -123,7 +130,12 @@ def run_ranges(
     except Stopped:
         raise Stopped("interrupted; resume with the same command") from None
     maps = write_hazard(
-        folder, folder / RUNS, STUDY, reached=options.reached_above, pressures=options.pressures
+        folder,
+        folder / RUNS,
+        STUDY,
+        reached=options.reached_above,
+        pressures=options.pressures,
+        map_format=map_format,
     )
     if not quiet:
         print_hazard(maps, folder)
@@ -141,6 +153,7 @@ def run_project_ranges(
     settings: Mapping[str, object],
     thickness: Optional[float],
     max_time: Optional[float],
+    map_format: MapFormat = "ascii",
 ) -> None:
     """Run many slides of the first simulation of an AvaFrame project, and map probabilities."""
     from snowshed.scene.builders.avaframe.project import avaframe_simulations
@@ -153,7 +166,9 @@ def run_project_ranges(
             first.scene.set("events.max_time", max_time)
         if others and not quiet:
             say(f"{first.release}, {first.sim_type}; {len(others)} other simulations are left out")
-        run_ranges(first.scene, folder, options, dry_run=dry_run, quiet=quiet)
+        run_ranges(
+            first.scene, folder, options, dry_run=dry_run, quiet=quiet, map_format=map_format
+        )
 
 
 def _study(scene: Scene, options: RangeOptions) -> Study:

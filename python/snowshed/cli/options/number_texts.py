@@ -1,4 +1,4 @@
-"""Numbers in the texts of options: lists, ranges with a step, and named spans."""
+"""Numbers in the texts of options: lists, ranges with a step, and spans."""
 
 from __future__ import annotations
 
@@ -49,6 +49,37 @@ def _parse_steps(text: str) -> list[float]:
     if not (step > 0 and 1 <= count <= MAX_STEPS):
         raise ValueError
     return [round(low + n * step, 9) for n in range(count)]
+
+
+def span(option: str, text: str, *, example: str) -> tuple[float, float]:
+    """Return the ends of a span LOW:HIGH.
+
+    Parameters
+    ----------
+    option
+        The option, for the error.
+    text
+        The text.
+    example
+        An example of a span, for the error.
+
+    Raises
+    ------
+    InputError
+        If the text has another form.
+
+    Examples
+    --------
+    >>> span("--slope", "28:60", example="28:60")
+    (28.0, 60.0)
+    """
+    try:
+        low, high = (float(end) for end in text.split(":"))
+    except ValueError:
+        raise InputError(
+            f"{option}: {text!r} is not of the form LOW:HIGH, such as {example}"
+        ) from None
+    return low, high
 
 
 def named_span(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
@@ -90,7 +90,8 @@ def areas_of(polygons: object, *, name: str) -> list[MapArea]:
     Parameters
     ----------
     polygons
-        Shapely polygons, or a GeoDataFrame, whose columns ``name`` and ``thickness`` [m] are read.
+        Shapely polygons; a GeoDataFrame, whose columns ``name`` and ``thickness`` [m] are read; or
+        areas such as those of `snowshed.analysis.hazard.find_release_areas`.
     name
         Name for areas without one, and for messages.
 
@@ -99,6 +100,8 @@ def areas_of(polygons: object, *, name: str) -> list[MapArea]:
     InputError
         If something else is among them, or a polygon is empty or crosses itself.
     """
+    if isinstance(polygons, Sequence) and polygons and isinstance(polygons[0], MapArea):
+        return list(polygons)
     system = _system(polygons)
     areas: list[MapArea] = []
     for number, (shape, own, thickness) in enumerate(_shapes(polygons), start=1):

@@ -1,9 +1,10 @@
-"""Rasters of results in the format of the terrain: ESRI ASCII grid or GeoTIFF."""
+"""Rasters of results: ESRI ASCII grids, or compressed GeoTIFF."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -14,12 +15,19 @@ from snowshed.io.atomic import replacing
 from snowshed.io.coordinates.systems import system_of, write_prj
 from snowshed.io.raster.raster import Raster, write_ascii_grid
 
+#: Formats of the maps of results.
+MapFormat = Literal["ascii", "geotiff"]
+#: Endings of their files.
+ENDINGS: Mapping[str, str] = {"ascii": ".asc", "geotiff": ".tif"}
+TILE = 256  # cells along the sides of the tiles of a GeoTIFF; smaller rasters have strips
+
 
 @checked
 def write_raster(path: PathLike, raster: Raster) -> None:
     """Write a raster with its coordinate system, as GeoTIFF or ASCII grid by the name's suffix.
 
-    An ASCII grid has its coordinate system in a .prj beside it.
+    A GeoTIFF is compressed without loss (deflate), in double precision, with NaN as NODATA. An
+    ASCII grid has nine digits, and its coordinate system in a .prj beside it.
 
     Raises
     ------
@@ -51,7 +59,10 @@ def _write_geotiff(file: Path, raster: Raster) -> None:
         "crs": system_of(raster.crs),
         "transform": transform,
         "nodata": np.nan,
-        "compress": "lzw",
+        "compress": "deflate",
+        "predictor": 3,  # bytes of floating-point numbers, sorted by their place
     }
+    if min(rows, columns) >= TILE:
+        options.update(tiled=True, blockxsize=TILE, blockysize=TILE)
     with replacing(file) as beside, rasterio.open(beside, "w", driver="GTiff", **options) as target:
         target.write(raster.heights[::-1], 1)

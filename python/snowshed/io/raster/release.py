@@ -6,19 +6,16 @@ They need the extra snowshed[terrain].
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from snowshed._core import InputError
 from snowshed.base.arrays import Booleans
-from snowshed.base.extras import require
 from snowshed.base.limits import MAX_CELLS_TIMES_CORNERS, MAX_RELEASE_CORNERS, MAX_SNOW_CELLS
 from snowshed.io.raster.areas import MapArea
+from snowshed.io.raster.cell_outlines import cell_outlines, corner_count
 from snowshed.io.raster.raster import Raster
 
-#: Areas that touch at a corner are separated by this share of a cell.
-AREA_GAP = 1e-7
 #: Thicknesses from here on are codes for missing values, m.
 MAX_THICKNESS = 100.0
 
@@ -66,46 +63,25 @@ def areas_of_depth(depth: Raster) -> list[MapArea]:
     part = snow_part(depth)
     snow = part.heights > 0
     _refuse_gaps(part, snow)
-    corners = _corner_count(snow)
+    corners = corner_count(snow)
     most = min(MAX_RELEASE_CORNERS, max(MAX_CELLS_TIMES_CORNERS // snow.size, 4))
     if corners > most:
         raise InputError(
             f"{depth.name}: the edge of its snow has {corners} corners; at most {most} are allowed "
             f"with {snow.size} cells; make its cells larger, smooth it, or give polygons"
         )
-    shapely: Any = require("shapely", "terrain", "reading a raster of thickness")
     return [
         MapArea(
             name=f"area {number}",
-            outline=_ring(area.exterior),
-            holes=tuple(_ring(hole) for hole in area.interiors),
+            outline=outline,
+            holes=tuple(holes),
             crs=depth.crs,
             file=depth.name,
         )
-        for number, area in enumerate(_outlines(part, snow, shapely), 1)
+        for number, (_, (outline, *holes)) in enumerate(
+            cell_outlines(part, snow.astype(np.int32)), 1
+        )
     ]
-
-
-def _outlines(depth: Raster, snow: Booleans, shapely: Any) -> list[Any]:
-    """Return the outlines of connected cells with snow, slightly separated from each other."""
-    features: Any = require("rasterio.features", "terrain", "reading a raster of thickness")
-    affine: Any = require("rasterio", "terrain", "reading a raster of thickness").Affine
-    west, south = depth.east - 0.5 * depth.cell, depth.north - 0.5 * depth.cell
-    place = affine(depth.cell, 0.0, west, 0.0, depth.cell, south)
-    shapes = features.shapes(snow.astype(np.uint8), mask=snow, connectivity=4, transform=place)
-    inner = [
-        shapely.Polygon(rings[0], rings[1:]).buffer(-AREA_GAP * depth.cell, join_style="mitre")
-        for rings in (shape["coordinates"] for shape, _ in shapes)
-    ]
-    return [area for shape in inner for area in shapely.get_parts(shape)]
-
-
-def _corner_count(snow: Booleans) -> int:
-    """Return the corners of the outlines of cells with snow."""
-    padded = np.pad(snow, 1)
-    a, b, c, d = padded[:-1, :-1], padded[:-1, 1:], padded[1:, :-1], padded[1:, 1:]
-    crossing = (a == d) & (b == c) & (a != b)  # two corners that touch
-    return int(np.count_nonzero(a ^ b ^ c ^ d)) + 2 * int(np.count_nonzero(crossing))
 
 
 def _refuse(depth: Raster, wrong: Booleans, what: str) -> None:
@@ -125,7 +101,3 @@ def _refuse_gaps(depth: Raster, snow: Booleans) -> None:
     bare, _ = ndimage.label(np.pad(~snow, 1, constant_values=True), structure=np.ones((3, 3)))
     amid = (bare != bare[0, 0])[1:-1, 1:-1] & ~snow
     _refuse(depth, amid & np.isnan(depth.heights), "no thickness amid snow")
-
-
-def _ring(ring: Any) -> list[tuple[float, float]]:
-    return [(float(x), float(y)) for x, y in ring.coords[:-1]]

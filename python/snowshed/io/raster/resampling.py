@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -35,18 +36,41 @@ def resampled_raster(path: PathLike, cell: float) -> Raster:
     InputError
         If the file is not such a raster, rasterio is missing, or the new grid has too many cells.
     """
-    old = read_raster(path)
+    # GDAL reads numbers of text files in single precision; so does AvaFrame with resampled ones.
+    single = Path(path).suffix.lower() not in (".tif", ".tiff")
+    return resampled(read_raster(path), cell, single=single)
+
+
+def resampled(old: Raster, cell: float, *, single: bool = False) -> Raster:
+    """Return a raster on other cells, as `resampled_raster` does.
+
+    Parameters
+    ----------
+    old
+        The raster.
+    cell
+        Size of the new cells [m].
+    single
+        Whether the values are in single precision.
+
+    Raises
+    ------
+    InputError
+        If the size is not above 0, rasterio is missing, or the new grid has too many cells.
+    """
+    if not 0.0 < cell < math.inf:
+        raise InputError(f"cell: {cell:g} m; allowed: finite numbers above 0")
     rows, columns = old.heights.shape
-    new_columns = int((columns - 1) * old.cell / cell + 1)
-    new_rows = int((rows - 1) * old.cell / cell + 1)
+    new_rows, new_columns = (
+        int(min((size - 1) * old.cell / cell, MAX_RASTER_CELLS) + 1) for size in (rows, columns)
+    )
     if new_columns * new_rows > MAX_RASTER_CELLS:
         raise InputError(
-            f"{path}: has more than {MAX_RASTER_CELLS} cells of {cell:g} m; crop it first"
+            f"{old.name}: has more than {MAX_RASTER_CELLS} cells of {cell:g} m; crop it first"
         )
     rasterio: Any = require("rasterio", "terrain", "resampling terrain")
     warp: Any = require("rasterio.warp", "terrain", "resampling terrain")
-    # GDAL reads numbers of text files in single precision; so does AvaFrame with resampled ones.
-    precision = np.float32 if Path(path).suffix.lower() not in (".tif", ".tiff") else np.float64
+    precision = np.float32 if single else np.float64
     values = np.full((new_rows, new_columns), np.nan)
     warp.reproject(
         source=old.heights[::-1].astype(precision),
@@ -60,7 +84,7 @@ def resampled_raster(path: PathLike, cell: float) -> Raster:
         resampling=warp.Resampling.cubic,
     )
     values = values[::-1].astype(precision).astype(np.float64)
-    return Raster(values, old.east, old.north, cell, str(path), old.crs)
+    return Raster(values, old.east, old.north, cell, old.name, old.crs)
 
 
 def _transform(rasterio: Any, west: float, south: float, rows: int, cell: float) -> Any:

@@ -16,21 +16,23 @@ from snowshed._core import InputError
 from snowshed.base.arrays import Floats
 from snowshed.base.core_simulation import AnySimulation, core_of
 from snowshed.base.damage import DAMAGED
-from snowshed.base.extras import require
 from snowshed.base.missing_result import MissingResultError
 from snowshed.io.array_archive import open_archive
+from snowshed.io.raster.map_dataset import map_dataset
+from snowshed.io.raster.output import ENDINGS, MapFormat, write_raster
 from snowshed.io.raster.raster import Raster, read_raster
 
 if TYPE_CHECKING:
     import xarray
 
-#: Files of the maps in a results folder, with names that AvaFrame's tools know.
+#: Files of the maps in a results folder without their endings, with names that AvaFrame's tools
+#: know.
 RASTERS: Mapping[str, str] = {
-    "peak_thickness": "peaks/pft.asc",
-    "peak_speed": "peaks/pfv.asc",
-    "peak_pressure": "peaks/ppr.asc",
-    "thickness": "flow/FT.asc",
-    "speed": "flow/FV.asc",
+    "peak_thickness": "peaks/pft",
+    "peak_speed": "peaks/pfv",
+    "peak_pressure": "peaks/ppr",
+    "thickness": "flow/FT",
+    "speed": "flow/FV",
 }
 MEANINGS = {
     "peak_thickness": ("m", "Largest thickness of the snow, normal to the ground"),
@@ -117,7 +119,8 @@ def read_maps(folder: Path) -> xarray.Dataset:
     xarray.Dataset
         ``peak_thickness``, ``peak_speed``, ``peak_pressure``, ``thickness`` and ``speed`` with
         dimensions y and x: map coordinates of the nodes, m. The attribute ``crs`` is the coordinate
-        system, if it is known.
+        system, if it is known; the coordinate ``spatial_ref`` describes it as the CF conventions
+        (and rioxarray) have it.
 
     Raises
     ------
@@ -126,17 +129,43 @@ def read_maps(folder: Path) -> xarray.Dataset:
     InputError
         If they are damaged, or xarray (extra ``study``) is not installed.
     """
-    rasters = {}
-    for name, file in RASTERS.items():
-        if not (folder / file).is_file():
-            raise MissingResultError(
-                f"{folder / file}: missing; a run that is not compact writes it"
-            )
-        rasters[name] = read_raster(folder / file)
-    dataset = _maps_dataset(rasters)
+    dataset = _maps_dataset({name: read_raster(map_file(folder, name)) for name in RASTERS})
     for name in ("thickness", "speed"):
         dataset[name].attrs["long_name"] += ", at the end"
     return dataset
+
+
+def map_file(folder: Path, name: str) -> Path:
+    """Return the file of a map in a results folder, in the format that the run has written.
+
+    Parameters
+    ----------
+    folder
+        The results folder.
+    name
+        Name in `RASTERS`.
+
+    Raises
+    ------
+    MissingResultError
+        If it is missing.
+    """
+    files = [folder / f"{RASTERS[name]}{ending}" for ending in ENDINGS.values()]
+    for file in files:
+        if file.is_file():
+            return file
+    raise MissingResultError(f"{files[0]}: missing; a run that is not compact writes it")
+
+
+def write_maps_of_run(folder: Path, maps: SlideMaps, crs: str, form: MapFormat) -> None:
+    """Write all maps into a results folder, in place of those of another format."""
+    others = {"ascii": (".tif",), "geotiff": (".asc", ".prj")}
+    for name, stem in RASTERS.items():
+        target = folder / f"{stem}{ENDINGS[form]}"
+        target.parent.mkdir(exist_ok=True)
+        write_raster(target, maps.raster(getattr(maps, name), crs))
+        for ending in others[form]:
+            target.with_suffix(ending).unlink(missing_ok=True)
 
 
 def present_maps(core: _core.Simulation, scene: Mapping[str, Any]) -> xarray.Dataset:
@@ -146,17 +175,8 @@ def present_maps(core: _core.Simulation, scene: Mapping[str, Any]) -> xarray.Dat
 
 
 def _maps_dataset(rasters: Mapping[str, Raster]) -> xarray.Dataset:
-    library = require("xarray", "study", "a Dataset of maps")
     first = rasters["peak_thickness"]
-    rows, columns = first.heights.shape
-    dataset: xarray.Dataset = library.Dataset(
-        {name: (("y", "x"), raster.heights) for name, raster in rasters.items()},
-        coords={
-            "y": ("y", first.north + first.cell * np.arange(rows), {"units": "m"}),
-            "x": ("x", first.east + first.cell * np.arange(columns), {"units": "m"}),
-        },
-        attrs={"crs": first.crs},
-    )
+    dataset = map_dataset({name: raster.heights for name, raster in rasters.items()}, first)
     for name, (unit, meaning) in MEANINGS.items():
         dataset[name].attrs.update(units=unit, long_name=meaning)
     return dataset

@@ -4,7 +4,8 @@ Besides the files of every run (``snowshed.results.folder``), the folder holds
 
 ================== ==========================================================================
 peaks/             largest values over time: thickness (pft, m), speed (pfv, m/s) and pressure
-                   (ppr, kPa), as ESRI ASCII grids; a .prj holds the coordinate system, if known
+                   (ppr, kPa), as ESRI ASCII grids, whose coordinate system is in a .prj if it is
+                   known, or as GeoTIFF
 flow/              thickness (FT) and speed (FV) at the end
 peaks.npz          the largest values, in place of the grids of a compact run
 slide.json         the figures of `SlideSummary`
@@ -28,10 +29,15 @@ import numpy as np
 import snowshed._core as _core
 from snowshed.io.atomic import replacing
 from snowshed.io.film import FILM, Film
-from snowshed.io.raster.output import write_raster
 from snowshed.methods.slide.event_notes import event_notes
 from snowshed.methods.slide.frames import Frame, slide_frames
-from snowshed.methods.slide.maps import PEAKS_FILE, RASTERS, PeakMaps, SlideMaps, slide_maps
+from snowshed.methods.slide.maps import (
+    PEAKS_FILE,
+    PeakMaps,
+    SlideMaps,
+    slide_maps,
+    write_maps_of_run,
+)
 from snowshed.methods.slide.summary import SlideSummary
 from snowshed.methods.slide.validity import (
     ReleaseArea,
@@ -66,7 +72,8 @@ class SlideRun(MethodRun):
         if self.options.compact:
             _write_packed(self.folder, self.maps)
         else:
-            _write_rasters(self.folder, self.maps, str(terrain.get("crs", "")))
+            crs = str(terrain.get("crs", ""))
+            write_maps_of_run(self.folder, self.maps, crs, self.options.map_format)
         self.summary.write(self.folder)
         for note in self.summary.notes:
             record_note(self.sequence, note)
@@ -171,10 +178,3 @@ def _write_packed(folder: Path, maps: SlideMaps) -> None:
     peaks = PeakMaps.cropped(maps.peak_thickness, maps.peak_speed, maps.peak_pressure)
     with replacing(folder / PEAKS_FILE) as beside:
         beside.write_bytes(peaks.packed())
-
-
-def _write_rasters(folder: Path, maps: SlideMaps, crs: str) -> None:
-    for name, file in RASTERS.items():
-        target = folder / file
-        target.parent.mkdir(exist_ok=True)
-        write_raster(target, maps.raster(getattr(maps, name), crs))

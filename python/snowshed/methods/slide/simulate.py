@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Optional, Union
 from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
+from snowshed.io.raster.output import MapFormat
 from snowshed.io.raster.raster import Raster
 from snowshed.methods.slide.settings import SlideSettings
 from snowshed.results.reader import Results
@@ -30,6 +31,7 @@ def slide(
     progress: Optional[Reporter] = None,
     pictures: bool = True,
     settings: Optional[SlideSettings] = None,
+    map_format: MapFormat = "ascii",
 ) -> Results:
     """Simulate a snow slide on terrain, and write a results folder.
 
@@ -54,6 +56,8 @@ def slide(
         Whether to draw ``slide.png`` and write ``slide.html``.
     settings
         Settings of the method. [default: `SlideSettings()`]
+    map_format
+        Format of the maps, "ascii" or "geotiff", as for `snowshed.run`.
 
     Returns
     -------
@@ -98,7 +102,7 @@ def slide(
         scene = slide_scene(terrain, release, thickness=thickness, settings=settings)
         if max_time is not None:
             scene.set("events.max_time", max_time)
-        return run(scene, progress=progress, pictures=pictures)
+        return run(scene, progress=progress, pictures=pictures, map_format=map_format)
     target = Path(folder)
     with copies_removed_on_failure(target):
         scene = slide_scene(
@@ -110,4 +114,4 @@ def slide(
         )
         if max_time is not None:
             scene.set("events.max_time", max_time)
-        return run(scene, target, progress=progress, pictures=pictures)
+        return run(scene, target, progress=progress, pictures=pictures, map_format=map_format)

@@ -82,8 +82,9 @@ def slide_scene(
         Elevations, m: an ESRI ASCII grid or a GeoTIFF, on a projected map; or a `Raster`, or a
         DataArray of xarray with the coordinates x and y.
     release
-        Polygons of the release areas: a file, shapely polygons, or a GeoDataFrame; a field
-        "thickness" holds the thickness of the snow, m.
+        Polygons of the release areas: a file, shapely polygons, a GeoDataFrame, or the outlines
+        of `snowshed.analysis.hazard.ReleaseCandidates`; a field "thickness" holds the thickness of
+        the snow, m.
         None: all cells with snow in `thickness_raster`.
     thickness
         Thickness of the snow, normal to the ground [m], instead of the thickness in the file.
