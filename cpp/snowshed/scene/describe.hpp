@@ -180,7 +180,7 @@ void describe(V& v, scene::Panel& p) {
   v.alias("tilt", "surface_tilt");
   v.number("height", p.height, "m", methods::allowed::size_or_zero.required().usual(0.01, 20),
            "Vertical distance of the lower edge above the ground");
-  v.number("length", p.length, "m", methods::allowed::size.required().usual(0.05, 100),
+  v.number("length", p.length, "m", methods::allowed::size.required().usual(0.05, 40),
            "Length along the slope");
   v.number("width", p.width, "m", methods::allowed::size.required_in_3d().usual(0.05, 2000),
            "Width across the slope; ignored in 2D");

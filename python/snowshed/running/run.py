@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Optional
 
 import snowshed._core as _core
 from snowshed.base.arguments import checked
+from snowshed.base.callers import either
 from snowshed.base.interrupt import Interrupted, InterruptRequest, deferred_interrupts
 from snowshed.base.log import LOGGER
 from snowshed.base.machine import machine_facts
@@ -37,11 +38,6 @@ from snowshed.scene.scene import SceneLike, resolve_scene
 
 if TYPE_CHECKING:
     import pandas as pd
-
-NOT_EMPTY = (
-    "; choose a new folder, resume the run with `resume=True`, or replace its results with "
-    "`overwrite=True`"
-)
 
 
 @checked
@@ -288,3 +284,12 @@ class _Observer:
                 updates_per_s=updates_per_s,
             )
         )
+
+
+def _instead_of_full() -> str:
+    """Return the end of the message on a folder that is not empty."""
+    return either(
+        "; choose a new folder, resume the run with `resume=True`, or replace its results with "
+        "`overwrite=True`",
+        "; choose a new folder, or resume the run with --resume",
+    )

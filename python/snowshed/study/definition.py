@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -12,6 +11,7 @@ from typing import TYPE_CHECKING, Optional
 
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
+from snowshed.base.field_type import shown
 from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
@@ -62,7 +62,8 @@ class Study:
     ------
     InputError
         If a factor names a parameter that a scene does not have, that does not change a result, or
-        that another factor of the same part also names, or if there are too many runs.
+        that another factor of the same part also names, if a value is of a wrong type, or if there
+        are too many runs.
 
     Examples
     --------
@@ -347,7 +348,7 @@ class Study:
         scene = self.scene.copy()
         for factor in part:
             for path, values in factor.columns.items():
-                _try_to_set(scene, path, values[0])
+                _check_values(scene, path, values, another_method="method" in paths)
 
 
 def _issue_failures(folder: PathLike, study: str) -> None:
@@ -360,10 +361,21 @@ def _issue_failures(folder: PathLike, study: str) -> None:
         issue_note(f"{len(failed)} of {len(runs)} runs failed: {first}")
 
 
-def _try_to_set(scene: Scene, path: str, value: object) -> None:
+def _check_values(
+    scene: Scene, path: str, values: Sequence[object], *, another_method: bool
+) -> None:
+    """Refuse a path that the scene lacks and values of a wrong type; leave the first value set.
+
+    Where the method varies, the types of other values do, too; the run with a wrong one raises the
+    error.
+    """
     try:
         scene.set(path, None)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
-    with contextlib.suppress(InputError):  # the run with this value raises the error
-        scene.set(path, value)
+    for value in (*values, values[0]):
+        try:
+            scene.set(path, value)
+        except InputError as error:
+            if not another_method:
+                raise InputError(f"{path} = {shown(value)}: {error}") from None

@@ -13,7 +13,7 @@ from snowshed._core import InputError
 from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.scene.scene import ResolvedScene
-from snowshed.season.accumulation import accumulate, stack_ageing
+from snowshed.season.accumulation import snow_on_panel, stack_ageing
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.slabs import season_scene
 from snowshed.season.weather.reading import read_season
@@ -98,7 +98,7 @@ class SeasonPart:
         data = scene.data
         if "panel" not in data:
             raise InputError("/panel: missing; a season needs a panel for the snow to gather on")
-        days = accumulate(self.rows, self.settings, data["panel"]["tilt"], data["gravity"])
+        days = snow_on_panel(self.rows, self.settings, data["panel"]["tilt"], data["gravity"])
         if not any(day.event for day in days):
             raise InputError("no snow slides off all winter; there is nothing to compute")
         resolved = season_scene(scene, days, self.settings)
