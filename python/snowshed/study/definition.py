@@ -19,6 +19,7 @@ from snowshed.io.atomic import write_text
 from snowshed.scene.scene import Scene
 from snowshed.study import session, study_file
 from snowshed.study.factors import SEED, Part, axis
+from snowshed.study.named_laws import NamedLaws
 from snowshed.study.scene_hash import RunKey
 from snowshed.study.season_part import SEASON_PATHS, SeasonPart
 from snowshed.study.store import Store
@@ -57,6 +58,8 @@ class Study:
         A winter, if the runs are seasons: the snow of each panel gathers, slides off and piles up,
         and every slide-off is an event. The thickness of the slab and the number of events are
         those of the winter. None: the events are those of the scene.
+    laws
+        Laws of one's own, named so that every process can make them; None: those of the scene.
 
     Raises
     ------
@@ -83,6 +86,7 @@ class Study:
     seeds: Optional[Sequence[int]] = None
     description: str = ""
     season: Optional[SeasonPart] = None
+    laws: Optional[NamedLaws] = None
 
     @classmethod
     def product(
@@ -93,18 +97,19 @@ class Study:
         name: str = "study",
         seeds: Optional[Sequence[int]] = None,
         season: Optional[SeasonPart] = None,
+        laws: Optional[NamedLaws] = None,
     ) -> Study:
         """Return the study of all combinations of the values of some parameters.
 
         Parameters
         ----------
-        scene, name, seeds, season
+        scene, name, seeds, season, laws
             As for `Study`.
         axes
             The values of each parameter, by its dotted path such as ``"snow.cohesion"``.
         """
         factors = [axis(path, values) for path, values in axes.items()]
-        return cls(scene, [factors], name, seeds, season=season)
+        return cls(scene, [factors], name, seeds, season=season, laws=laws)
 
     @classmethod
     def load(cls, file: PathLike) -> Study:
@@ -150,7 +155,13 @@ class Study:
         """
         return study_file.text(
             study_file.Content(
-                self.scene, self.parts, self.name, self.seeds, self.description, self.season
+                self.scene,
+                self.parts,
+                self.name,
+                self.seeds,
+                self.description,
+                self.season,
+                self.laws,
             )
         )
 
@@ -162,6 +173,8 @@ class Study:
         object.__setattr__(self, "scene", self.scene.copy())
         if not self.name or not self.name.isprintable():
             raise InputError(f"name: {self.name!r} is not a name of printable characters")
+        if self.laws is not None:
+            self.laws.laws()  # a wrong name is the study's error
         if not self.parts:
             raise InputError("has no parts; give at least one, which may be empty")
         for part in self.parts:
@@ -329,7 +342,9 @@ class Study:
     def _run(self, point: Mapping[str, object]) -> RunKey:
         try:
             resolved = self.scene.with_(point).resolve()
-            return RunKey.of(resolved) if self.season is None else self.season.run(resolved)
+            if self.season is not None:
+                return self.season.run(resolved, self.laws)
+            return RunKey.of(resolved, laws=self.laws)
         except InputError as error:
             values = ", ".join(f"{path} = {value}" for path, value in point.items())
             raise InputError(f"{values}: {error}" if values else str(error)) from None

@@ -18,6 +18,7 @@ from snowshed.season.settings import SeasonSettings
 from snowshed.season.slabs import season_scene
 from snowshed.season.weather.reading import read_season
 from snowshed.season.weather.row import Weather
+from snowshed.study.named_laws import NamedLaws
 from snowshed.study.scene_hash import RunKey
 
 if TYPE_CHECKING:
@@ -87,7 +88,7 @@ class SeasonPart:
         """The rows of the winter; raises InputError where the file is wrong."""
         return read_season(self.weather)
 
-    def run(self, scene: ResolvedScene) -> RunKey:
+    def run(self, scene: ResolvedScene, laws: Optional[NamedLaws] = None) -> RunKey:
         """Return the slide-offs of the winter from the panel of a scene as a run.
 
         Raises
@@ -102,7 +103,7 @@ class SeasonPart:
         if not any(day.event for day in days):
             raise InputError("no snow slides off all winter; there is nothing to compute")
         resolved = season_scene(scene, days, self.settings)
-        return RunKey.of(resolved, stack_ageing(days, self.settings))
+        return RunKey.of(resolved, stack_ageing(days, self.settings), laws)
 
     def data(self) -> dict[str, object]:
         """Return the table of a study file that `of` reads.
