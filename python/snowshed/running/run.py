@@ -12,7 +12,7 @@ import weakref
 from contextlib import nullcontext
 from pathlib import Path
 from tempfile import mkdtemp
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any, Literal, Optional, Union
 
 import snowshed._core as _core
 from snowshed.base.arguments import checked
@@ -25,6 +25,7 @@ from snowshed.base.paths import PathLike
 from snowshed.base.progress import Progress, Reporter
 from snowshed.io.folders import check_empty
 from snowshed.methods.registry import method_of
+from snowshed.results.folder import RunFolder
 from snowshed.results.reader import Results
 from snowshed.results.replacement import replaced_results
 from snowshed.running.ageing.ageing import Ageing
@@ -45,7 +46,7 @@ def run(
     scene: SceneLike,
     folder: Optional[PathLike] = None,
     *,
-    resume: bool = False,
+    resume: Union[bool, Literal["auto"]] = False,
     overwrite: bool = False,
     ageing: Optional[Ageing] = None,
     laws: Optional[Laws] = None,
@@ -65,7 +66,9 @@ def run(
         overwriting. None: a temporary folder, which is removed with the results.
     resume
         Resume from the checkpoint in `folder`, also one of ``snowshed-run``; the particles are
-        those of an uninterrupted run. Events that are missing in the tables are measured from their
+        those of an uninterrupted run. "auto": resume if the folder holds a run, else begin; a
+        finished run of the same scene is returned, so that a cell of a notebook may be run again.
+        Events that are missing in the tables are measured from their
         stored particles, in single precision.
     overwrite
         Replace the results of an earlier run in `folder`. They stay if the new run cannot begin.
@@ -128,8 +131,9 @@ def run(
         )
     if resume and overwrite:
         raise _core.InputError("resume, overwrite: give one of the two")
+    resume = _resumes(resume, Path(folder))
     if not resume and not overwrite:
-        check_empty(folder, NOT_EMPTY)
+        check_empty(folder, _instead_of_full())
     options = RunOptions(resume, ageing, pictures, compact)
     replaced = replaced_results(folder) if overwrite else nullcontext()
     with replaced, kept_inputs(resolved, folder) as resolved:
@@ -153,6 +157,15 @@ def run(
     return Results.of_run(folder, resolved)
 
 
+def _resumes(resume: Union[bool, Literal["auto"]], folder: Path) -> bool:
+    """Return whether to resume the run in a folder."""
+    if isinstance(resume, str):
+        if resume != "auto":
+            raise _core.InputError(f'resume: {resume!r}; allowed: True, False, "auto"')
+        return RunFolder(folder).scene.is_file()
+    return resume
+
+
 def _title(scene: ResolvedScene) -> str:
     return str(scene.data.get("title") or f"a scene of the method {method_of(scene.data).name}")
 
@@ -174,7 +187,7 @@ def run_events(
     scene: SceneLike,
     folder: Optional[PathLike] = None,
     *,
-    resume: bool = False,
+    resume: Union[bool, Literal["auto"]] = False,
     overwrite: bool = False,
     ageing: Optional[Ageing] = None,
     laws: Optional[Laws] = None,
