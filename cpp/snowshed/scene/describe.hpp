@@ -171,6 +171,8 @@ void describe(V& v, scene::BodySpec& b) {
             "Event at whose start it appears, 1 the first; 0: at the start of every event");
   v.optional("snow", b.snow,
              "Snow of its own; values that are left out are those of the scene's snow");
+  v.number("volume", b.volume, "m3", methods::non_negative.up_to(1e9),
+           "Volume of its undeformed snow, in 2D m2, from which its mass follows; 0: the solid's");
 }
 
 template <class V>
