@@ -7,7 +7,6 @@ None takes a value back. Vectors are (x, y, z), in 2D (x, z). Tables follow ``sn
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar, List, Literal, Optional, Union
@@ -17,7 +16,7 @@ from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.base.record import Alias, FieldsByField, Record, default
 from snowshed.io.json_file import read_object
-from snowshed.scene.shape import Shape, Vector
+from snowshed.scene.shape import Outline, Shape, Vector
 
 SnowModel = Literal["cam_clay", "elastic"]
 Condition = Literal["sticky", "slip", "separate"]
@@ -26,9 +25,6 @@ Between = Literal["carry", "reseed"]
 MisplacedSnow = Literal["refuse", "allow"]
 
 PROVENANCE = "provenance"  # key under which a snow's file says where it comes from
-
-#: Corners (x, y) of an area on the map, m.
-Outline = Sequence[Sequence[float]]
 
 
 @checked

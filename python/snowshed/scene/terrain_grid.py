@@ -8,8 +8,8 @@ from typing import Any
 import snowshed._core as _core
 from snowshed.base.arguments import checked
 from snowshed.io.raster.raster import Raster
-from snowshed.scene.components import Outline
 from snowshed.scene.scene import SceneLike, resolve_scene
+from snowshed.scene.shape import Outline
 
 
 @checked
