@@ -1,4 +1,4 @@
-"""Laws of one's own: a law of the snow, friction, a body force and a motion, compiled from C.
+"""Laws of one's own: two laws of the snow, friction, a body force and a motion, compiled from C.
 
 Usage: python own_laws.py [folder] [dx in metres]
 """
@@ -28,6 +28,7 @@ def function(name, kind):
 
 every_law = {
     "sand": {"material": function("drucker_prager_2d", "material_float")},
+    "brittle": {"constitutive": function("brittle_2d", "constitutive_float"), "own_numbers": 1},
     "film of water": {"friction": {"panel": function("melting", "friction")}},
     "wind": {"body_force": function("wind", "body_force")},
     "earthquake": {"motion": {"panel": function("shaking", "motion")}},

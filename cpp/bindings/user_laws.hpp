@@ -22,6 +22,10 @@ inline methods::UserLaws laws_of(const pybind11::object& given) {
   const auto dict = given.cast<pybind11::dict>();
   laws.name = dict["name"].cast<std::string>();
   if (dict.contains("material")) laws.material = function_at<void*>(dict["material"]);
+  if (dict.contains("constitutive")) {
+    laws.constitutive = function_at<void*>(dict["constitutive"]);
+    laws.own_numbers = dict["own_numbers"].cast<int>();
+  }
   if (dict.contains("body_force"))
     laws.body_force = function_at<methods::BodyForce>(dict["body_force"]);
   if (dict.contains("friction"))

@@ -2,6 +2,7 @@
 
 import importlib
 import inspect
+import json
 import pkgutil
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -187,11 +188,33 @@ def test_a_tilde_is_the_home_of_the_user(monkeypatch):
     assert sample(file="runs~")["file"] == "runs~"
 
 
+def test_a_tilde_in_a_list_of_files_is_the_home_of_the_user(monkeypatch, tmp_path):
+    monkeypatch.setenv("HOME", str(tmp_path))
+    with pytest.raises(OSError, match=str(tmp_path / "winter.csv")):
+        snowshed.season.read_season("~/winter.csv")
+    with pytest.raises(OSError, match=str(tmp_path)):
+        snowshed.season.read_season(["~/one.csv", "~/two.csv"])
+
+
 def test_the_files_that_a_scene_names_may_be_in_the_home_of_the_user(monkeypatch):
     monkeypatch.setenv("HOME", "/home/anna")
     post = snowshed.Obstacle(name="post", shape=snowshed.Shape.mesh("~/post.stl"))
     scene = Scene.preset("lab-50").set("obstacles", [post])
     assert scene.resolve().data["obstacles"][0]["shape"]["file"] == "/home/anna/post.stl"
+    text = json.dumps(scene.to_data())
+    read = snowshed.ResolvedScene.parse(text)
+    assert read.data["obstacles"][0]["shape"]["file"] == "/home/anna/post.stl"
+
+
+def test_a_scene_file_may_name_files_in_the_home_of_the_user(monkeypatch, tmp_path):
+    monkeypatch.setenv("HOME", str(tmp_path))
+    post = snowshed.Obstacle(name="post", shape=snowshed.Shape.mesh("~/post.stl"))
+    scene = Scene.preset("lab-50").set("obstacles", [post])
+    file = tmp_path / "elsewhere" / "scene.json"
+    file.parent.mkdir()
+    file.write_text(json.dumps(scene.to_data()))
+    read = snowshed.ResolvedScene.load(file)
+    assert read.data["obstacles"][0]["shape"]["file"] == str(tmp_path / "post.stl")
 
 
 def test_the_command_line_finds_the_home_of_the_user(monkeypatch, tmp_path):

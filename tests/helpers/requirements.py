@@ -21,6 +21,7 @@ MODULE_BY_PACKAGE = {
     "distributed": "distributed",
     "edt": "edt",
     "emcee": "emcee",
+    "ipywidgets": "ipywidgets",
     "jinja2": "jinja2",
     "imageio-ffmpeg": "imageio_ffmpeg",
     "lazy-loader": "lazy_loader",
@@ -42,6 +43,7 @@ MODULE_BY_PACKAGE = {
     "threadpoolctl": "threadpoolctl",
     "tifffile": "tifffile",
     "tomli": "tomli",
+    "tqdm": "tqdm",
     "xarray": "xarray",
 }
 

@@ -43,6 +43,14 @@ def results(scene, tmp_path_factory) -> Path:
     return folder
 
 
+def test_a_tilde_is_the_home_of_the_user(scene, tmp_path, monkeypatch):
+    monkeypatch.setenv("HOME", str(tmp_path))
+    shutil.copy(scene, tmp_path / "scene.json")
+    done = snowshed_run("~/scene.json", "-o", "~/out", "-q")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert (tmp_path / "out" / "run.json").is_file()
+
+
 def test_the_results_folder_is_complete(results, scene):
     names = {path.relative_to(results).as_posix() for path in results.rglob("*")}
     assert names >= {

@@ -7,6 +7,7 @@ from contextlib import nullcontext
 
 import numpy as np
 import pytest
+from helpers.paths import ROOT
 
 from snowshed import InputError, Scene, Simulation, SnowshedNote, run
 from snowshed.running import LAW_PROTOTYPES, Laws
@@ -23,6 +24,18 @@ void fluid_double(int64_t n, double* p, double* q, double* e, const uint8_t* s, 
   for (int64_t i = 0; i < n; ++i) q[i] = 0;
 }
 double constant(double speed, double stress) { return 0.3; }
+#include "EXAMPLES/own_laws.c"
+DRUCKER_PRAGER(sand_pq, double, bulk_2d)
+DRUCKER_PRAGER_TENSOR(sand_tensor, double, 2, 3, bulk_2d)
+DRUCKER_PRAGER_TENSOR(sand_tensor_3d, double, 3, 6, bulk_3d)
+BRITTLE(brittle_double, double)
+void count(int64_t n, double* e, double* s, double* p, double* own, const uint8_t* k, double dt) {
+  for (int64_t i = 0; i < n; ++i) {
+    s[i] = s[n + i] = 1e6 * (e[i] + e[n + i]);
+    s[2 * n + i] = 0;
+    if (dt > 0) own[i] += 1;
+  }
+}
 void lift(int64_t n, const double* x, const double* y, const double* z, double t,
           double* ax, double* ay, double* az) {
   for (int64_t i = 0; i < n; ++i) az[i] = 9.81;
@@ -33,8 +46,8 @@ void lift(int64_t n, const double* x, const double* y, const double* z, double t
 @pytest.fixture(scope="module")
 def library(tmp_path_factory):
     folder = tmp_path_factory.mktemp("laws")
-    (folder / "laws.c").write_text(SOURCE)
-    command = [COMPILER, "-O2", "-shared", "-fPIC", "laws.c", "-o", "laws.so"]
+    (folder / "laws.c").write_text(SOURCE.replace("EXAMPLES", str(ROOT / "examples")))
+    command = [COMPILER, "-O2", "-shared", "-fPIC", "laws.c", "-o", "laws.so", "-lm"]
     subprocess.run(command, cwd=folder, check=True)
     return ctypes.CDLL(str(folder / "laws.so"))
 
@@ -95,6 +108,11 @@ def test_results_and_checkpoints_name_the_laws(tiny, library, tmp_path):
         ({"name": "", "material": 1}, "not a name"),
         ({"name": "text", "material": "law"}, "material: 'law'; needed: "),
         ({"name": "python", "friction": {"panel": lambda v, s: 0.1}}, "friction of panel: a value"),
+        ({"name": "both", "material": 1, "constitutive": 1}, "both material and constitutive"),
+        ({"name": "numbers", "constitutive": 1, "own_numbers": 9}, "own_numbers: 9; allowed"),
+        ({"name": "numbers", "constitutive": 1, "own_numbers": -1}, "own_numbers: -1; allowed"),
+        ({"name": "numbers", "material": 1, "own_numbers": 1}, "only a constitutive law"),
+        ({"name": "text", "constitutive": "law"}, "constitutive: 'law'; needed: "),
         ({"name": "null", "body_force": 0}, "body_force: a value of type int"),
     ],
 )
@@ -124,3 +142,119 @@ def test_numba_functions_are_taken(tiny):
     laws = Laws("numba", friction={"panel": friction})
     scene = tiny.with_({"panel.friction": 0.3})
     assert np.array_equal(positions(scene, laws), positions(scene, None))
+
+
+# --- constitutive laws: stress and state as tensors -------------------------------------------
+
+
+def call(library, name, strain, *, own=0, time_step=1e-4, kind="constitutive_double"):
+    """Call a law for the columns of `strain`; return strain, stress, plastic strain and numbers."""
+    strain = np.array(strain, dtype=float)
+    stress, count = np.zeros_like(strain), strain.shape[1]
+    plastic, numbers = np.zeros(count), np.full(count, float(own))
+    snow = (ctypes.c_uint8 * count)()
+
+    def pointer(array):
+        return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
+
+    of_type(library, name, kind)(
+        count, pointer(strain), pointer(stress), pointer(plastic), pointer(numbers), snow, time_step
+    )
+    return strain, stress, plastic, numbers
+
+
+def test_a_constitutive_law_agrees_with_the_same_law_of_pressure_and_shear(tiny, library):
+    box = {"type": "box", "center": [0, 0.11], "size": [0.3, 0.2]}
+    fallen = {"bodies": [{"shape": box, "velocity": [0, -3]}], "ground": {}}
+    scene = Scene.from_data({"snowshed": 2, "dimension": 2, **fallen, "numerics": {"dx": 0.02}})
+    scene.set("numerics.precision", "double")
+    pq = Laws("pq", material=of_type(library, "sand_pq", "material_double"))
+    law = of_type(library, "sand_tensor", "constitutive_double")
+    tensor = Laws("tensor", constitutive=law)
+    both = positions(scene, pq), positions(scene, tensor)
+    assert np.abs(both[0] - both[1]).max() < 1e-8
+    assert np.abs(both[0] - positions(scene, None)).max() > 1e-4
+
+
+def test_brittle_snow_cracks_at_its_strength_in_every_direction(library):
+    """A uniaxial stress in any direction, below the strength and above it."""
+    young, poisson, strength = 1e6, 0.3, 2000.0
+    plane = young / (1 - poisson**2)
+    for angle in np.linspace(0, np.pi, 13):
+        n = np.array([np.cos(angle), np.sin(angle)])
+        for share in (0.999, 1.001):
+            along = share * strength / plane
+            across = -poisson / (1 - poisson) * along
+            e = along * np.outer(n, n) + across * (np.eye(2) - np.outer(n, n))
+            given = [[e[0, 0]], [e[1, 1]], [e[0, 1]]]
+            strain, stress, plastic, cracked = call(library, "brittle_double", given)
+            tau = np.array([[stress[0, 0], stress[2, 0]], [stress[2, 0], stress[1, 0]]])
+            if share < 1:
+                assert np.allclose(tau, share * strength * np.outer(n, n), atol=1e-6)
+                assert (cracked, plastic) == (0, 0) and np.array_equal(strain, given)
+            else:
+                assert np.abs(tau @ n).max() < 1e-6 and cracked == 1
+                t = np.array([-n[1], n[0]])
+                assert t @ tau @ t == pytest.approx(plane * across)  # across, with no stress along
+                assert plastic == pytest.approx(along + across - strain[0] - strain[1])
+
+
+def test_with_a_time_step_of_zero_the_example_laws_change_nothing(library):
+    rng = np.random.default_rng(1)
+    for name, size in (("sand_tensor", 3), ("sand_tensor_3d", 6), ("brittle_double", 3)):
+        given = rng.normal(scale=0.01, size=(size, 40))
+        returned = call(library, name, given)
+        assert not np.array_equal(returned[0], given)
+        strain, stress, plastic, own = call(library, name, returned[0], own=2, time_step=0.0)
+        assert np.array_equal(strain, returned[0])
+        assert (
+            np.allclose(stress, returned[1], atol=1e-6) and not plastic.any() and (own == 2).all()
+        )
+
+
+def test_own_numbers_are_fields_and_resume(tiny, library, tmp_path):
+    scene = tiny.with_({"numerics.precision": "double", "numerics.sleep_speed": 0})
+    counting = Laws(
+        "count", constitutive=of_type(library, "count", "constitutive_double"), own_numbers=1
+    )
+    with pytest.warns(SnowshedNote, match="laws of the user"):
+        simulation = Simulation(scene, laws=counting)
+    simulation.begin_event()
+    simulation.step(64)
+    assert set(simulation.fields["own_0"].values.tolist()) == {64.0}
+    simulation.save(tmp_path / "checkpoint.bin")
+    loaded = Simulation.load(tmp_path / "checkpoint.bin", laws=counting)
+    for each in (loaded, simulation):
+        each.step(36)
+        assert set(each.fields["own_0"].values.tolist()) == {100.0}
+    assert np.array_equal(loaded.positions(), simulation.positions())
+    two = Laws("count", constitutive=counting.constitutive, own_numbers=2)
+    with pytest.raises(InputError, match='"count" that has 1 numbers of its own'):
+        Simulation.load(tmp_path / "checkpoint.bin", laws=two)
+
+
+def test_a_constitutive_law_is_not_in_the_energy_balance(tiny, library):
+    law = of_type(library, "sand_tensor", "constitutive_double")
+    with pytest.raises(InputError, match="/output/energy: a constitutive law"):
+        Simulation(
+            tiny.with_({"output.energy": True, "numerics.precision": "double"}),
+            laws=Laws("tensor", constitutive=law),
+        )
+
+
+def test_numba_compiles_constitutive_laws(tiny, library):
+    numba = pytest.importorskip("numba")
+    from snowshed.running import LAW_SIGNATURES
+
+    @numba.cfunc(LAW_SIGNATURES["constitutive_double"])
+    def liquid(count, strain, stress, plastic_strain, own, snow, time_step):
+        e = numba.carray(strain, (3, count))
+        s = numba.carray(stress, (3, count))
+        for i in range(count):
+            s[0, i] = s[1, i] = 1e6 * (e[0, i] + e[1, i])
+            s[2, i] = 0.0
+
+    scene = tiny.with_({"numerics.precision": "double"})
+    c = of_type(library, "count", "constitutive_double")
+    mine = positions(scene, Laws("numba", constitutive=liquid))
+    assert np.array_equal(mine, positions(scene, Laws("C", constitutive=c, own_numbers=1)))

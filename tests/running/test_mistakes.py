@@ -4,6 +4,7 @@ import ctypes
 import re
 from pathlib import Path
 
+import click
 import numpy as np
 import pandas as pd
 import pytest
@@ -14,6 +15,8 @@ from snowshed import InputError, Scene, Simulation, SimulationError, SnowshedNot
 from snowshed.analysis.calibration import read_simulated_stacks
 from snowshed.analysis.calibration.measurements import Measurement
 from snowshed.analysis.clearance.panel_design import check_base
+from snowshed.cli import main
+from snowshed.cli.deferred import Deferred
 from snowshed.running import LAW_PROTOTYPES, Laws, extend_run, sequence
 from snowshed.scene import grains_scene, slide_scene
 from snowshed.season import SeasonSettings
@@ -280,10 +283,29 @@ def test_messages_in_python_name_arguments_and_calls_and_no_options(
 
 
 def test_no_message_of_a_function_names_an_option_alone():
-    """Options follow a command; `as_options` makes them of arguments."""
+    """`snowshed.base.callers` names the option for a caller in the shell, and else the argument."""
     package = Path(snowshed.__file__).parent
     for file in package.rglob("*.py"):
         if "cli" not in file.parts:
             code = file.read_text(encoding="utf-8")
             for message in re.findall(r"raise \w*Error\((.*?)\)\n", code, re.DOTALL):
                 assert not re.search(r"(?<!snowshed) --[a-z]|\(--", message), (file, message)
+
+
+def test_every_message_names_options_that_a_command_has():
+    """Both forms stand side by side in the code; the options are compared with the commands."""
+    options, commands = set(), [main.cli]
+    while commands:
+        command = commands.pop()
+        command = command.load() if isinstance(command, Deferred) else command
+        commands += command.commands.values() if isinstance(command, click.Group) else []
+        options |= {name for each in command.params for name in each.opts}
+    package = Path(snowshed.__file__).parent
+    named = {}
+    for file in package.rglob("*.py"):
+        code = "" if "cli" in file.parts else file.read_text(encoding="utf-8")
+        for name, rest in re.findall(r"(?<!def )\bargument\(['\"](\w+)['\"]([^)]*)\)", code):
+            option = re.search(r"option=['\"]([\w-]+)['\"]", rest)
+            named["--" + (option[1] if option else name).replace("_", "-")] = file.name
+    assert len(named) > 15
+    assert {option: file for option, file in named.items() if option not in options} == {}

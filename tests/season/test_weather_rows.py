@@ -6,14 +6,15 @@ from datetime import date, datetime, timedelta, timezone
 import pandas as pd
 import pytest
 
-from snowshed import InputError, SnowshedNote
+from snowshed import InputError, Scene, SnowshedNote
+from snowshed.base.notes import record_notes
 from snowshed.season import (
-    Climate,
     SeasonSettings,
     Weather,
     accumulate,
     natural_cover,
     read_season,
+    run_season,
     snow_balance,
 )
 
@@ -21,7 +22,7 @@ ROW = Weather(2, datetime(2024, 12, 1), 0.2, 100.0, -4.0)
 
 
 def rows_with(**values: object) -> list[Weather]:
-    return [ROW, replace(ROW, date=ROW.date + timedelta(days=1), **values)]
+    return [ROW, replace(ROW, **{"date": ROW.date + timedelta(days=1), **values})]
 
 
 @pytest.mark.parametrize(
@@ -29,40 +30,39 @@ def rows_with(**values: object) -> list[Weather]:
     [
         (
             {"snowfall": 20.0},
-            "row 2, snowfall: 20 is outside the allowed range (0 <= value <= 3",
+            "snowfall on 2024-12-01: 20 is outside the allowed range (0 <= value <= 3",
         ),
-        ({"snowfall": -0.1}, "row 2, snowfall: -0.1 is outside"),
-        ({"snowfall": "0.2"}, "row 2, snowfall: '0.2'; needed: a number"),
-        ({"snowfall": None}, "row 2, snowfall: None; needed: a number"),
-        ({"temperature": 268.0}, "row 2, temperature: 268 is outside"),
-        ({"temperature": float("nan")}, "row 2, temperature: nan is outside"),
-        ({"density": 0.1}, "row 2, density: 0.1 is outside the allowed range (10 <= value <= 700"),
-        ({"friction": -1.0}, "row 2, friction: -1 is outside"),
-        ({"adhesion": True}, "row 2, adhesion: True; needed: a number"),
-        ({"date": "2024-12-02"}, "row 2, date: '2024-12-02'; needed: a datetime"),
-        ({"date": date(2024, 12, 2)}, "row 2, date: a date without a time; needed: a datetime"),
-        ({"date": datetime(2024, 12, 2, tzinfo=timezone.utc)}, "row 2, date: has a time zone"),
-        ({"date": datetime(2024, 11, 2)}, "row 2, column date: 2024-11-02 00:00:00 is not after"),
+        ({"snowfall": -0.1}, "snowfall on 2024-12-01: -0.1 is outside"),
+        ({"snowfall": "0.2"}, "snowfall on 2024-12-01: '0.2'; needed: a number"),
+        ({"snowfall": None}, "snowfall on 2024-12-01: None; needed: a number"),
+        ({"temperature": 268.0}, "temperature on 2024-12-01: 268 is outside"),
+        ({"temperature": float("nan")}, "temperature on 2024-12-01: nan is outside"),
+        ({"density": 0.1}, "density on 2024-12-01: 0.1 is outside the allowed range (10 <= value"),
+        ({"friction": -1.0}, "friction on 2024-12-01: -1 is outside"),
+        ({"adhesion": True}, "adhesion on 2024-12-01: True; needed: a number"),
+        ({"date": "2024-12-02"}, "date: '2024-12-02'; needed: a datetime"),
+        ({"date": date(2024, 12, 2)}, "date: a date without a time; needed: a datetime"),
+        ({"date": datetime(2024, 12, 2, tzinfo=timezone.utc)}, "date: has a time zone"),
+        ({"line": "two"}, "line: 'two'; needed: a whole number"),
     ],
 )
-@pytest.mark.parametrize(
-    "use",
-    [
-        read_season,
-        lambda rows: accumulate(rows, SeasonSettings(), 40.0),
-        lambda rows: natural_cover(rows, SeasonSettings()),
-    ],
-)
-def test_rows_that_cannot_be_weather_are_refused(use, values, message):
-    rows = [ROW, replace(ROW, **{"date": ROW.date + timedelta(days=1), **values})]
+def test_a_row_that_cannot_be_weather_is_refused_where_it_is_made(values, message):
     with pytest.raises(InputError) as caught:
-        use(rows)
-    assert message in str(caught.value)
+        replace(ROW, **values)
+    assert str(caught.value).startswith(message)
 
 
-def test_a_climate_is_not_fitted_to_rows_that_cannot_be_weather():
-    with pytest.raises(InputError, match="days, row 2, snowfall: 20 is outside"):
-        Climate.fit(rows_with(snowfall=20.0))
+USES = (
+    read_season,
+    lambda rows: accumulate(rows, SeasonSettings(), 40.0),
+    lambda rows: natural_cover(rows, SeasonSettings()),
+)
+
+
+@pytest.mark.parametrize("use", USES)
+def test_rows_out_of_order_are_refused(use):
+    with pytest.raises(InputError, match="row 2, column date: 2024-11-02 00:00:00 is not after"):
+        use(rows_with(date=datetime(2024, 11, 2)))
 
 
 def test_a_row_of_another_type_is_refused():
@@ -80,10 +80,25 @@ def test_a_tilt_that_no_panel_has_is_refused(tilt):
             use()
 
 
+WARM = "1 snowfall in air of 10 °C and more"
+
+
 def test_snow_in_warm_air_is_told():
     table = pd.DataFrame(
         {"date": ["2024-12-01", "2024-12-02"], "snowfall_m": [0.1, 0.2], "temperature_c": [-4, 25]}
     )
     for season in (table, rows_with(temperature=25.0)):
-        with pytest.warns(SnowshedNote, match="1 snowfall in air of 10 °C and more"):
+        with pytest.warns(SnowshedNote, match=WARM):
             read_season(season)
+
+
+def test_accumulation_tells_of_snow_in_warm_air():
+    with pytest.warns(SnowshedNote, match=WARM):
+        accumulate(rows_with(temperature=25.0), SeasonSettings(), 40.0)
+
+
+def test_a_season_tells_of_snow_in_warm_air_once(tmp_path):
+    flat = Scene.preset("lab-40").set("panel.tilt", 20)
+    with record_notes() as notes:
+        result = run_season(rows_with(temperature=25.0), flat, tmp_path / "s", pictures=False)
+    assert sum(WARM in note for note in (*notes, *result.notes)) == 1

@@ -108,6 +108,15 @@ def test_words_may_vary():
             "the study's seeds",
         ),
         (lambda: Study(tiny_scene(), [[axis("panel.tilt", [1]), axis("panel.tilt", [2])]]), "two"),
+        (
+            lambda: Study.product(tiny_scene(), {"panel.tilt": [40, ["a"]]}),
+            r"panel.tilt = \['a'\]: /panel/tilt: \['a'\] is not a number",
+        ),
+        (lambda: Study.product(tiny_scene(), {"panel.tilt": ["40"]}), "'40' is not a number"),
+        (
+            lambda: Study.product(tiny_scene(), {"panel.condition": ["slip", "slp"]}),
+            "did you mean slip",
+        ),
         (lambda: Study(tiny_scene(), []), "no parts"),
         (lambda: tiny_study(name=""), "name: ''"),
         (lambda: tiny_study(name="a\nb"), "printable"),

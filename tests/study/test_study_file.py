@@ -208,7 +208,7 @@ def test_paths_are_relative_to_the_file_that_contains_them(load, tmp_path):
         (SCENE + "[axes]\npanel.tlt = [1]", "panel.tlt: /panel/tlt: unknown key; allowed: height"),
         (SCENE + "[axes]\npanel.tilt = []", "axes: panel.tilt: 0 values"),
         (SCENE + "[axes]\npanel.tilt = [40, 95]", "panel.tilt = 95: /panel/tilt: 95 is outside"),
-        (SCENE + '[axes]\npanel.tilt = ["a"]', "panel.tilt = a: /panel/tilt"),
+        (SCENE + '[axes]\npanel.tilt = ["a"]', "panel.tilt = 'a': /panel/tilt"),
         (SCENE + "[axes]\npanel.tilt = { from = 1 }", "axes.panel.tilt.to: missing"),
         (SCENE + "[axes]\npanel.tilt = { from = 1, to = 2 }", "panel.tilt: needs either a step"),
         (

@@ -251,6 +251,9 @@ def test_unfinished_runs_of_another_version_are_not_resumed(
     [
         ({"jobs": 0}, "jobs: 0 is not positive"),
         ({"threads": -1}, "threads: -1 is not positive"),
+        ({"scheduler": 3}, "scheduler: 3; needed: the address of a Dask scheduler, the path of"),
+        ({"scheduler": ""}, "scheduler: ''; needed: the address"),
+        ({"scheduler": True}, "scheduler: True; needed: the address"),
         ({"jobs": 2, "scheduler": "tcp://127.0.0.1:1"}, "jobs: not allowed with a scheduler"),
     ],
 )

@@ -300,6 +300,7 @@ def test_a_page_without_marks_is_refused():
 AREAS = {
     *("material", "transfer", "contact", "time step", "sleep", "seeding", "events"),
     *("measures", "post-processing", "scheme", "clearance", "plants", "forces"),
+    "laws of one's own",
 }
 
 

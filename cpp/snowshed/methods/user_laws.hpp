@@ -18,6 +18,24 @@ template <class T>
 using MaterialLaw = void (*)(std::int64_t count, T* p, T* q, T* plastic_strain,
                              const std::uint8_t* snow, double time_step);
 
+/// Returns the stress of `count` particles from their elastic strain after the trial, and that
+/// strain. Component k of particle i stands at `strain[k * count + i]`; the components are xx, zz,
+/// xz in 2D and xx, yy, zz, xy, xz, yz in 3D. `strain` is the elastic Hencky strain, ln V_e,
+/// positive in tension; the law replaces it by the strain that remains elastic. `stress` receives
+/// Kirchhoff's stress (Pa), positive in tension. `plastic_strain` is the volumetric plastic strain:
+/// what the trace of `strain` loses must be added to it. `own` holds the law's own numbers,
+/// `UserLaws::own_numbers` for each particle, number k of particle i at `own[k * count + i]`; they
+/// begin with zero. `snow` has the index of each particle's snow.
+///
+/// With a time step of 0 the law must return the stress of the state that it is given, and change
+/// nothing: so the grid is computed again from particles, for example after a checkpoint.
+template <class T>
+using ConstitutiveLaw = void (*)(std::int64_t count, T* strain, T* stress, T* plastic_strain,
+                                 T* own, const std::uint8_t* snow, double time_step);
+
+/// Largest number of a constitutive law's own numbers for each particle.
+inline constexpr int max_own_numbers = 8;
+
 /// Returns Coulomb's coefficient of a contact at a sliding speed (m/s) and a normal stress (Pa).
 using FrictionLaw = double (*)(double speed, double normal_stress);
 
@@ -32,13 +50,17 @@ using BodyForce = void (*)(std::int64_t count, const double* x, const double* y,
 using MotionLaw = void (*)(double time, double* pose);
 
 struct UserLaws {
-  std::string name;          // in messages and checkpoints
-  void* material = nullptr;  // a MaterialLaw; null: the law of the snow
+  std::string name;              // in messages and checkpoints
+  void* material = nullptr;      // a MaterialLaw; null: the law of the snow
+  void* constitutive = nullptr;  // a ConstitutiveLaw, in place of the law and the elasticity
+  int own_numbers = 0;           // numbers of the constitutive law for each particle
   BodyForce body_force = nullptr;
   std::map<std::string, FrictionLaw> friction;  // by the name of the obstacle
   std::map<std::string, MotionLaw> motion;      // by the name of the obstacle
 
-  bool any() const { return material || body_force || !friction.empty() || !motion.empty(); }
+  bool any() const {
+    return material || constitutive || body_force || !friction.empty() || !motion.empty();
+  }
 };
 
 }  // namespace snowshed::methods

@@ -33,14 +33,21 @@ void apply_laws(const methods::UserLaws& laws, const scene::Scene& scene,
   const methods::MethodInfo& info = scene.numerics->info();
   if (!info.takes_laws)
     throw InputError("laws", "the method " + quote(info.name) + " takes no laws of the user");
-  if (laws.material && scene.snow.model == material::SnowModel::elastic)
+  if (laws.material && laws.constitutive)
+    throw InputError("laws", "a law of the material and a constitutive law; give one of them");
+  if (laws.own_numbers < 0 || laws.own_numbers > methods::max_own_numbers ||
+      (laws.own_numbers && !laws.constitutive))
+    throw InputError(
+        "laws", std::to_string(laws.own_numbers) + " numbers of its own; allowed: 0 to " +
+                    std::to_string(methods::max_own_numbers) + ", with a constitutive law only");
+  if ((laws.material || laws.constitutive) && scene.snow.model == material::SnowModel::elastic)
     throw InputError("/snow/model",
                      "\"elastic\" has no law that the user could replace; leave the "
                      "model out");
-  if (scene.output.energy && (laws.body_force || !laws.motion.empty()))
+  if (scene.output.energy && (laws.constitutive || laws.body_force || !laws.motion.empty()))
     throw InputError("/output/energy",
-                     "a body force or a motion of the user is not in the energy "
-                     "balance; leave the balance or the law out");
+                     "a constitutive law, a body force or a motion of the user is not in the "
+                     "energy balance; leave the balance or the law out");
   for (const auto& [name, law] : laws.friction) {
     bool sticky = false;
     for_each_named(surroundings, name, [&, law = law](methods::Obstacle& o) {

@@ -83,12 +83,18 @@ void seed_body(const scene::BodySpec& body, const geometry::Shape& shape, const 
   if (!scene.numerics.takes(methods::Part::seeding))
     return scene.numerics->fill(*shape, scene.dimension, stop, batch, notes);
   const double dx = scene.numerics->resolution();
+  const char* unit = scene.dimension == 2 ? " m2" : " m3";
   const material::Snow& snow = scene::snow_of(scene, body);
   batch.positions =
       snowshed::sampling::seed(*shape, scene.dimension, dx, scene.seeding.particles_per_voxel,
                                scene.seeding.pattern, seed, stop);
-  const double mass = snow.density * sampling::measure(*shape, scene.dimension, dx, stop);
-  batch.mass = mass / double(batch.positions.size());
+  const double measured = sampling::measure(*shape, scene.dimension, dx, stop);
+  const double volume = body.volume > 0 ? body.volume : measured;
+  batch.mass = snow.density * volume / double(batch.positions.size());
+  if (body.volume > 0)
+    notes.push_back("its snow has the given volume of " + show_briefly(volume) + unit +
+                    ", and the solid one of " + show_briefly(measured) + unit + ": a strain of " +
+                    show_briefly(std::log(measured / volume)) + " that causes no stress");
   batch.material_id = scene::material_id_of(snow, scene::distinct_snows(scene));
 }
 

@@ -15,6 +15,7 @@
 #include "snowshed/core/kernel_variant.hpp"
 #include "snowshed/core/message_format.hpp"
 #include "snowshed/core/version.hpp"
+#include "snowshed/io/home_folder.hpp"
 #include "snowshed/run/event_sequence.hpp"
 #include "snowshed/run/external_record.hpp"
 #include "snowshed/scene/scene_json.hpp"
@@ -51,7 +52,7 @@ Options parse(int argc, char** argv) {
     const std::string a = argv[i];
     if (a == "-o" || a == "--output") {
       if (++i == argc) refuse(a + " needs a folder");
-      o.folder = argv[i];
+      o.folder = io::with_home(argv[i]);
     } else if (a == "--resume") {
       o.resume = true;
     } else if (a == "-q" || a == "--quiet") {
@@ -59,7 +60,7 @@ Options parse(int argc, char** argv) {
     } else if (!a.empty() && a[0] == '-') {
       refuse("unknown option " + a);
     } else if (o.scene.empty()) {
-      o.scene = a;
+      o.scene = io::with_home(a);
     } else {
       refuse("more than one scene: " + a);
     }

@@ -65,7 +65,13 @@ void check_kernels(const io::BinaryReader& in) {
 /// Throws InputError unless the laws of the user are those with which the checkpoint was made.
 void check_laws(const io::BinaryReader& in, const methods::UserLaws& laws) {
   const std::string then = in.has("laws") ? in.text("laws") : "";
-  if (then == (laws.any() ? laws.name : "")) return;
+  if (then == (laws.any() ? laws.name : "")) {
+    const std::string numbers = in.has("own_numbers") ? in.text("own_numbers") : "0";
+    if (numbers == std::to_string(laws.own_numbers)) return;
+    throw InputError(in.path().string(), "made with " + quote(then) + " that has " + numbers +
+                                             " numbers of its own for each particle, and not " +
+                                             std::to_string(laws.own_numbers));
+  }
   throw InputError(in.path().string(),
                    then.empty() ? "made without laws of the user; leave them out"
                                 : "made with the laws of the user " + quote(then) +
@@ -89,6 +95,8 @@ void Simulation::save(const std::filesystem::path& checkpoint) const {
   out.add_text("base_dir", std::filesystem::absolute(base_dir_).string());
   out.add_text("kernels", kernel_variant_name());
   if (surroundings_.laws.any()) out.add_text("laws", surroundings_.laws.name);
+  if (surroundings_.laws.own_numbers)
+    out.add_text("own_numbers", std::to_string(surroundings_.laws.own_numbers));
   if (!shape_fingerprints_.empty()) out.add("shape_files", shape_fingerprints_);
   if (surroundings_.input)
     out.add(surroundings_.input->section(), fingerprints_of(*surroundings_.input));

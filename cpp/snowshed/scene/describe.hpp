@@ -172,6 +172,8 @@ void describe(V& v, scene::BodySpec& b) {
             "Event at whose start it appears, 1 the first; 0: at the start of every event");
   v.optional("snow", b.snow,
              "Snow of its own; values that are left out are those of the scene's snow");
+  v.number("volume", b.volume, "m3", methods::non_negative.up_to(1e9),
+           "Volume of its undeformed snow, in 2D m2, from which its mass follows; 0: the solid's");
 }
 
 template <class V>
@@ -181,7 +183,7 @@ void describe(V& v, scene::Panel& p) {
   v.alias("tilt", "surface_tilt");
   v.number("height", p.height, "m", methods::allowed::size_or_zero.required().usual(0.01, 20),
            "Vertical distance of the lower edge above the ground");
-  v.number("length", p.length, "m", methods::allowed::size.required().usual(0.05, 100),
+  v.number("length", p.length, "m", methods::allowed::size.required().usual(0.05, 40),
            "Length along the slope");
   v.number("width", p.width, "m", methods::allowed::size.required_in_3d().usual(0.05, 2000),
            "Width across the slope; ignored in 2D");

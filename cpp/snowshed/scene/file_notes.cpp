@@ -19,6 +19,9 @@ constexpr double max_size_ratio = 300;
 constexpr double max_panel_ratio = 100;
 /// Thinner slabs on a panel are noted.
 constexpr double min_slab_ratio = 1e-3;
+/// Lowest and highest lower edge, and least width, beside the length of a panel.
+constexpr double min_height_ratio = 1.0 / 60, max_height_ratio = 30;
+constexpr double min_width_ratio = 1.0 / 30;
 
 struct Solid {
   std::string path;
@@ -68,7 +71,7 @@ std::vector<Solid> solids_of(const Scene& scene, const std::filesystem::path& ba
   return solids;
 }
 
-/// A note if snow and panel have sizes that are not of the same unit.
+/// A note if the length of the panel and another size are not of the same unit.
 void compare(const std::string& path, double size, const char* adjective, double panel,
              double least, double most, std::vector<std::string>& notes) {
   if (size <= 0 || !std::isfinite(size) || (least * panel <= size && size <= most * panel)) return;
@@ -76,10 +79,15 @@ void compare(const std::string& path, double size, const char* adjective, double
                   show_briefly(panel) + " m; check the units of both");
 }
 
-void add_notes_on_snow_of_panel(const Scene& scene, const std::vector<Solid>& solids,
-                                std::vector<std::string>& notes) {
+void add_notes_on_panel(const Scene& scene, const std::vector<Solid>& solids,
+                        std::vector<std::string>& notes) {
   if (!scene.panel) return;
   const double panel = scene.panel->length;
+  compare("/panel/height", scene.panel->height, "high", panel, min_height_ratio, max_height_ratio,
+          notes);
+  if (scene.dimension == 3)
+    compare("/panel/width", scene.panel->width, "wide", panel, min_width_ratio, geometry::infinity,
+            notes);
   if (scene.slab) {
     double thickness = scene.slab->thickness;
     for (const Layer& layer : scene.slab->layers) thickness = std::max(thickness, layer.thickness);
@@ -98,7 +106,7 @@ void add_notes_on_files(const Scene& scene, const std::filesystem::path& base_di
                         std::vector<std::string>& notes) {
   const std::vector<Solid> solids = solids_of(scene, base_dir, obstacles, notes);
   const double cell = scene.numerics->resolution();
-  add_notes_on_snow_of_panel(scene, solids, notes);
+  add_notes_on_panel(scene, solids, notes);
   for (const Solid& solid : solids) {
     if (!std::isfinite(solid.size)) continue;
     const bool is_read = !solid.file.empty();

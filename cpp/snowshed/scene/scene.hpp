@@ -62,6 +62,7 @@ struct BodySpec {
   Vec3 velocity = Vec3::Zero();  // m/s
   int event = 1;
   std::optional<material::Snow> snow;  // none: the scene's
+  double volume = 0;                   // m3, in 2D m2; 0: that of the solid
 };
 
 /// The panel of Figure 3.1.1: x points down the slide direction, z up, the origin of x is

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "snowshed/io/checksum.hpp"
+#include "snowshed/io/home_folder.hpp"
 #include "snowshed/scene/earlier_version.hpp"
 #include "snowshed/scene/json_text.hpp"
 #include "snowshed/scene/reader.hpp"
@@ -36,14 +37,20 @@ std::string read_text(const std::filesystem::path& file) {
   return text;
 }
 
-/// Makes a relative name absolute; an absolute or empty name stays.
-void make_absolute(const std::filesystem::path& folder, std::string& file) {
-  if (!file.empty()) file = (folder / file).lexically_normal().string();
+template <class Change>
+void change_files(ShapeSpec& shape, const Change& change) {
+  change(shape.file);
+  for (auto& part : shape.shapes) change_files(part, change);
 }
 
-void with_absolute_files(const std::filesystem::path& folder, ShapeSpec& shape) {
-  make_absolute(folder, shape.file);
-  for (auto& part : shape.shapes) with_absolute_files(folder, part);
+/// Calls `change` with the name of every file; names may be empty.
+template <class Change>
+void change_files(Scene& scene, const Change& change) {
+  for (auto& obstacle : scene.obstacles) change_files(obstacle.shape, change);
+  for (auto& body : scene.bodies) change_files(body.shape, change);
+  if (scene.terrain)
+    for (std::string* file : {&scene.terrain->file, &scene.terrain->thickness_file}) change(*file);
+  if (scene.sample) change(scene.sample->file);
 }
 
 void add_files(const ShapeSpec& shape, std::vector<std::string>& files) {
@@ -121,18 +128,16 @@ Scene parse_scene(const std::string& text, const std::string& name,
   if (notes) notes->insert(notes->end(), changed.begin(), changed.end());
   complete_snow(json);
   Reader::read(json, "", scene.dimension, scene);
+  change_files(scene, [](std::string& file) { file = io::with_home(file); });
   check_rules(scene);
   return scene;
 }
 
 Scene with_absolute_files(const std::filesystem::path& folder, Scene scene) {
   const auto absolute = std::filesystem::absolute(folder.empty() ? "." : folder);
-  for (auto& obstacle : scene.obstacles) with_absolute_files(absolute, obstacle.shape);
-  for (auto& body : scene.bodies) with_absolute_files(absolute, body.shape);
-  if (scene.terrain)
-    for (std::string* file : {&scene.terrain->file, &scene.terrain->thickness_file})
-      make_absolute(absolute, *file);
-  if (scene.sample) make_absolute(absolute, scene.sample->file);
+  change_files(scene, [&](std::string& file) {
+    if (!file.empty()) file = (absolute / file).lexically_normal().string();
+  });
   return scene;
 }
 

@@ -13,7 +13,8 @@ namespace snowshed::scene {
 /// Reads and validates a scene. Missing values of a layer's or a body's snow are those of the
 /// scene's snow. Throws InputError whose `where` is the JSON pointer of the offending value
 /// ("/snow/density", "/" for the scene itself), or "name:line:column" when the text is not JSON.
-/// The record of a run (run.json) stands for the scene in it.
+/// The record of a run (run.json) stands for the scene in it. In names of files, a leading "~" is
+/// the user's home.
 /// The text need not be trusted: its size, depth and number of values are limited. `notes` (if any)
 /// gets the new names of fields in a scene of an earlier version.
 Scene parse_scene(const std::string& text, const std::string& name = "scene",

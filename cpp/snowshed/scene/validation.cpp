@@ -172,6 +172,9 @@ class SceneRules {
       fail(body.shape, "an unbounded shape cannot be filled with snow");
     check_in_domain(body.shape, body.shape);
     check_event(body.event);
+    if (body.volume > 0 && !scene_.numerics.takes(methods::Part::seeding))
+      fail(body.volume, "the method " + quote(scene_.numerics->info().name) +
+                            " takes the volume of the solid; leave this one out");
   }
 
   /// Checks that the method supports the scene's snow, events and output.

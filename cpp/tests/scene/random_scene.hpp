@@ -175,7 +175,10 @@ inline void mend_mps(Scene& scene) {
   scene.snow = {};
   scene.seeding = {};
   scene.events.between = methods::Between::carry;
-  for (auto& body : scene.bodies) body.snow.reset();
+  for (auto& body : scene.bodies) {
+    body.snow.reset();
+    body.volume = 0;
+  }
   if (scene.slab)
     for (auto& layer : scene.slab->layers) layer.snow.reset();
   methods::mps::Settings& settings = scene.numerics.as<methods::mps::Settings>();

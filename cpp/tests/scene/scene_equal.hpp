@@ -30,8 +30,8 @@ inline auto tied(const ObstacleSpec& s) {
   return std::tie(a, b, c, d, e);
 }
 inline auto tied(const BodySpec& s) {
-  auto& [a, b, c, d] = s;
-  return std::tie(a, b, c, d);
+  auto& [a, b, c, d, e] = s;
+  return std::tie(a, b, c, d, e);
 }
 inline auto tied(const Panel& s) {
   auto& [a, b, c, d, e, f, g] = s;

@@ -172,6 +172,31 @@ TEST(FileNotes, SnowThatDoesNotFitThePanelIsNoted) {
             "/bodies/0/shape: 250 m large beside a panel of 2 m; check the units of both");
 }
 
+TEST(FileNotes, APanelInCentimetresIsNotedAlsoIfItsSlabIsPlausible) {
+  TempDir dir;
+  Scene scene = panel_scene(40);
+  scene.slab->thickness = 0.2;
+  const auto notes = [&] { return build_surroundings(scene, dir.path()).notes; };
+  scene.panel->length = 30;
+  scene.panel->height = 0.4;
+  ASSERT_EQ(notes().size(), 1u);
+  EXPECT_EQ(notes()[0],
+            "/panel/height: 0.4 m high beside a panel of 30 m; check the units of both");
+  scene.panel->height = 2;
+  EXPECT_TRUE(notes().empty());
+  scene.panel->length = 0.5;
+  scene.panel->height = 18;
+  EXPECT_EQ(notes().size(), 1u);
+  scene.panel->height = 0;  // a panel that ends at the ground
+  EXPECT_TRUE(notes().empty());
+  scene.dimension = 3;
+  scene.panel->length = 30;
+  scene.panel->width = 0.6;
+  scene.slab->width = 0.4;
+  ASSERT_EQ(notes().size(), 1u);
+  EXPECT_EQ(notes()[0].substr(0, 13), "/panel/width:");
+}
+
 TEST(FileNotes, RepairsAreNoted) {
   TempDir dir;
   std::string content = obj_box({0, -1, 0}, {1, 1, 2});

@@ -37,6 +37,14 @@ TEST(UnusualValues, TheNoteHasPathValueAndUsualRange) {
             "check its unit");
 }
 
+TEST(UnusualValues, PanelsLongerThanRoofsAreNoted) {
+  Scene scene = panel_scene(40);
+  scene.panel->length = 40;
+  EXPECT_TRUE(notes_of(scene).empty());
+  scene.panel->length = 50;  // half a metre in centimetres
+  EXPECT_EQ(notes_of(scene).size(), 1u);
+}
+
 TEST(UnusualValues, AnglesInRadiansAreNotedWithEitherSign) {
   EXPECT_EQ(notes_of(panel_scene(0.87)).size(), 1u);
   EXPECT_EQ(notes_of(panel_scene(40, -0.35)).size(), 1u);

@@ -261,9 +261,25 @@ def _as_call(value: object, kind: object) -> str:
 
 
 def _with_home(value: object, kind: object) -> object:
-    """Return a value, a file name with the user's home in place of ``~``."""
-    if not any(typing.get_origin(each) is os.PathLike for each in _alternatives(kind)):
+    """Return a value, file names (also in a list) with the user's home in place of ``~``."""
+    if not any(_is_path(each) or _holds_paths(each) for each in _alternatives(kind)):
         return value
+    if isinstance(value, (list, tuple)):
+        return type(value)(map(_path_with_home, value)) if type(value) in (list, tuple) else value
+    return _path_with_home(value)
+
+
+def _is_path(kind: object) -> bool:
+    return typing.get_origin(kind) is os.PathLike
+
+
+def _holds_paths(kind: object) -> bool:
+    if not _holds_items(kind, keyed=False):
+        return False
+    return any(_is_path(each) for item in typing.get_args(kind) for each in _alternatives(item))
+
+
+def _path_with_home(value: object) -> object:
     if isinstance(value, os.PathLike):
         return type(value)(with_home(os.fspath(value))) if isinstance(value, PurePath) else value
     return with_home(value) if isinstance(value, str) else value

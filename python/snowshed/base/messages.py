@@ -16,26 +16,6 @@ MAX_LENGTH = 60  # characters
 HARMFUL = re.compile(
     "[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]"
 )
-#: An argument of a function in a message, such as `max_thickness=`.
-_ARGUMENT = re.compile(r"`([a-z]\w*(?:\['\w+'\])?)=([^`\s]*)`")
-#: Arguments whose options have another name.
-_OPTIONS = {
-    "same_version": "same-version-is-enough",
-    "layers['release']": "layer",
-    "layers['entrainment']": "entrainment-layer",
-    "layers['resistance']": "resistance-layer",
-    "slope_length": "slope-length",
-    "ranges": "range",
-    "voxel_size": "voxel",
-}
-#: Calls in messages, and the commands that do the same.
-_RESUMING = re.compile(r"`snowshed\.run\('([^'`]*)', '([^'`]*)', resume=True\)`")
-#: A clause that commands leave out, because they have no such option.
-_OVERWRITING = re.compile(r",( [^,]*), or replace its results with `overwrite=True`")
-_COMMANDS = {
-    "`Study.run`": "`snowshed study run`",
-    "`snowshed.study.resume`": "`snowshed study resume`",
-}
 FORMULA = ("=", "+", "-", "@", "\t", "\r")  # beginnings of cells that spreadsheets compute
 
 
@@ -74,47 +54,6 @@ def suggestion(given: str, allowed: Iterable[str]) -> str:
     by_lower = {word.lower(): word for word in allowed}
     near = difflib.get_close_matches(given.lower(), by_lower, n=1)
     return f"; did you mean {by_lower[near[0]]}?" if near else ""
-
-
-def as_options(text: str) -> str:
-    """Return a message for the command line: arguments of functions become its options.
-
-    Messages name an argument with an equals sign and in backticks, as in Python.
-
-    Examples
-    --------
-    >>> as_options("give `max_thickness=`, or resume it with `resume=True`")
-    'give --max-thickness, or resume it with --resume'
-    >>> as_options("`threshold=0.5` takes all numbers above 0 for ice")
-    '--threshold 0.5 takes all numbers above 0 for ice'
-    >>> as_options("take another, resume it with `resume=True`, or replace its results with "
-    ...            "`overwrite=True`")
-    'take another, or resume it with --resume'
-    >>> as_options("resume it with " + resuming_call("out/scene.json", "out"))
-    'resume it with: snowshed run out/scene.json -o out --resume'
-    """
-    text = _OVERWRITING.sub(r", or\1", text)
-    text = _RESUMING.sub(r": snowshed run \1 -o \2 --resume", text).replace(" : ", ": ")
-    for call, command in _COMMANDS.items():
-        text = text.replace(call, command)
-    return _ARGUMENT.sub(_option, text)
-
-
-def resuming_call(scene: object, folder: object) -> str:
-    """Return the call that resumes a run, for messages.
-
-    Examples
-    --------
-    >>> resuming_call("out/scene.json", "out")
-    "`snowshed.run('out/scene.json', 'out', resume=True)`"
-    """
-    return f"`snowshed.run({str(scene)!r}, {str(folder)!r}, resume=True)`"
-
-
-def _option(argument: re.Match[str]) -> str:
-    name, value = argument.groups()
-    option = "--" + _OPTIONS.get(name, name).replace("_", "-")
-    return option if value in ("", "True") else f"{option} {value}"
 
 
 def printable(text: object) -> str:

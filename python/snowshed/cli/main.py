@@ -23,7 +23,8 @@ from typing import Optional, TextIO, Union
 import click
 
 import snowshed._core as _core
-from snowshed.base.messages import as_options, printable, shortened
+from snowshed.base.callers import called_from_shell
+from snowshed.base.messages import printable, shortened
 from snowshed.base.notes import SnowshedNote
 from snowshed.cli.deferred import Deferred
 from snowshed.cli.exit_codes import BAD_INPUT, COULD_NOT_FINISH, INTERRUPTED, PIPE_CLOSED
@@ -107,7 +108,7 @@ def main(
     name
         Name of the program in its help.
     """
-    with warnings.catch_warnings():
+    with warnings.catch_warnings(), called_from_shell():
         warnings.showwarning = _note
         try:
             code = _run(command, arguments, name)
@@ -171,13 +172,13 @@ def _note(
 ) -> None:
     """Print a warning; notes for users come without a line of code."""
     if issubclass(category, (FutureWarning, SnowshedNote)):
-        text = f"note: {as_options(str(message))}\n"
+        text = f"note: {message}\n"
     else:
         text = warnings.formatwarning(message, category, filename, lineno, line)
     (file or sys.stderr).write(printable(text))
 
 
 def _fail(message: str, code: int) -> int:
-    line = printable(as_options(" ".join(message.split())))
+    line = printable(" ".join(message.split()))
     print("error:", shortened(line, MAX_MESSAGE), file=sys.stderr)
     return code

@@ -5,22 +5,23 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Optional
 
 from snowshed._core import InputError
+from snowshed.base.callers import argument
 from snowshed.base.paths import PathLike
 from snowshed.io.atomic import LEFTOVER, write_text
 from snowshed.io.json_file import read_object
 
 
-def check_empty(
-    folder: PathLike, otherwise: str = "; choose a new folder, or resume the run with `resume=True`"
-) -> None:
+def check_empty(folder: PathLike, otherwise: Optional[str] = None) -> None:
     """Raise InputError unless results may be written to `folder`: it is new, or empty.
 
     Leftovers of killed processes do not count. `otherwise` ends the message of a folder that is
     not empty.
     """
+    if otherwise is None:
+        otherwise = f"; choose a new folder, or resume the run with {argument('resume', True)}"
     folder = Path(folder)
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder}: not a folder")

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from snowshed._core import InputError
+from snowshed.base.callers import resuming_call
 from snowshed.base.json_values import JsonValue
-from snowshed.base.messages import resuming_call
 from snowshed.io.csv_table import Table
 from snowshed.io.input_file import read_regular
 from snowshed.io.json_file import read_object

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Optional
 import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
-from snowshed.base.messages import resuming_call
+from snowshed.base.callers import resuming_call
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
 from snowshed.io.atomic import replacing_folder

@@ -20,9 +20,15 @@ _DOUBLES = ctypes.POINTER(ctypes.c_double)
 _FLOATS = ctypes.POINTER(ctypes.c_float)
 _SNOW = ctypes.POINTER(ctypes.c_uint8)
 
-#: Types of the functions for `ctypes`, by the name of the law. The law of the material has one for
+#: Types of the functions for `ctypes`, by the name of the law. Laws of the material have one for
 #: each precision of ``numerics.precision``.
 LAW_PROTOTYPES = {
+    "constitutive_float": ctypes.CFUNCTYPE(
+        None, ctypes.c_int64, *[_FLOATS] * 4, _SNOW, ctypes.c_double
+    ),
+    "constitutive_double": ctypes.CFUNCTYPE(
+        None, ctypes.c_int64, *[_DOUBLES] * 4, _SNOW, ctypes.c_double
+    ),
     "material_float": ctypes.CFUNCTYPE(
         None, ctypes.c_int64, _FLOATS, _FLOATS, _FLOATS, _SNOW, ctypes.c_double
     ),
@@ -37,6 +43,10 @@ LAW_PROTOTYPES = {
 }
 #: The same types for `numba.cfunc`.
 LAW_SIGNATURES = {
+    "constitutive_float": "void(int64, CPointer(float32), CPointer(float32), CPointer(float32),"
+    " CPointer(float32), CPointer(uint8), float64)",
+    "constitutive_double": "void(int64, CPointer(float64), CPointer(float64), CPointer(float64),"
+    " CPointer(float64), CPointer(uint8), float64)",
     "material_float": "void(int64, CPointer(float32), CPointer(float32), CPointer(float32),"
     " CPointer(uint8), float64)",
     "material_double": "void(int64, CPointer(float64), CPointer(float64), CPointer(float64),"
@@ -46,6 +56,8 @@ LAW_SIGNATURES = {
     " CPointer(float64), CPointer(float64), CPointer(float64))",
     "motion": "void(float64, CPointer(float64))",
 }
+
+MAX_OWN_NUMBERS = 8  # as in the core
 
 #: The class of all functions of ctypes.
 _FUNCTION: type = ctypes.CFUNCTYPE(None).__mro__[1]
@@ -70,6 +82,18 @@ class Laws:
         compression positive), and `plastic_strain`, the volumetric plastic strain. A change of p
         by dp changes the plastic strain by dp/K, K the bulk modulus. `snow` has the index of each
         particle's snow. Numbers are of the type of ``numerics.precision``.
+    constitutive
+        Stress and state of the snow from its elastic trial, in place of its law and its elasticity:
+        ``constitutive(count, strain, stress, plastic_strain, own, snow, time_step)``. `strain` is
+        the elastic Hencky strain (positive in tension), which the law replaces by its part that
+        remains elastic; `stress` receives Kirchhoff's stress [Pa]. Component k of particle i stands
+        at ``k * count + i``; components are xx, zz, xz in 2D, and xx, yy, zz, xy, xz, yz in 3D.
+        What the trace of the strain loses is added to `plastic_strain`. With a time step of 0 the
+        law returns the stress of the given state and changes nothing.
+    own_numbers
+        Number of values that the constitutive law stores for each particle in `own`, 0 to 8. They
+        begin with zero, and checkpoints hold them. Value k of particle i stands at
+        ``k * count + i``, and is the field ``own_k`` of a simulation.
     friction
         Coulomb's coefficient of obstacles, by their name: ``friction(speed, normal_stress)``, of
         the sliding speed [m/s] and the normal stress [Pa].
@@ -98,18 +122,27 @@ class Laws:
     friction: Mapping[str, Compiled] = field(default_factory=dict)
     body_force: Optional[Compiled] = None
     motion: Mapping[str, Compiled] = field(default_factory=dict)
+    constitutive: Optional[Compiled] = None
+    own_numbers: int = 0
 
     def __post_init__(self) -> None:
         if not self.name or not self.name.isprintable():
             raise InputError(f"name: {self.name!r} is not a name of printable characters")
         self.addresses("double" if self.is_double else "float")
-        if not (self.material or self.friction or self.body_force or self.motion):
+        if self.material is not None and self.constitutive is not None:
+            raise InputError("laws: both material and constitutive; give one of them")
+        if not 0 <= self.own_numbers <= MAX_OWN_NUMBERS:
+            raise InputError(f"own_numbers: {self.own_numbers}; allowed: 0 to {MAX_OWN_NUMBERS}")
+        if self.own_numbers and self.constitutive is None:
+            raise InputError("own_numbers: only a constitutive law has numbers of its own")
+        if not any((self.material, self.constitutive, self.friction, self.body_force, self.motion)):
             raise InputError("laws: there is none; give at least one")
 
     @property
     def is_double(self) -> bool:
         """Whether the law of the material, if any, takes double precision."""
-        return self._matches("material_double", self.material)
+        material = self._matches("material_double", self.material)
+        return material and self._matches("constitutive_double", self.constitutive)
 
     def addresses(self, precision: str) -> dict[str, object]:
         """Return the addresses of the functions for the core.
@@ -127,6 +160,10 @@ class Laws:
         laws: dict[str, object] = {"name": self.name}
         if self.material is not None:
             laws["material"] = self._address(f"material_{precision}", "material", self.material)
+        if self.constitutive is not None:
+            kind = f"constitutive_{precision}"
+            laws["constitutive"] = self._address(kind, "constitutive", self.constitutive)
+            laws["own_numbers"] = self.own_numbers
         if self.body_force is not None:
             laws["body_force"] = self._address("body_force", "body_force", self.body_force)
         for kind in ("friction", "motion"):

@@ -11,6 +11,7 @@ from typing import Any, Optional
 import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.build import package_digest
+from snowshed.base.callers import either
 from snowshed.io.json_file import read_object
 from snowshed.io.run_files import RECORD, file_mark
 from snowshed.running.ageing.ageing import Ageing
@@ -43,7 +44,8 @@ class RecordedRun:
         """Raise InputError unless the laws of one's own are those of the run, by their name."""
         then, now = self.record.get("laws"), None if laws is None else laws.name
         if then is not None and then != now:
-            raise InputError(f"{self.path}: made with the laws {then!r}; give them (`laws=`)")
+            give = either("give them (`laws=`)", "resume it in Python, with its laws (`laws=`)")
+            raise InputError(f"{self.path}: made with the laws {then!r}; {give}")
 
     def differences(self) -> list[str]:
         """Return notes on what has changed since: the build, and the files of the scene."""

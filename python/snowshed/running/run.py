@@ -12,10 +12,11 @@ import weakref
 from contextlib import nullcontext
 from pathlib import Path
 from tempfile import mkdtemp
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any, Literal, Optional, Union
 
 import snowshed._core as _core
 from snowshed.base.arguments import checked
+from snowshed.base.callers import either
 from snowshed.base.extras import require
 from snowshed.base.interrupt import Interrupted, InterruptRequest, deferred_interrupts
 from snowshed.base.log import LOGGER
@@ -27,6 +28,7 @@ from snowshed.io.folders import check_empty
 from snowshed.io.raster.output import MapFormat
 from snowshed.methods.method import Method
 from snowshed.methods.registry import method_of
+from snowshed.results.folder import RunFolder
 from snowshed.results.reader import Results
 from snowshed.results.replacement import replaced_results
 from snowshed.running.ageing.ageing import Ageing
@@ -41,18 +43,13 @@ from snowshed.scene.scene import SceneLike, resolve_scene
 if TYPE_CHECKING:
     import pandas as pd
 
-NOT_EMPTY = (
-    "; choose a new folder, resume the run with `resume=True`, or replace its results with "
-    "`overwrite=True`"
-)
-
 
 @checked
 def run(
     scene: SceneLike,
     folder: Optional[PathLike] = None,
     *,
-    resume: bool = False,
+    resume: Union[bool, Literal["auto"]] = False,
     overwrite: bool = False,
     ageing: Optional[Ageing] = None,
     laws: Optional[Laws] = None,
@@ -73,7 +70,9 @@ def run(
         overwriting. None: a temporary folder, which is removed with the results.
     resume
         Resume from the checkpoint in `folder`, also one of ``snowshed-run``; the particles are
-        those of an uninterrupted run. Events that are missing in the tables are measured from their
+        those of an uninterrupted run. "auto": resume if the folder holds a run, else begin; a
+        finished run of the same scene is returned, so that a cell of a notebook may be run again.
+        Events that are missing in the tables are measured from their
         stored particles, in single precision.
     overwrite
         Replace the results of an earlier run in `folder`. They stay if the new run cannot begin.
@@ -141,8 +140,9 @@ def run(
         )
     if resume and overwrite:
         raise _core.InputError("resume, overwrite: give one of the two")
+    resume = _resumes(resume, Path(folder))
     if not resume and not overwrite:
-        check_empty(folder, NOT_EMPTY)
+        check_empty(folder, _instead_of_full())
     if map_format != "ascii":
         _check_maps(method, map_format)
     options = RunOptions(resume, ageing, pictures, compact, map_format)
@@ -175,6 +175,15 @@ def _check_maps(method: Method, map_format: MapFormat) -> None:
     require("rasterio", "terrain", f"the format {map_format} of maps")
 
 
+def _resumes(resume: Union[bool, Literal["auto"]], folder: Path) -> bool:
+    """Return whether to resume the run in a folder."""
+    if isinstance(resume, str):
+        if resume != "auto":
+            raise _core.InputError(f'resume: {resume!r}; allowed: True, False, "auto"')
+        return RunFolder(folder).scene.is_file()
+    return resume
+
+
 def _title(scene: ResolvedScene) -> str:
     return str(scene.data.get("title") or f"a scene of the method {method_of(scene.data).name}")
 
@@ -196,7 +205,7 @@ def run_events(
     scene: SceneLike,
     folder: Optional[PathLike] = None,
     *,
-    resume: bool = False,
+    resume: Union[bool, Literal["auto"]] = False,
     overwrite: bool = False,
     ageing: Optional[Ageing] = None,
     laws: Optional[Laws] = None,
@@ -306,3 +315,12 @@ class _Observer:
                 updates_per_s=updates_per_s,
             )
         )
+
+
+def _instead_of_full() -> str:
+    """Return the end of the message on a folder that is not empty."""
+    return either(
+        "; choose a new folder, resume the run with `resume=True`, or replace its results with "
+        "`overwrite=True`",
+        "; choose a new folder, or resume the run with --resume",
+    )

@@ -16,7 +16,7 @@ from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.base.record import Alias, FieldsByField, Record, default
 from snowshed.io.json_file import read_object
-from snowshed.scene.shape import Shape, Vector
+from snowshed.scene.shape import Outline, Shape, Vector
 
 SnowModel = Literal["cam_clay", "elastic"]
 Condition = Literal["sticky", "slip", "separate"]
@@ -273,12 +273,16 @@ class Body(Record):
         1000; default 1.
     snow : Snow
         Snow of its own; values that are left out are those of the scene's snow.
+    volume : float
+        Volume of its undeformed snow, in 2D m2, from which its mass follows; 0: the solid's [m3].
+        0 <= value <= 1e+09; default 0.
     """
 
     shape: Optional[Shape] = None
     velocity: Optional[Vector] = default((0.0, 0.0, 0.0))
     event: Optional[int] = default(1)
     snow: Optional[Snow] = None
+    volume: Optional[float] = default(0.0)
 
     INHERITS: ClassVar[tuple[str, ...]] = ("snow",)
 

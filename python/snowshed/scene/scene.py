@@ -19,7 +19,7 @@ from snowshed._core import InputError
 from snowshed._core import preset as preset_text
 from snowshed.base.arguments import checked
 from snowshed.base.json_values import JsonObject, JsonValue
-from snowshed.base.paths import PathLike, with_home
+from snowshed.base.paths import PathLike
 from snowshed.base.record import MAX_DEPTH, Record, check_instead, check_once, default
 from snowshed.io.input_file import read_input
 from snowshed.io.json_text import loads
@@ -39,7 +39,6 @@ from snowshed.scene.components import (
     Snow,
 )
 from snowshed.scene.loading import Cone, LoadingStage, Sample
-from snowshed.scene.named_files import with_named_files
 from snowshed.scene.output import Output
 from snowshed.scene.resolved import ResolvedScene
 from snowshed.scene.scene_html import scene_html
@@ -384,8 +383,7 @@ class Scene(Record):
             Naming the JSON path, the error, and the allowed values.
         """
         self._warn_of_slip()
-        data = with_named_files(self.to_data(), with_home)
-        return ResolvedScene.parse(json.dumps(data), self._base_dir)
+        return ResolvedScene.parse(json.dumps(self.to_data()), self._base_dir)
 
     def _warn_of_slip(self) -> None:
         """Warn of the new meaning of "slip" for one release, except in scenes of version 1."""

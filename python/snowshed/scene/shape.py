@@ -16,6 +16,8 @@ from snowshed.base.record import Record
 from snowshed.io.array_files import array_file
 
 Vector = Sequence[float]
+#: Corners (x, y) of an area on the map, m.
+Outline = Sequence[Sequence[float]]
 ShapeType = Literal[
     "plane",
     "box",

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import List, Optional
 
 from snowshed.base.paths import PathLike
 from snowshed.base.record import Record, default
+from snowshed.scene.shape import Outline
 
-#: Corners (x, y) of an area on the map, m.
-Outline = Sequence[Sequence[float]]
 
 
 @dataclass

@@ -9,7 +9,7 @@ import snowshed._core as _core
 from snowshed.base.arguments import checked
 from snowshed.io.raster.raster import Raster
 from snowshed.scene.scene import SceneLike, resolve_scene
-from snowshed.scene.terrain_components import Outline
+from snowshed.scene.shape import Outline
 
 
 @checked

@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 from typing import Optional
 
 from snowshed.base.arguments import checked
+from snowshed.base.notes import issue_note
 from snowshed.running.ageing.ageing import Ageing, Interval
 from snowshed.season.release import SnowBalance, snow_balance
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.settling_column import SnowColumn
-from snowshed.season.weather.checks import check_one_season
-from snowshed.season.weather.columns import check_given_rows
+from snowshed.season.weather.checks import check_given_rows, check_one_season, warm_snow
 from snowshed.season.weather.row import Weather
 from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
 
@@ -61,7 +61,7 @@ def accumulate(
 
     Snow of a depth h on level ground has the thickness h cos(Phi) normal to the panel, because its
     mass per area of the ground is the same. All snow is released at once (`snow_balance`). It melts
-    by degree-days (`SeasonSettings.melt`). Wind is left out.
+    by degree-days (`SeasonSettings.melt`). Wind is left out. A note tells of snowfalls in warm air.
 
     Parameters
     ----------
@@ -88,7 +88,15 @@ def accumulate(
     >>> round(day.load), round(day.balance.driving), round(day.balance.resisting), day.event
     (10, 85, 84, 1)
     """
-    check_given_rows(season)
+    for note in warm_snow(check_given_rows(season)):
+        issue_note(note)
+    return snow_on_panel(season, settings, tilt, gravity)
+
+
+def snow_on_panel(
+    season: Sequence[Weather], settings: SeasonSettings, tilt: float, gravity: float = 9.81
+) -> list[WinterDay]:
+    """Return what `accumulate` returns, for rows that were read and so checked and noted."""
     check_one_season(season)
     slope = math.cos(math.radians(tilt)) if tilt < 90.0 else 0.0  # nothing lies on a fence
     snow = SnowColumn(load_factor=gravity * slope)

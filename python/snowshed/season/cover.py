@@ -15,7 +15,7 @@ from typing import Optional
 from snowshed.base.arguments import checked
 from snowshed.season.settings import DAY, SeasonSettings
 from snowshed.season.settling_column import SnowColumn
-from snowshed.season.weather.columns import check_given_rows
+from snowshed.season.weather.checks import check_given_rows
 from snowshed.season.weather.row import Weather
 from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
 
@@ -56,7 +56,13 @@ def natural_cover(
     >>> [round(depth, 2) for depth in natural_cover(rows, SeasonSettings())]
     [0.4, 0.31, 0.1]
     """
-    check_given_rows(season)
+    return cover_depths(check_given_rows(season), settings, gravity)
+
+
+def cover_depths(
+    season: Sequence[Weather], settings: SeasonSettings, gravity: float
+) -> list[float]:
+    """Return what `natural_cover` returns, for rows that were read and so checked."""
     if settings.cover == "none":
         return [0.0] * len(season)
     if not isinstance(settings.cover, str):

@@ -18,7 +18,7 @@ from snowshed.methods.registry import resolution_of
 from snowshed.results.season_folder import SeasonFolder
 from snowshed.running.run import run_events
 from snowshed.scene.scene import ResolvedScene, SceneLike, resolve_scene
-from snowshed.season.accumulation import WinterDay, accumulate, stack_ageing
+from snowshed.season.accumulation import WinterDay, snow_on_panel, stack_ageing
 from snowshed.season.notes import assumptions, fall_notes, first_staying, notes
 from snowshed.season.panel_contact import PanelContact, first_contact, first_reached, panel_ends
 from snowshed.season.rows import check_rows, lying_snow_named
@@ -212,7 +212,7 @@ def plan_season(
     if "panel" not in data:
         raise InputError("/panel: missing; a season needs a panel for the snow to gather on")
     check_rows(settings.rows, data)
-    days = accumulate(record.rows, settings, data["panel"]["tilt"], data["gravity"])
+    days = snow_on_panel(record.rows, settings, data["panel"]["tilt"], data["gravity"])
     slides = season_scene(panel, days, settings) if any(day.event for day in days) else None
     return SeasonPlan(record, winters, days, panel, slides)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Optional
 
+from snowshed.base.callers import argument
 from snowshed.base.formatting import percent
 from snowshed.season.accumulation import WinterDay
 from snowshed.season.cover import end_of_readings
@@ -205,5 +206,5 @@ def _slide_off_notes(events: pd.DataFrame, first_staying_event: Optional[int]) -
     if unfinished:
         yield (
             f"{unfinished} of {len(events)} slide-offs ended before the snow rested; "
-            "allow a longer `max_time=`"
+            f"allow a longer {argument('max_time')}"
         )

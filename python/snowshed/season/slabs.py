@@ -14,7 +14,7 @@ from snowshed._core import InputError
 from snowshed.scene.components import Layer, Slab, Snow
 from snowshed.scene.scene import ResolvedScene, Scene
 from snowshed.season.accumulation import WinterDay
-from snowshed.season.cover import natural_cover
+from snowshed.season.cover import cover_depths
 from snowshed.season.rows import add_rows
 from snowshed.season.settings import SeasonSettings
 from snowshed.snow.relations.stiffness import YOUNGS_MODULUS
@@ -54,7 +54,7 @@ def season_scene(
         raise InputError("/bodies: a season lays its own snow; remove further bodies")
     natural: dict[str, Any] = scene["snow"]
     slab = scene.pop("slab", None) or {}
-    depths = natural_cover([day.weather for day in days], settings, scene["gravity"])
+    depths = cover_depths([day.weather for day in days], settings, scene["gravity"])
     cover = cover_below_slides(base.data, days, depths)
     if cover:
         scene["panel"]["height"] -= cover

@@ -10,7 +10,7 @@ import numpy as np
 
 from snowshed.results.season_folder import SEASON_COLUMNS
 from snowshed.season.accumulation import WinterDay
-from snowshed.season.cover import natural_cover
+from snowshed.season.cover import cover_depths
 from snowshed.season.panel_contact import below_panel, clearance
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.slabs import cover_below_slides
@@ -44,7 +44,7 @@ def season_table(
     """
     import pandas as pd
 
-    cover = natural_cover([day.weather for day in days], settings, scene["gravity"])
+    cover = cover_depths([day.weather for day in days], settings, scene["gravity"])
     below = cover_below_slides(scene, days, cover)
     lowered = {**scene, "panel": {**scene["panel"], "height": scene["panel"]["height"] - below}}
     stack = _Stack(lowered, below, settings, events, outlines)

@@ -10,6 +10,7 @@ from .factors import logarithmic as logarithmic
 from .factors import sobol as sobol
 from .formats import export as export
 from .formats import to_dataset as to_dataset
+from .named_laws import NamedLaws as NamedLaws
 from .remeasuring import remeasure as remeasure
 from .scene_hash import RunKey as RunKey
 from .season_part import SeasonPart as SeasonPart

@@ -1,7 +1,8 @@
 """The scene of a run and the ageing of its stack between events, in a single JSON object.
 
 A study stores a JSON object for each run: the complete scene with the additional key ``ageing``, if
-the stack ages between events. The identity of the run thus covers both.
+the stack ages between events, and ``laws``, if it has laws of its own
+(`snowshed.study.named_laws`). The identity of the run thus covers all three.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from snowshed.io.json_file import parse_object
 from snowshed.running.ageing.ageing import Ageing
 
 KEY = "ageing"
+LAWS = "laws"
 
 
 def with_ageing(scene: Mapping[str, Any], ageing: Optional[Ageing]) -> dict[str, Any]:
@@ -35,7 +37,7 @@ def with_ageing(scene: Mapping[str, Any], ageing: Optional[Ageing]) -> dict[str,
 
 
 def split_ageing(text: str) -> tuple[dict[str, Any], Optional[Ageing]]:
-    """Return the scene of a run, as JSON data, and the ageing of its stack.
+    """Return the scene of a run, as JSON data without its laws, and the ageing of its stack.
 
     Parameters
     ----------
@@ -54,9 +56,11 @@ def split_ageing(text: str) -> tuple[dict[str, Any], Optional[Ageing]]:
     """
     data: dict[str, Any] = parse_object(text, "scene")
     ageing = data.pop(KEY, None)
+    data.pop(LAWS, None)
     return data, None if ageing is None else Ageing.from_data(ageing, f"scene: {KEY}")
 
 
 def without_ageing(text: str) -> str:
-    """Return the scene of a run without its ageing, as JSON."""
-    return json.dumps(split_ageing(text)[0]) if f'"{KEY}"' in text else text
+    """Return the scene of a run without its ageing and its laws, as JSON."""
+    added = any(f'"{key}"' in text for key in (KEY, LAWS))
+    return json.dumps(split_ageing(text)[0]) if added else text

@@ -21,9 +21,11 @@ from snowshed.base.progress import Progress, Reporter
 from snowshed.io.locks import holding
 from snowshed.methods.registry import method_of
 from snowshed.results.folder import RunFolder
+from snowshed.running.laws import Laws
 from snowshed.running.run import run
 from snowshed.scene.resolved import ResolvedScene, scene_data
 from snowshed.study.aged_scene import split_ageing
+from snowshed.study.named_laws import laws_of_run
 from snowshed.study.outcome import RunOutcome, RunTask
 from snowshed.study.scene_hash import content_hash
 
@@ -61,9 +63,13 @@ def _compute(task: RunTask, folder: Path, report: Optional[FractionReporter]) ->
     if earlier.get("status") == "failed":  # the earlier process was killed before its report
         return _outcome(task, folder, earlier["error"])
     try:
+        laws = laws_of_run(scene_data(task.scene))
+    except InputError as error:
+        return RunOutcome(task.hash, "unable", error=str(error))
+    try:
         with warnings.catch_warnings():  # warnings of a worker are lost: the outcome has its notes
             warnings.simplefilter("ignore", SnowshedNote)
-            _run_or_resume(task, folder, _work_reporter(report))
+            _run_or_resume(task, folder, laws, _work_reporter(report))
     except Interrupted:
         return RunOutcome(task.hash, "interrupted")
     except OSError:
@@ -91,11 +97,13 @@ def _mismatch(task: RunTask) -> str:
     return ""
 
 
-def _run_or_resume(task: RunTask, folder: Path, report: Optional[Reporter]) -> None:
+def _run_or_resume(
+    task: RunTask, folder: Path, laws: Optional[Laws], report: Optional[Reporter]
+) -> None:
     """Run the events; an earlier attempt without a checkpoint is removed."""
     data, ageing = split_ageing(task.scene)
     options: dict[str, Any] = {
-        "ageing": ageing, "progress": report, "pictures": False, "compact": True,
+        "ageing": ageing, "laws": laws, "progress": report, "pictures": False, "compact": True,
     }  # fmt: skip
     if (folder / "scene.json").is_file():
         try:

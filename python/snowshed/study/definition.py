@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -12,6 +11,7 @@ from typing import TYPE_CHECKING, Optional
 
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
+from snowshed.base.field_type import shown
 from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
@@ -19,6 +19,7 @@ from snowshed.io.atomic import write_text
 from snowshed.scene.scene import Scene
 from snowshed.study import session, study_file
 from snowshed.study.factors import SEED, Part, axis
+from snowshed.study.named_laws import NamedLaws
 from snowshed.study.scene_hash import RunKey
 from snowshed.study.season_part import SEASON_PATHS, SeasonPart
 from snowshed.study.store import Store
@@ -57,12 +58,15 @@ class Study:
         A winter, if the runs are seasons: the snow of each panel gathers, slides off and piles up,
         and every slide-off is an event. The thickness of the slab and the number of events are
         those of the winter. None: the events are those of the scene.
+    laws
+        Laws of one's own, named so that every process can make them; None: those of the scene.
 
     Raises
     ------
     InputError
         If a factor names a parameter that a scene does not have, that does not change a result, or
-        that another factor of the same part also names, or if there are too many runs.
+        that another factor of the same part also names, if a value is of a wrong type, or if there
+        are too many runs.
 
     Examples
     --------
@@ -82,6 +86,7 @@ class Study:
     seeds: Optional[Sequence[int]] = None
     description: str = ""
     season: Optional[SeasonPart] = None
+    laws: Optional[NamedLaws] = None
 
     @classmethod
     def product(
@@ -92,18 +97,19 @@ class Study:
         name: str = "study",
         seeds: Optional[Sequence[int]] = None,
         season: Optional[SeasonPart] = None,
+        laws: Optional[NamedLaws] = None,
     ) -> Study:
         """Return the study of all combinations of the values of some parameters.
 
         Parameters
         ----------
-        scene, name, seeds, season
+        scene, name, seeds, season, laws
             As for `Study`.
         axes
             The values of each parameter, by its dotted path such as ``"snow.cohesion"``.
         """
         factors = [axis(path, values) for path, values in axes.items()]
-        return cls(scene, [factors], name, seeds, season=season)
+        return cls(scene, [factors], name, seeds, season=season, laws=laws)
 
     @classmethod
     def load(cls, file: PathLike) -> Study:
@@ -149,7 +155,13 @@ class Study:
         """
         return study_file.text(
             study_file.Content(
-                self.scene, self.parts, self.name, self.seeds, self.description, self.season
+                self.scene,
+                self.parts,
+                self.name,
+                self.seeds,
+                self.description,
+                self.season,
+                self.laws,
             )
         )
 
@@ -161,6 +173,8 @@ class Study:
         object.__setattr__(self, "scene", self.scene.copy())
         if not self.name or not self.name.isprintable():
             raise InputError(f"name: {self.name!r} is not a name of printable characters")
+        if self.laws is not None:
+            self.laws.laws()  # a wrong name is the study's error
         if not self.parts:
             raise InputError("has no parts; give at least one, which may be empty")
         for part in self.parts:
@@ -328,7 +342,9 @@ class Study:
     def _run(self, point: Mapping[str, object]) -> RunKey:
         try:
             resolved = self.scene.with_(point).resolve()
-            return RunKey.of(resolved) if self.season is None else self.season.run(resolved)
+            if self.season is not None:
+                return self.season.run(resolved, self.laws)
+            return RunKey.of(resolved, laws=self.laws)
         except InputError as error:
             values = ", ".join(f"{path} = {value}" for path, value in point.items())
             raise InputError(f"{values}: {error}" if values else str(error)) from None
@@ -347,7 +363,7 @@ class Study:
         scene = self.scene.copy()
         for factor in part:
             for path, values in factor.columns.items():
-                _try_to_set(scene, path, values[0])
+                _check_values(scene, path, values, another_method="method" in paths)
 
 
 def _issue_failures(folder: PathLike, study: str) -> None:
@@ -360,10 +376,21 @@ def _issue_failures(folder: PathLike, study: str) -> None:
         issue_note(f"{len(failed)} of {len(runs)} runs failed: {first}")
 
 
-def _try_to_set(scene: Scene, path: str, value: object) -> None:
+def _check_values(
+    scene: Scene, path: str, values: Sequence[object], *, another_method: bool
+) -> None:
+    """Refuse a path that the scene lacks and values of a wrong type; leave the first value set.
+
+    Where the method varies, the types of other values do, too; the run with a wrong one raises the
+    error.
+    """
     try:
         scene.set(path, None)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
-    with contextlib.suppress(InputError):  # the run with this value raises the error
-        scene.set(path, value)
+    for value in (*values, values[0]):
+        try:
+            scene.set(path, value)
+        except InputError as error:
+            if not another_method:
+                raise InputError(f"{path} = {shown(value)}: {error}") from None

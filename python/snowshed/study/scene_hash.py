@@ -23,7 +23,8 @@ from snowshed.io.input_file import read_regular
 from snowshed.running.ageing.ageing import Ageing
 from snowshed.scene.named_files import with_named_files
 from snowshed.scene.scene import ResolvedScene
-from snowshed.study.aged_scene import with_ageing
+from snowshed.study.aged_scene import LAWS, with_ageing
+from snowshed.study.named_laws import NamedLaws
 
 HASH_DIGITS = 32  # hexadecimal: 128 bits
 HASH = re.compile(f"[0-9a-f]{{{HASH_DIGITS}}}")
@@ -60,14 +61,19 @@ class RunKey:
         Content hash, 32 hexadecimal digits.
     scene
         The complete scene as JSON, with absolute paths of the files that it names, and the ageing
-        of its stack (`snowshed.study.aged_scene`).
+        of its stack and its laws (`snowshed.study.aged_scene`).
     """
 
     hash: str
     scene: str
 
     @classmethod
-    def of(cls, scene: ResolvedScene, ageing: Optional[Ageing] = None) -> RunKey:
+    def of(
+        cls,
+        scene: ResolvedScene,
+        ageing: Optional[Ageing] = None,
+        laws: Optional[NamedLaws] = None,
+    ) -> RunKey:
         """Return the run of a scene, without the outputs that a study does not store.
 
         Parameters
@@ -76,6 +82,8 @@ class RunKey:
             The scene.
         ageing
             Ageing of its stack between events; None: it does not age.
+        laws
+            Laws of one's own; None: those of the scene.
 
         Examples
         --------
@@ -88,6 +96,8 @@ class RunKey:
         False
         """
         data = with_ageing(scene.copied_data(), ageing)
+        if laws is not None:
+            data[LAWS] = laws.data()
         data["numerics"]["threads"] = 0
         data["output"].update(snapshot_interval=0.0, film=False, energy=False)
         return cls(content_hash(data), json.dumps(data))
@@ -122,6 +132,8 @@ def content_hash(scene: Mapping[str, Any]) -> str:
         del content["misplaced_snow"]
     if not content.get("sample", {}).get("split_labels", True):  # as before this choice existed
         content["sample"] = {k: v for k, v in content["sample"].items() if k != "split_labels"}
+    if content.get("bodies"):
+        content["bodies"] = [_without_default_volume(body) for body in content["bodies"]]
     if scene.get("snowshed") != 1:
         content = _as_version_1(content)
     content["numerics"] = {
@@ -136,6 +148,11 @@ def content_hash(scene: Mapping[str, Any]) -> str:
     hashed = {"snowshed": _core.version, "scene": with_named_files(content, _cached_digest)}
     text = json.dumps(hashed, sort_keys=True, separators=(",", ":"))
     return hashlib.sha256(text.encode()).hexdigest()[:HASH_DIGITS]
+
+
+def _without_default_volume(body: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a body without the volume of its solid; earlier versions had no such key."""
+    return {key: value for key, value in body.items() if key != "volume" or value}
 
 
 def _as_version_1(scene: dict[str, Any]) -> dict[str, Any]:

@@ -13,11 +13,12 @@ from snowshed._core import InputError
 from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.scene.scene import ResolvedScene
-from snowshed.season.accumulation import accumulate, stack_ageing
+from snowshed.season.accumulation import snow_on_panel, stack_ageing
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.slabs import season_scene
 from snowshed.season.weather.reading import read_season
 from snowshed.season.weather.row import Weather
+from snowshed.study.named_laws import NamedLaws
 from snowshed.study.scene_hash import RunKey
 
 if TYPE_CHECKING:
@@ -87,7 +88,7 @@ class SeasonPart:
         """The rows of the winter; raises InputError where the file is wrong."""
         return read_season(self.weather)
 
-    def run(self, scene: ResolvedScene) -> RunKey:
+    def run(self, scene: ResolvedScene, laws: Optional[NamedLaws] = None) -> RunKey:
         """Return the slide-offs of the winter from the panel of a scene as a run.
 
         Raises
@@ -98,11 +99,11 @@ class SeasonPart:
         data = scene.data
         if "panel" not in data:
             raise InputError("/panel: missing; a season needs a panel for the snow to gather on")
-        days = accumulate(self.rows, self.settings, data["panel"]["tilt"], data["gravity"])
+        days = snow_on_panel(self.rows, self.settings, data["panel"]["tilt"], data["gravity"])
         if not any(day.event for day in days):
             raise InputError("no snow slides off all winter; there is nothing to compute")
         resolved = season_scene(scene, days, self.settings)
-        return RunKey.of(resolved, stack_ageing(days, self.settings))
+        return RunKey.of(resolved, stack_ageing(days, self.settings), laws)
 
     def data(self) -> dict[str, object]:
         """Return the table of a study file that `of` reads.

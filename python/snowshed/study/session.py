@@ -17,6 +17,8 @@ import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
 from snowshed.base.build import build_id
+from snowshed.base.callers import STUDY_RUN, argument, either
+from snowshed.base.field_type import shown
 from snowshed.base.formatting import plural
 from snowshed.base.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.base.log import LOGGER
@@ -50,6 +52,11 @@ class Resources:
     scheduler: object = None
 
     def __post_init__(self) -> None:
+        if not _may_be_scheduler(self.scheduler):
+            raise InputError(
+                f"scheduler: {shown(self.scheduler)}; needed: the address of a Dask scheduler, the "
+                "path of its .json file, a Dask cluster, or a Dask client"
+            )
         for name in ("jobs", "threads"):
             value = getattr(self, name)
             if value is not None and value < 1:
@@ -67,6 +74,14 @@ class Resources:
         cores = available_cores()
         processes = max(1, min(self.jobs or max(1, cores // (self.threads or 1)), runs))
         return LocalWorkers(processes, self.threads, cores), processes
+
+
+def _may_be_scheduler(value: object) -> bool:
+    """Return whether a value is of a type that `DaskWorkers` accepts; Dask is not imported."""
+    if isinstance(value, (str, os.PathLike)):
+        return bool(os.fspath(value))
+    is_client = any(own.__name__ == "Client" for own in type(value).__mro__)
+    return value is None or is_client or hasattr(value, "scheduler_address")
 
 
 def compute_runs(
@@ -106,7 +121,7 @@ def compute_runs(
             issue_note(
                 f"{plural(aside, 'run')} of {study}: computed by another build of snowshed "
                 f"{_core.version}, and now again; the earlier results stay in the store, and "
-                "`same_version=True` uses them"
+                f"{_same_version()} uses them"
             )
         _compute(store, [study], resources, retry_failed, progress)
 
@@ -210,9 +225,13 @@ def _check_version(store: Store, pending: Sequence[StoredRun]) -> None:
         if run.version != _core.version:
             raise InputError(
                 f"{store.folder}: its runs are for snowshed {run.version}, but this is "
-                f"{_core.version}; start the study again with `Study.run`, "
+                f"{_core.version}; start the study again with {either(*STUDY_RUN)}, "
                 "which computes all its runs with this version"
             )
+
+
+def _same_version() -> str:
+    return argument("same_version", True, option="same-version-is-enough")
 
 
 def _adopt(store: Store, study: str, *, same_version: bool) -> None:
@@ -225,7 +244,8 @@ def _adopt(store: Store, study: str, *, same_version: bool) -> None:
     if not same_version:
         raise InputError(
             f"{store.folder}: its runs are for another build of snowshed {_core.version}; "
-            "`same_version=True` goes on with this one, and `Study.run` computes all runs with it"
+            f"{_same_version()} goes on with this one, and {either(*STUDY_RUN)} computes all runs "
+            "with it"
         )
     runs = [RunKey(run.hash, run.scene) for run in store.runs(study)]
     store.register(study, store.axes(study), runs, same_version=True)

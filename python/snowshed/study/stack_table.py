@@ -14,6 +14,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.base.arrays import Booleans, Floats
+from snowshed.base.callers import STUDY_RESUME, argument, either
 from snowshed.base.extras import require
 from snowshed.base.messages import shortened
 from snowshed.base.paths import PathLike
@@ -257,7 +258,7 @@ class StackTable:
         frame = _as_numbers(frame, [*self.axes, "seed", "event"])
         if frame.empty:
             raise InputError(
-                "none of its runs is computed yet; `snowshed.study.resume` computes them"
+                f"none of its runs is computed yet; {either(*STUDY_RESUME)} computes them"
             )
         return frame
 
@@ -295,7 +296,8 @@ class StackTable:
             if len(values) > 1:
                 raise InputError(
                     f"{name}: the rows have different values ({', '.join(values[:6])}), but it is "
-                    f"not an input; select rows with `where=`, such as {name}={values[0]}"
+                    f"not an input; select rows with {argument('where')}, such as "
+                    f"{name}={values[0]}"
                 )
             common[name] = values[0]
         return common

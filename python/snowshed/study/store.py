@@ -19,6 +19,7 @@ from typing import Any, Optional
 import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.build import build_id
+from snowshed.base.callers import STUDY_RUN, either
 from snowshed.base.paths import PathLike
 from snowshed.io.json_file import check_values, parse_object
 from snowshed.io.locks import holding
@@ -41,7 +42,11 @@ WITHOUT_CHECKSUM = (
     "without its checksum: damaged, or added by an earlier version of snowshed after this one had "
     "opened the store"
 )
-NO_STUDY = "holds no study; start one with `Study.run`"
+
+
+def no_study() -> str:
+    """Return a phrase on a folder without a study."""
+    return f"holds no study; start one with {either(*STUDY_RUN)}"
 
 
 @dataclass(frozen=True)
@@ -113,7 +118,7 @@ class Store:
         """
         folder = Path(folder).absolute()
         if not (folder / FILE).is_file():
-            raise InputError(f"{folder}: {NO_STUDY}")
+            raise InputError(f"{folder}: {no_study()}")
         if os.access(folder, os.W_OK):
             return cls.create(folder)
         return cls(folder, connect_read_only(folder))
@@ -217,7 +222,7 @@ class Store:
         if study is None and len(names) == 1:
             return names[0]
         if not names:
-            raise InputError(f"{self.folder}: {NO_STUDY}")
+            raise InputError(f"{self.folder}: {no_study()}")
         if study is None or study not in names:
             wrong = "holds several studies" if study is None else f"holds no study {study!r}"
             raise InputError(f"{self.folder}: {wrong}; name one of: {', '.join(names)}")

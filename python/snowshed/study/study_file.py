@@ -31,13 +31,14 @@ from snowshed.study.factors import (
     logarithmic,
     sobol,
 )
+from snowshed.study.named_laws import NamedLaws
 from snowshed.study.season_part import SeasonPart
 
 Made = TypeVar("Made")
 
 FACTOR_KEYS = ("axes", "zip", "sample")
 KEYS = (
-    *("name", "scene", "dimension", "events", "seeds", "accuracy", "season", "description"),
+    *("name", "scene", "dimension", "events", "seeds", "accuracy", "season", "description", "laws"),
     *FACTOR_KEYS,
     "part",
 )
@@ -92,7 +93,8 @@ snow.critical_state_slope = { from = 0.3, to = 0.7, step = 0.2 }
 # panel.friction = { from = 0.1, to = 0.4 }
 # snow.preconsolidation_pressure = { from = 1e3, to = 1e4, scale = "log" }
 
-# A table [season] with weather = "FILE" makes every run a season.
+# A table [season] with weather = "FILE" makes every run a season. A table [laws] names laws of
+# one's own for all runs, see the guide to them.
 
 # Several products in a study: each part is crossed with the axes above, and their union runs.
 # [[part]]
@@ -118,6 +120,7 @@ class Content:
     seeds: Optional[Sequence[int]]
     description: str
     season: Optional[SeasonPart] = None
+    laws: Optional[NamedLaws] = None
 
 
 @contextmanager
@@ -150,6 +153,9 @@ def text(content: Content) -> str:
     blocks = [list(toml_lines(head)), ["[scene]", *toml_lines(scene)]]
     if content.season is not None:
         blocks.append(["[season]", *toml_lines(content.season.data())])
+    if content.laws is not None:
+        table = {"make": content.laws.make, "files": list(map(str, content.laws.files))}
+        blocks.append(["[laws]", *toml_lines({key: v for key, v in table.items() if v})])
     common = _shared_axes(content.parts)
     blocks += _factor_blocks(common, "", folder)
     for part in content.parts:
@@ -206,7 +212,17 @@ def _content(data: dict[str, Any], file: Path) -> Content:
         _seeds(data["seeds"]) if "seeds" in data else None,
         _checked_value(data.get("description", ""), str, "description", "a text"),
         SeasonPart.of(_table(data["season"], "season"), folder) if "season" in data else None,
+        _laws(_table(data["laws"], "laws"), folder) if "laws" in data else None,
     )
+
+
+def _laws(table: Mapping[str, Any], folder: Path) -> NamedLaws:
+    _check_keys(table, ("make", "files"), "laws.")
+    make = _checked_value(table.get("make"), str, "laws.make", 'a text "module:name"')
+    files = _checked_value(table.get("files", []), list, "laws.files", "a list of files")
+    if not all(isinstance(file, str) for file in files):
+        raise InputError("laws.files: not a list of files")
+    return NamedLaws(make, [folder / file for file in files])
 
 
 def _scene(data: Mapping[str, Any], folder: Path) -> Scene:

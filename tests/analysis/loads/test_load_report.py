@@ -34,7 +34,7 @@ def test_page_and_table_have_the_loads_of_the_run(loaded, tmp_path):
     text = " ".join(page.text)
     assert f"post with {table.peak_10ms_n['post'] / 1000:.3g} kN/m for 10 ms" in text
     assert "Loads depend on the grid" in text and "not available" in text
-    assert "ASCE 7-22, 7.9" in text and "needs --snow-depth" in text
+    assert "ASCE 7-22, 7.9" in text and "needs `snow_depth=`" in text
     assert "equation 11" in text and "nan" not in text
     assert sum(source.startswith("data:image/png") for source in page.sources) == 2
 

@@ -186,6 +186,27 @@ def test_snow_ages_between_events_only():
         simulation.settle(np.zeros(count), np.zeros(count))
 
 
+@pytest.mark.parametrize(
+    ("interval", "message"),
+    [
+        (("a", 2), r"pauses\[2\]\[1\], seconds: 'a'; needed: a finite number"),
+        ((True, 2), "seconds: True; needed: a finite number"),
+        ((60.0, None), "temperature: None; needed: a finite number"),
+        ((np.nan, -5.0), "seconds: nan; needed: a finite number"),
+        ((-60.0, -5.0), "seconds: -60; needed: not negative"),
+        ((60.0, -300.0), "temperature: -300 °C is below absolute zero"),
+    ],
+)
+def test_intervals_that_cannot_be_times_at_a_temperature_are_refused(interval, message):
+    with pytest.raises(InputError, match=message):
+        Ageing({2: [WEEK[0], Interval(*interval)]}, settling="vionnet-2012")
+
+
+def test_intervals_of_numpy_are_stored():
+    ageing = Ageing({2: [Interval(np.int64(60), np.float32(-5.0))]}, settling="vionnet-2012")
+    assert Ageing.from_data(ageing.data, "here") == ageing
+
+
 # --- as JSON ---------------------------------------------------------------------------------
 
 

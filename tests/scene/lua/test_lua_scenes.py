@@ -8,7 +8,7 @@ import pytest
 from helpers.paths import ROOT
 from lua_helpers import error_of, load
 
-from snowshed import InputError, Scene
+from snowshed import InputError, Scene, Simulation, SnowshedNote
 from snowshed.scene import load_lua
 
 EXAMPLES = ROOT / "lua_compat" / "examples"
@@ -347,3 +347,28 @@ def test_a_scene_from_lua_is_an_ordinary_scene(tmp_path):
     assert Scene.from_data(json.loads(run.scene.json)).panel.tilt == 50
     with pytest.raises(InputError, match="unknown key"):
         Scene.from_data(run.scene.data).set("lua", 1)
+
+
+def test_the_volume_of_a_body_gives_its_mass_as_in_the_thesis(tmp_path):
+    """A stack of n slabs has n times their volume, whatever the solid has (A.3.5)."""
+    init = """
+        dimension(2)  grid_size(0.02)  ground {}
+        material { rho = 250 }
+        V_slab = 0.5 * 0.04
+        body { name = "stack", shape = box { center = { 0, 0.1 }, size = { 0.4, 0.2 } },
+               volume = 3 * V_slab }
+    """
+    data = scene_of(tmp_path, init, 'body { name = "stack", volume = 4 * V_slab }')
+    (body,) = data["bodies"]
+    assert body["volume"] == pytest.approx(4 * 0.5 * 0.04)
+    with pytest.warns(SnowshedNote, match="the given volume of 0.08 m2, and the solid one of 0.08"):
+        simulation = Simulation(data)
+        simulation.begin_event()
+    assert simulation.masses().sum() == pytest.approx(250 * 0.08)
+    for factor in (1, 5):
+        data = scene_of(tmp_path, init, f'body {{ name = "stack", volume = {factor} * V_slab }}')
+        simulation = Simulation(data)
+        simulation.begin_event()
+        assert simulation.masses().sum() == pytest.approx(250 * factor * 0.02)
+    error = error_of(tmp_path, init, 'body { name = "stack", volume = -1 }')
+    assert "update.lua:1: /bodies/0/volume: -1 is outside the allowed range" in error

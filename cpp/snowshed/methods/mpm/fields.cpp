@@ -58,16 +58,36 @@ double SolverImpl<T, D>::density(std::size_t i) const {
   return state_.material_of(model_, i).density / volume_ratio(i);
 }
 
+/// Kirchhoff's stress by the constitutive law of the user, Pa, positive in tension.
+template <class T, int D>
+material::Sym<double, D> SolverImpl<T, D>::stress_by_law(std::size_t i) const {
+  const Particles<T, D>& p = state_.particles;
+  const material::Sym<double, D> e = elastic_strain(i);
+  material::Sym<T, D> strain, stress;
+  for (int k = 0; k < e.size; ++k) strain.c[k] = T(e.c[k]);
+  T plastic = p.plastic[i], own[max_own_numbers];
+  for (int k = 0; k < p.own_numbers; ++k) own[k] = p.own[std::size_t(k)][i];
+  const std::uint8_t snow = p.has_material_id ? p.material_id[i] : std::uint8_t(0);
+  reinterpret_cast<ConstitutiveLaw<T>>(model_.options.laws.constitutive)(1, strain.c, stress.c,
+                                                                         &plastic, own, &snow, 0.0);
+  material::Sym<double, D> result;
+  for (int k = 0; k < e.size; ++k) result.c[k] = double(stress.c[k]);
+  return result;
+}
+
 template <class T, int D>
 double SolverImpl<T, D>::pressure(std::size_t i) const {
+  if (model_.options.laws.constitutive) return -material::trace(stress_by_law(i)) / D;
   return -state_.material_of(model_, i).elastic.bulk * elastic_volumetric_strain(i);
 }
 
 template <class T, int D>
 double SolverImpl<T, D>::deviatoric_stress(std::size_t i) const {
-  material::Sym<double, D> deviator = elastic_strain(i);
+  const bool by_law = model_.options.laws.constitutive;
+  material::Sym<double, D> deviator = by_law ? stress_by_law(i) : elastic_strain(i);
   const double mean = material::trace(deviator) / D;
   for (int k = 0; k < D; ++k) deviator.c[k] -= mean;
+  if (by_law) return std::sqrt(1.5 * material::norm_squared(deviator));
   return state_.material_of(model_, i).elastic.mu * std::sqrt(6 * material::norm_squared(deviator));
 }
 
@@ -133,6 +153,10 @@ void SolverImpl<T, D>::visit_fields(Visit visit) const {
   } else
     show.of_each("volumetric_plastic_strain", [](std::size_t) { return 0.0; });
   components("be_minus_identity", state_.particles.be_minus_identity, symmetric_axes<D>);
+  for (int k = 0; k < state_.particles.own_numbers; ++k)
+    show.stored({"own_" + std::to_string(k), "", "Number of the user's constitutive law", 1,
+                 particles::field_type<T>(), true},
+                state_.particles.own[std::size_t(k)]);
   if (state_.particles.has_affine) {
     show.of_each("affine", [this](std::size_t i) { return affine(i); });
     components("affine", state_.particles.affine,

@@ -67,6 +67,7 @@ struct ParticleView {
   T* plastic;               // volumetric plastic strain; plastic laws only
   T* mass;
   const std::uint8_t* material_id;  // snow of each particle; only with several materials
+  T* own[max_own_numbers];          // numbers of the user's constitutive law
 };
 
 /// Values per node of the coarse grid over which velocities are averaged: mass and momentum (3), or
@@ -105,7 +106,9 @@ struct StepParameters {
   // Whether the contacts still hold the impulses of the step before, which was taken, and not those
   // of a try of this step.
   bool holds_last = false;
-  MaterialLaw<T> law = nullptr;  // the user's, in place of those of the snows
+  MaterialLaw<T> law = nullptr;               // the user's, in place of those of the snows
+  ConstitutiveLaw<T> constitutive = nullptr;  // the user's, in place of law and elasticity
+  int own_numbers = 0;                        // for each particle, see UserLaws
 };
 
 /// Returns the share of its stored normal impulse for which a contact exerts friction in a step.

@@ -33,8 +33,10 @@ struct Particles {
   AlignedVector<std::uint32_t> id;
   AlignedVector<std::uint16_t> event;       // event in which each particle was released
   AlignedVector<std::uint8_t> material_id;  // only with several materials or the energy balance
+  std::array<AlignedVector<T>, max_own_numbers> own;  // only with a constitutive law of the user
 
   bool has_affine = false, has_plastic = false, has_material_id = false;
+  int own_numbers = 0;  // arrays of `own` in use
 
   std::size_t size() const { return mass.size(); }
 
@@ -64,6 +66,7 @@ struct Particles {
     v.plastic = plastic.data();
     v.mass = mass.data();
     v.material_id = material_id.data();
+    for (int k = 0; k < max_own_numbers; ++k) v.own[k] = own[k].data();
     return v;
   }
 
@@ -145,6 +148,8 @@ struct Particles {
     f("id", self.id);
     f("event", self.event);
     if (self.has_material_id) f("kind", self.material_id);
+    for (int k = 0; k < self.own_numbers; ++k)
+      f((std::string("own") + axis[k]).c_str(), self.own[std::size_t(k)]);
   }
 
   mutable std::vector<std::uint32_t> order_by_id_;  // empty if not known

@@ -41,7 +41,9 @@ StepParameters<T> SolverImpl<T, D>::parameters(double dt) const {
           model_.constants.data(),
           workspace_.friction_shares.shares.data(),
           false,
-          reinterpret_cast<MaterialLaw<T>>(model_.options.laws.material)};
+          reinterpret_cast<MaterialLaw<T>>(model_.options.laws.material),
+          reinterpret_cast<ConstitutiveLaw<T>>(model_.options.laws.constitutive),
+          model_.options.laws.own_numbers};
 }
 
 template <class T, int D>

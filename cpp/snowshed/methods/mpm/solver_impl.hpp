@@ -118,7 +118,8 @@ class SolverImpl final : public Solver {
   void update_energy_balance() noexcept;
   void accept(State<T, D> next) noexcept;
   material::Sym<double, D> elastic_strain(std::size_t particle) const;  ///< Hencky's
-  double elastic_volumetric_strain(std::size_t particle) const;         ///< logarithmic
+  material::Sym<double, D> stress_by_law(std::size_t particle) const;
+  double elastic_volumetric_strain(std::size_t particle) const;  ///< logarithmic
   double plastic_strain(std::size_t particle) const;
   double volume_ratio(std::size_t particle) const;
   double density(std::size_t particle) const;            ///< kg/m3

@@ -31,6 +31,7 @@ State<T, D>::State(const Model<T, D>& model)
   particles.has_affine = model.has_affine();
   particles.has_material_id = model.material_per_particle;
   particles.has_plastic = model.has_plastic();
+  particles.own_numbers = model.options.laws.own_numbers;
   find_elastic_limits(model);
   totals.counters.smallest_dt = elastic_limit;
   if (!model.options.forces) return;

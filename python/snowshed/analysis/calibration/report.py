@@ -20,6 +20,7 @@ from snowshed.analysis.calibration.misfit import RANKING_QUANTITIES, rank_sets, 
 from snowshed.analysis.calibration.posterior import STEPS, Posterior, outputs_of, sample_posterior
 from snowshed.analysis.calibration.surrogate import EXTRA, Surrogate
 from snowshed.base.arguments import checked
+from snowshed.base.callers import STUDY_RESUME, either
 from snowshed.base.extras import require
 from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
@@ -74,7 +75,7 @@ class Calibration:
         if self.stacks.pending:
             notes.append(
                 f"{self.stacks.pending} runs of the study are not computed yet: ranks and "
-                "ranges omit them (`snowshed.study.resume` computes them)"
+                f"ranges omit them ({either(*STUDY_RESUME)} computes them)"
             )
         missing = len(self.stacks.sets) - len(self.ranked)
         if missing:

@@ -29,6 +29,7 @@ from snowshed.analysis.clearance.statistics import CauseShare, Level, RequiredHe
 from snowshed.analysis.clearance.winters import Winter
 from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
+from snowshed.base.callers import argument
 from snowshed.base.formatting import plural
 from snowshed.base.json_values import JsonValue
 from snowshed.base.notes import issue_note
@@ -342,7 +343,8 @@ def required_clearance(
     check_base(scene or {})
     own = settings is not None and settings.friction != SeasonSettings().friction
     if own and "friction" in ranges.spans:
-        issue_note("`settings=`: its friction is not used, because `ranges=` draw it")
+        drawn = f"because {argument('ranges', option='range')} draw it"
+        issue_note(f"`settings=`: its friction is not used, {drawn}")
     values = ranges.draw(len(winters))
     cases = cases_of(design, winters, values, settings or SeasonSettings(), scene or {})
     check_rows(design.rows, cases[0].panel_scene(candidates[0]).data)

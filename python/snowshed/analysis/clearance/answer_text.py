@@ -18,6 +18,7 @@ from snowshed.analysis.clearance.statistics import (
     Level,
 )
 from snowshed.analysis.clearance.trend import trend_of
+from snowshed.base.callers import argument
 from snowshed.base.formatting import plural
 from snowshed.season.notes import irradiance_share, sunshine_left_out
 from snowshed.season.settings import SeasonSettings
@@ -175,14 +176,14 @@ def _warnings_of(answer: ClearanceResult) -> Iterator[str]:
     if reached:
         yield (
             f"{plural(reached, 'season')} {'reaches' if reached == 1 else 'reach'} the highest "
-            f"candidate, {highest}, so the heights are estimates; give higher `heights=`"
+            f"candidate, {highest}, so the heights are estimates; give higher {argument('heights')}"
         )
     for level in answer.levels:
         percentage = f"{100 * level.probability:g} %"
         if level.height > answer.heights[-1]:
             yield (
                 f"{level.height:.1f} m for {percentage} lies above all candidate heights (up to "
-                f"{highest}); give higher `heights=`"
+                f"{highest}); give higher {argument('heights')}"
             )
         if level.extrapolated:
             yield (
@@ -201,14 +202,14 @@ def _warnings_of(answer: ClearanceResult) -> Iterator[str]:
     if not answer.heights_by_probability.separable and answer.is_simulated:
         yield (
             "there are too few seasons to separate the snow parameters from the weather, so they "
-            "count as changing from winter to winter; give more `draws=`"
+            f"count as changing from winter to winter; give more {argument('draws')}"
         )
     ended = sum(any(outcome.is_censored for outcome in case) for case in answer.outcomes)
     if ended and answer.design.rows.count > 1:
         yield (
             f"in {plural(ended, 'season')} snow stays on a lower row at a candidate height, which "
             "ends the simulation and counts as a burial; the height lies half way to the next "
-            "candidate, so give more `heights=`"
+            f"candidate, so give more {argument('heights')}"
         )
     if answer.failed:
         yield f"{answer.failed} seasons could not be simulated, and are left out"

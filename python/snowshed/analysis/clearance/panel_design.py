@@ -14,6 +14,7 @@ from snowshed.analysis.clearance.common_effects import MIN_FREE
 from snowshed.analysis.clearance.grid_error import MIN_CELLS
 from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
+from snowshed.base.callers import argument
 from snowshed.scene.components import Ground, Panel, Slab
 from snowshed.scene.scene import ResolvedScene, Scene
 from snowshed.season.rows import SINGLE_ROW, PanelRows
@@ -217,16 +218,6 @@ class SnowRanges:
         return positions
 
 
-#: Values of the scene that a caller cannot give, and why.
-SET_BY_SEARCH: Mapping[str, str] = {
-    "panel.height": "the search sets it",
-    "panel.length": "`slope_length=` sets it",
-    "panel.tilt": "`tilt=` sets it",
-    "panel.friction": "it is drawn from `ranges=`",
-    "seeding.seed": "it is drawn",
-}
-
-
 def check_base(base: Mapping[str, Any]) -> None:
     """Raise InputError at values of the scene that the search or the ranges set.
 
@@ -237,12 +228,19 @@ def check_base(base: Mapping[str, Any]) -> None:
     Traceback (most recent call last):
     snowshed._core.InputError: scene: panel.height: the search sets it; leave it out
     """
+    set_by_search = {
+        "panel.height": "the search sets it",
+        "panel.length": f"{argument('slope_length')} sets it",
+        "panel.tilt": f"{argument('tilt')} sets it",
+        "panel.friction": f"it is drawn from {argument('ranges', option='range')}",
+        "seeding.seed": "it is drawn",
+    }
     for path, value in base.items():
         if isinstance(value, Mapping):
             inner = next(iter(value), "dx")
             raise InputError(f"scene: {path}: give dotted paths, such as {path}.{inner}")
-        if path in SET_BY_SEARCH:
-            raise InputError(f"scene: {path}: {SET_BY_SEARCH[path]}; leave it out")
+        if path in set_by_search:
+            raise InputError(f"scene: {path}: {set_by_search[path]}; leave it out")
 
 
 def season_settings(

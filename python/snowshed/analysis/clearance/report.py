@@ -22,7 +22,6 @@ from snowshed.analysis.clearance.load_chapter import (
 from snowshed.analysis.clearance.panel_design import SnowRanges
 from snowshed.analysis.clearance.statistics import FIRST_PROBABILITY
 from snowshed.analysis.clearance.tables import burials, panel_columns, write_tables
-from snowshed.base.messages import as_options
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
 from snowshed.plot.clearance_figure import (
@@ -79,7 +78,7 @@ def write_report(
     page = template("snowshed.plot", "clearance.html.j2").render(
         title="How high must the lower edge be?",
         sentence=answer_text.sentence(answers),
-        warnings=list(map(as_options, answer_text.warnings(answers))),
+        warnings=answer_text.warnings(answers),
         panels=[_panel(answer, folder) for answer in answers],
         designs=_design_grid(answers, price) if len(answers) > 1 or price is not None else None,
         chart=_chart(answers) if len(answers) > 1 and all(a.levels for a in answers) else None,
@@ -102,7 +101,7 @@ def summary(
     record = answers[0].winter_list
     return {
         "sentence": answer_text.sentence(answers),
-        "warnings": list(map(as_options, answer_text.warnings(answers))),
+        "warnings": answer_text.warnings(answers),
         "notes": list(notes),
         "coverage": None if record is None else record.coverage,
         "winters_of_the_file": [] if record is None else record.data(),

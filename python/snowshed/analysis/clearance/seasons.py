@@ -23,7 +23,7 @@ from snowshed.analysis.clearance.panel_design import (
 from snowshed.analysis.clearance.winters import Winter
 from snowshed.scene.panel_edge import ground_tilt, panel_edge
 from snowshed.scene.scene import ResolvedScene
-from snowshed.season.accumulation import WinterDay, accumulate, stack_ageing
+from snowshed.season.accumulation import WinterDay, snow_on_panel, stack_ageing
 from snowshed.season.panel_contact import PanelContact, first_contact
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.slabs import season_scene
@@ -109,7 +109,7 @@ class SeasonCase:
     @cached_property
     def days(self) -> list[WinterDay]:
         """The snow on the panel, row after row."""
-        return accumulate(self.winter.days, self.settings, self.design.tilt)
+        return snow_on_panel(self.winter.days, self.settings, self.design.tilt)
 
     @property
     def has_releases(self) -> bool:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
+from snowshed.base.callers import argument
 from snowshed.base.notes import issue_note
 from snowshed.season.weather.quality import COVERAGE
 from snowshed.season.weather.row import Weather
@@ -87,6 +88,6 @@ def counted_winters(winter_list: WinterList) -> list[Winter]:
             "the weather: no winter has snow observed on "
             f"{whole_percent(winter_list.coverage)} of the "
             f"days {winter_list.season.text}: {winter_list.excluded_text}; give a longer record, a "
-            "smaller `coverage=`, or another column (`snow_from=`)"
+            f"smaller {argument('coverage')}, or another column ({argument('snow_from')})"
         )
     return winters

@@ -14,6 +14,7 @@ from snowshed.analysis.tomography.downscaling import downscaled
 from snowshed.analysis.tomography.ice_image import IceImage
 from snowshed.base.arguments import checked
 from snowshed.base.arrays import AnyIntegers, Labels, positive
+from snowshed.base.callers import argument
 from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.io.atomic import replacing
@@ -75,7 +76,8 @@ class LabelledSample:
         size = sample.voxel_size if voxel_size is None else voxel_size
         if size is None:
             raise InputError(
-                f"{sample.file}: the edge of a voxel is not known; give it in m (`voxel_size=`)"
+                f"{sample.file}: the edge of a voxel is not known; give it in m "
+                f"({argument('voxel_size', option='voxel')})"
             )
         positive("voxel size", size)
         opened = open_npy(sample.file)

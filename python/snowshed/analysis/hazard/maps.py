@@ -12,6 +12,7 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
+from snowshed.base.callers import argument
 from snowshed.base.paths import PathLike
 from snowshed.io.raster.raster import Raster
 from snowshed.methods.slide.maps import PeakMaps
@@ -239,7 +240,8 @@ def stored_maps(store: Store, hash_: str) -> PeakMaps:
         except InputError as error:
             raise store.damaged(f"run {hash_}: {error}") from None
     raise InputError(
-        f"{store.folder}: run {hash_} kept no maps; compute it with `keep_particles=True`"
+        f"{store.folder}: run {hash_} kept no maps; compute it with "
+        f"{argument('keep_particles', True)}"
     )
 
 

@@ -17,7 +17,6 @@ from snowshed.analysis.loads.standards import Rule, RuleInputs, rules
 from snowshed.analysis.loads.structures import WINDOWS, kilo, structure_loads
 from snowshed.base.arguments import checked
 from snowshed.base.formatting import percent
-from snowshed.base.messages import as_options
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
 from snowshed.plot.html_page import HtmlTable, Picture, template
@@ -314,7 +313,7 @@ def _names(results: Sequence[Results]) -> list[str]:
 
 def _value(rule: Rule) -> str:
     if rule.value is None:
-        return as_options(f"needs {', '.join(rule.missing)}")
+        return f"needs {', '.join(rule.missing)}"
     return f"{rule.value:.2f} {rule.unit}"
 
 

@@ -13,6 +13,7 @@ from typing import Optional
 
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
+from snowshed.base.callers import argument
 
 #: Width over which sliding snow is spread on a lower roof, m (15 ft).
 SPREAD = 4.572
@@ -235,7 +236,7 @@ def _given(symbol: str, value: Optional[float], unit: str) -> str:
 
 def _missing(**values: Optional[float]) -> list[str]:
     return [
-        f"`{name}=`" if "_" in name or name == "efficiency" else name
+        argument(name) if "_" in name or name == "efficiency" else name
         for name, value in values.items()
         if value is None
     ]

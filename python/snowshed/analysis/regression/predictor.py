@@ -17,6 +17,7 @@ from snowshed.analysis.regression.scaling import Scaling
 from snowshed.analysis.regression.spread import INTERVAL_SHARE, SPREAD_SHARE
 from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
+from snowshed.base.callers import argument
 from snowshed.base.paths import PathLike
 from snowshed.scene.labels import settings_text
 
@@ -200,7 +201,7 @@ def _refusal(outside: Mapping[int, list[str]], questions: Questions) -> str:
     this = "this panel" if len(outside) == 1 else "these panels"
     return (
         f"{subject} outside the data: {'; '.join(shown)}; no model is reliable there. Simulate "
-        f"{this} (snowshed panel), or force an answer with `extrapolate=True`"
+        f"{this} (snowshed panel), or force an answer with {argument('extrapolate', True)}"
     )
 
 

@@ -18,6 +18,7 @@ from snowshed.analysis.sensitivity.sampling import EXTRA, LEVELS, problem
 from snowshed.analysis.sensitivity.stored import TARGETS, StudyRuns
 from snowshed.base.arguments import checked
 from snowshed.base.arrays import Booleans, Floats
+from snowshed.base.callers import argument
 from snowshed.base.extras import require
 from snowshed.study.factors import SEED
 
@@ -208,7 +209,7 @@ def _check_blocks(
     if len(points) % size or len(points) == 0:
         raise InputError(
             f"its {len(points)} points are not {design}: with {points.shape[1]} inputs, their "
-            f"number is a multiple of {size}; see `method=`"
+            f"number is a multiple of {size}; see {argument('method')}"
         )
     for start in range(0, len(points), size):
         if not is_block(np.diff(points[start : start + size], axis=0) != 0):

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from snowshed._core import InputError
+from snowshed.base.callers import argument
 from snowshed.base.extras import require
 from snowshed.base.formatting import number
 
@@ -66,7 +67,7 @@ def automatic_threshold(name: str, parts: Parts) -> tuple[float, str]:
         raise InputError(
             f"{name}: labels of grains, not grey values: there are many numbers, and neighbouring "
             "voxels share them; `snowshed grains compress` takes labels as they are, and "
-            "`threshold=0.5` takes all numbers above 0 for ice"
+            f"{argument('threshold', 0.5)} takes all numbers above 0 for ice"
         )
     return histogram.otsu(), "Otsu"
 
@@ -93,7 +94,7 @@ class _Histogram:
         if not (np.isfinite(width) and float(lowest) + width > float(lowest)):
             raise InputError(
                 f"{name}: values from {float(lowest):g} to {float(highest):g} have no histogram; "
-                "scale them, or give `threshold=`"
+                f"scale them, or give {argument('threshold')}"
             )
         return cls(lowest, width, BINS, False, np.zeros(BINS, dtype=np.int64))
 

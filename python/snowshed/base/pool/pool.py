@@ -19,6 +19,7 @@ from dataclasses import dataclass, field
 from multiprocessing.connection import Connection, wait
 from typing import Generic, Optional, TypeVar, cast
 
+from snowshed.base.callers import is_called_from_shell
 from snowshed.base.pool.messages import ForkDeath, Fraction, ProcessReady, TaskError, TaskResult
 
 STOP_S = 60.0  # time for a process to write its checkpoint, s
@@ -211,7 +212,8 @@ class _Process(Generic[Task, Result]):
             # current folder is not searched for modules.
             self._process = subprocess.Popen(
                 [sys.executable, "-m", "snowshed.base.pool.process", str(theirs.fileno())]
-                + ["forked"] * isolation.forked,
+                + ["forked"] * isolation.forked
+                + ["shell"] * is_called_from_shell(),
                 pass_fds=[theirs.fileno()],
                 start_new_session=True,
                 stdin=subprocess.DEVNULL,

@@ -1,4 +1,4 @@
-"""A process of a `Pool`: ``python -m snowshed.base.pool.process SOCKET [forked]``.
+"""A process of a `Pool`: ``python -m snowshed.base.pool.process SOCKET [forked] [shell]``.
 
 It ends as soon as the other end of its socket is closed, so that it never outlives its parent, not
 even a killed one.
@@ -14,9 +14,10 @@ import signal
 import sys
 import threading
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from multiprocessing.connection import Connection
 
+from snowshed.base.callers import called_from_shell
 from snowshed.base.pool.messages import ForkDeath, Fraction, ProcessReady, TaskError, TaskResult
 
 Compute = Callable[[object, Callable[[float], None]], object]
@@ -109,4 +110,5 @@ def _listen(connection: Connection, tasks: queue.SimpleQueue[object]) -> None:
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]), forked=sys.argv[2:] == ["forked"])
+    with called_from_shell() if "shell" in sys.argv[2:] else nullcontext():
+        main(int(sys.argv[1]), forked="forked" in sys.argv[2:])

@@ -11,7 +11,6 @@ import click
 
 from snowshed._core import InputError
 from snowshed.base.formatting import about, percent, plural
-from snowshed.base.messages import as_options
 from snowshed.cli.exit_codes import Stopped
 from snowshed.cli.options.accuracy import parse_fraction
 from snowshed.cli.options.common import (
@@ -166,7 +165,7 @@ def clearance(
     winter_list = record.winters(coverage)
     notes = [*record.notes, *winter_list.notes]
     for note in () if quiet else notes:
-        say(as_options(f"note: {note}"))
+        say(f"note: {note}")
     winters = counted_winters(winter_list)
     grid, settings = _grid(designs, dx, scheme, accuracy, quiet=quiet)
     options: dict[str, Any] = {
@@ -313,5 +312,5 @@ def print_answers(answers: Sequence[ClearanceResult], folder: Path) -> None:
     if answers[0].winter_list is not None:
         print_quality(console, answers[0].winter_list)
     for warning in answer_text.warnings(answers):
-        console.print(as_options(f"note: {warning}"))
+        console.print(f"note: {warning}")
     console.print(f"clearance.html, heights.csv and clearance.csv in {folder}")

@@ -11,7 +11,6 @@ import click
 
 from snowshed._core import InputError
 from snowshed.base.interrupt import Interrupted
-from snowshed.base.messages import as_options
 from snowshed.cli.exit_codes import Stopped
 from snowshed.cli.options.common import (
     PATH,
@@ -297,7 +296,7 @@ def _print_cost(
 
     plan = plan_season(season_files, scene, settings=settings, **reading)
     for note in () if quiet else plan.record.notes:
-        say(as_options(f"note: {note}"))
+        say(f"note: {note}")
     say(f"{sum(day.released for day in plan.days)} releases in {len(plan.days)} days")
     if plan.slides is not None:
         print_cost(plan.slides)
@@ -322,7 +321,7 @@ def print_season(result: SeasonResult, folder: Path, scene: ResolvedScene) -> No
     if left_out:
         console.print(f"{left_out} rows without a release are in season.csv")
     print_quality(console, result.winters, judged=False)
-    for line in (verdict(result), *(as_options(f"note: {note}") for note in result.notes)):
+    for line in (verdict(result), *(f"note: {note}" for note in result.notes)):
         console.print(line)
     console.print(f"season.csv and season.png in {folder}")
     mechanisms = Mechanisms.of_scene(scene.data)

@@ -33,7 +33,7 @@ from snowshed.cli.output.terminal import PlainConsole, say, write_out
 from snowshed.io.atomic import write_text
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING, TRIMMINGS
 from snowshed.study.definition import Study
-from snowshed.study.store import NO_STUDY, Store
+from snowshed.study.store import Store, no_study
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -150,7 +150,7 @@ def status(folder: Path) -> None:
     """Print the status of studies, also during their computation."""
     with outcome_as_exit_code(), Store.open(folder) as store:
         if not store.studies():
-            raise InputError(f"{folder}: {NO_STUDY}")
+            raise InputError(f"{folder}: {no_study()}")
         print_status(store)
 
 

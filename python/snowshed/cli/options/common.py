@@ -17,7 +17,11 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 
 
 class HomePath(click.Path):
-    """A file or folder; ``~`` is the user's home also where the shell does not replace it."""
+    """A file or folder; ``~`` is the user's home also where the shell does not replace it.
+
+    Public functions replace it, too (`snowshed.base.arguments.checked`), but commands look at files
+    before they call functions.
+    """
 
     name = "path"
 

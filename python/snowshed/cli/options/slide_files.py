@@ -49,6 +49,14 @@ def file_options(command: Command) -> Command:
         click.option("--thickness-band", type=int, help="Band of the thickness raster."),
         click.option("--band", type=int, help="Band of the terrain, if the GeoTIFF has several."),
         click.option(
+            "--inflow-layer", metavar="NAME", help="Layer of the GeoPackage of the inflow."
+        ),
+        click.option(
+            "--secondary-release-layer",
+            metavar="NAME",
+            help="Layer of the GeoPackage of secondary release areas.",
+        ),
+        click.option(
             "--resistance-layer", metavar="NAME", help="Layer of the GeoPackage of forest."
         ),
         click.option(
@@ -109,10 +117,10 @@ class SlideFiles:
     @classmethod
     def pop_from(cls, options: dict[str, Any]) -> SlideFiles:
         """Return the files in `options`, and remove them there; see `file_options`."""
+        from snowshed.scene.builders.slides import LAYER_OPTIONS
+
         layers = {
-            "release": options.pop("layer"),
-            "entrainment": options.pop("entrainment_layer"),
-            "resistance": options.pop("resistance_layer"),
+            part: options.pop(option.replace("-", "_")) for part, option in LAYER_OPTIONS.items()
         }
         return cls(
             entrainment=options.pop("entrainment_areas"),

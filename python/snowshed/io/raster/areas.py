@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from snowshed._core import InputError
+from snowshed.base.callers import argument
 from snowshed.base.extras import require
 from snowshed.base.messages import shortened
 from snowshed.base.notes import issue_note
@@ -73,7 +74,7 @@ def read_areas(
     path: PathLike,
     layer: Optional[str] = None,
     *,
-    option: str = "`layer=`",
+    option: Optional[str] = None,
     with_thickness: bool = True,
 ) -> list[MapArea]:
     """Return the polygons of a file; parts of a feature become areas of their own.
@@ -85,7 +86,8 @@ def read_areas(
     layer
         Name of the layer of a GeoPackage; None: the only one.
     option
-        The argument that selects a layer; an error names it if the file has several.
+        The argument that selects a layer; an error names it if the file has several. None:
+        ``layer``.
     with_thickness
         Whether the thickness of snow is read; else it is None.
 
@@ -107,7 +109,7 @@ def read_areas(
 
 
 def read_map_layer(
-    path: Path, layer: Optional[str] = None, *, option: str = "`layer=`", lines: bool = False
+    path: Path, layer: Optional[str] = None, *, option: Optional[str] = None, lines: bool = False
 ) -> PolygonLayer:
     """Return the polygons of a file on a projected map, as they are in the file.
 
@@ -125,7 +127,7 @@ def read_map_layer(
     OSError
         If there is no such file.
     """
-    features = read_layer(path, layer, option, lines=lines)
+    features = read_layer(path, layer, option or argument("layer"), lines=lines)
     if is_in_degrees(features.crs):
         raise InputError(
             f"{path}: its coordinates are in degrees ({features.crs}); project it to metres"

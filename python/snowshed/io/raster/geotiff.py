@@ -19,6 +19,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.base.arrays import Booleans, Floats
+from snowshed.base.callers import argument
 from snowshed.base.extras import require
 from snowshed.base.limits import MAX_RASTER_BLOCK_BYTES, MAX_RASTER_CELLS
 from snowshed.base.messages import quoted
@@ -170,7 +171,7 @@ def _checked_band(source: Any, path: Path, band: Optional[int]) -> int:
     if band is None and len(bands) != 1:
         raise InputError(
             f"{path}: has {len(bands)} bands ({_band_names(source, bands)}); say which to read "
-            "(`band=`; for a raster of thickness `thickness_band=`)"
+            f"({argument('band')}; for a raster of thickness {argument('thickness_band')})"
         )
     chosen = bands[0] if band is None else band
     if source.colorinterp[chosen - 1].name == "palette":

@@ -17,8 +17,9 @@ import numpy as np
 
 import snowshed._core as _core
 from snowshed._core import InputError
-from snowshed.base.arguments import checked
+from snowshed.base.arguments import checked, is_number
 from snowshed.base.arrays import Booleans, Floats
+from snowshed.base.field_type import shown
 from snowshed.base.json_values import JsonObject
 from snowshed.base.messages import shortened
 from snowshed.running.ageing.columns import SnowColumns
@@ -29,6 +30,7 @@ from snowshed.snow.relations.sintering import SINTERING_LAWS
 
 # The volume of loosened snow has no meaning; the laws hold for connected snow only.
 MIN_DENSITY = 50.0  # kg/m3
+ABSOLUTE_ZERO = -273.15  # degrees C
 
 
 class Interval(NamedTuple):
@@ -76,6 +78,11 @@ class Ageing:
         check_choice("sintering", self.sintering, SINTERING_LAWS)
         if not 0.0 < self.strength_age < np.inf:
             raise InputError(f"strength_age: {self.strength_age} hours; must be positive")
+        pauses = {
+            event: [_plain(pause, f"pauses[{event}][{at}]") for at, pause in enumerate(intervals)]
+            for event, intervals in self.pauses.items()
+        }
+        object.__setattr__(self, "pauses", pauses)
 
     @classmethod
     def from_data(cls, data: object, where: str) -> Ageing:
@@ -182,10 +189,23 @@ class Ageing:
         return float(np.average(temperatures, weights=seconds))
 
 
+def _plain(interval: Interval, where: str) -> Interval:
+    """Return a checked interval of Python's own numbers, which JSON can hold."""
+    for name, value in interval._asdict().items():
+        if not _is_number(value):
+            raise InputError(f"{where}, {name}: {shown(value)}; needed: a finite number")
+    if interval.seconds < 0:
+        raise InputError(f"{where}, seconds: {interval.seconds:g}; needed: not negative")
+    if interval.temperature < ABSOLUTE_ZERO:
+        raise InputError(
+            f"{where}, temperature: {interval.temperature:g} °C is below absolute zero "
+            f"({ABSOLUTE_ZERO} °C)"
+        )
+    return Interval(*map(float, interval))
+
+
 def _is_number(value: object) -> bool:
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        return False
-    return abs(value) < np.inf
+    return is_number(value) and bool(abs(value) < np.inf)  # type: ignore[arg-type]
 
 
 def _event(key: object, where: str) -> int:

@@ -7,6 +7,7 @@ from typing import Optional
 
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
+from snowshed.base.callers import argument
 from snowshed.base.paths import PathLike
 from snowshed.methods.grains.sample_folder import LABELS, find_sample
 from snowshed.methods.grains.settings import GrainsSettings
@@ -73,7 +74,10 @@ def grains_scene(
     file = sample.file
     size = voxel_size if voxel_size is not None else sample.voxel_size
     if size is None:
-        raise InputError(f"{file}: the edge of a voxel is not known; give it in m (`voxel_size=`)")
+        raise InputError(
+            f"{file}: the edge of a voxel is not known; give it in m "
+            f"({argument('voxel_size', option='voxel')})"
+        )
     if file.suffix.lower() != NPY:
         raise InputError(
             f"{file}: not an NPY file, which must hold integers, 0 for air (numpy.save)"

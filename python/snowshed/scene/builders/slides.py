@@ -13,6 +13,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
+from snowshed.base.callers import argument
 from snowshed.base.limits import MAX_TERRAIN_CELLS
 from snowshed.base.notes import issue_note, record_notes
 from snowshed.base.paths import PathLike
@@ -43,10 +44,14 @@ if TYPE_CHECKING:
 MAX_TIME = 400.0  # s, as in AvaFrame
 MIN_THICKNESS = 0.01  # m, smallest thickness of snow for a slide
 MAX_THICKNESS = 10.0  # m, largest plausible thickness of snow, as in the core
-#: Purposes of files of polygons.
-PARTS = ("release", "entrainment", "resistance", "secondary_release", "inflow")
-#: Arguments that name the layer of a file.
-LAYER_OPTIONS = {part: f"`layers['{part}']=`" for part in PARTS}
+#: Options of the command line that name the layer of a file of polygons, by its purpose.
+LAYER_OPTIONS = {
+    "release": "layer",
+    "entrainment": "entrainment-layer",
+    "resistance": "resistance-layer",
+    "secondary_release": "secondary-release-layer",
+    "inflow": "inflow-layer",
+}
 
 
 @checked
@@ -180,7 +185,7 @@ def slide_scene(
             notes="\n".join(notes) or None,
             release=rings,
             entrainment=[
-                _snow_area(area, entrained_thickness, most, argument="entrained_thickness")
+                _snow_area(area, entrained_thickness, most, name="entrained_thickness")
                 for area in eroded
             ]
             or None,
@@ -287,7 +292,7 @@ class _Polygons:
         return read_areas(
             file,
             self.layers.get(part),
-            option=LAYER_OPTIONS[part],
+            option=argument(f"layers[{part!r}]", option=LAYER_OPTIONS[part]),
             with_thickness=part not in ("resistance", "inflow"),
         )
 
@@ -319,13 +324,13 @@ def _snow_area(
     thickness: Optional[float],
     most: float,
     depth: Optional[Raster] = None,
-    argument: str = "thickness",
+    name: str = "thickness",
 ) -> Area:
     snow = thickness if thickness is not None else area.thickness
     if depth is not None:  # the scene's raster has priority
         snow = float(np.nanmax(depth.heights))
     if snow is None:
-        raise InputError(f"{area.name}: the file gives no thickness; give one (`{argument}=`)")
+        raise InputError(f"{area.name}: the file gives no thickness; give one ({argument(name)})")
     if snow < MIN_THICKNESS:
         raise InputError(
             f"{area.name}: {snow:g} m of snow; at least {MIN_THICKNESS:g} m are needed"
@@ -333,7 +338,7 @@ def _snow_area(
     if snow > most and depth is None:  # the core checks the cells of a raster
         raise InputError(
             f"{area.name}: {snow:g} m of snow; at most {most:g} m are plausible; is it in "
-            "centimetres? If not, raise `max_thickness=`"
+            f"centimetres? If not, raise {argument('max_thickness')}"
         )
     return Area(name=area.name, outline=area.outline, holes=_holes(area), thickness=snow)
 

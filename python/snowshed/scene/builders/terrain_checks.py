@@ -10,6 +10,7 @@ from typing import Any, Optional
 import numpy as np
 
 from snowshed._core import InputError, impossible_cliff
+from snowshed.base.callers import argument
 from snowshed.base.extras import require
 from snowshed.base.limits import MAX_CELLS_PER_BYTE, MAX_RASTER_CELLS, UNCHECKED_RASTER_CELLS
 from snowshed.base.paths import PathLike
@@ -57,7 +58,8 @@ def read_terrain(
     if cells > max_cells:
         raise InputError(
             f"{path}: has {cells} cells; at most {max_cells} are allowed, because a slide takes "
-            "400 bytes or more for each; crop it, make cells larger, or allow more (`max_cells=`)"
+            "400 bytes or more for each; crop it, make cells larger, or allow more "
+            f"({argument('max_cells')})"
         )
     if cells > UNCHECKED_RASTER_CELLS and cells > MAX_CELLS_PER_BYTE * size:
         raise InputError(

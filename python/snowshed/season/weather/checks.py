@@ -6,11 +6,13 @@ from collections.abc import Mapping, Sequence
 from datetime import date, datetime
 
 from snowshed._core import InputError
+from snowshed.base.field_type import shown
 from snowshed.base.formatting import plural
 from snowshed.base.limits import MAX_WEATHER_GAP_DAYS
 from snowshed.io.csv_table import TableRow
+from snowshed.season.weather.columns import MAX_SNOWFALL
 from snowshed.season.weather.extremes import RECORD_DAY, RECORD_WINTER, RECORD_WORDS
-from snowshed.season.weather.row import MAX_SNOWFALL, Weather
+from snowshed.season.weather.row import Weather
 from snowshed.season.weather.source import SnowSource
 
 MAX_ROWS = 100_000  # daily data of the longest records, and hourly seasons
@@ -60,6 +62,43 @@ def check_rows(
     _check_amounts(rows, table_rows, name)
     if not snowless and not any(row.snowfall for row in rows):
         raise InputError(f"{name}: {NO_SNOW}; the snowfall of every row is 0")
+
+
+def check_given_rows(
+    rows: Sequence[object], name: str = "the season", *, ordered: bool = True
+) -> list[Weather]:
+    """Return rows made by hand; raises InputError if they cannot be the weather of seasons.
+
+    Each row has checked its own values; their order and sums are checked here.
+
+    Parameters
+    ----------
+    rows
+        The rows; they may have no snow.
+    name
+        The argument, for messages.
+    ordered
+        Whether the rows are a season, in order.
+
+    Examples
+    --------
+    >>> rows = [Weather(2, datetime(2024, 12, day), 0.1, None, -4.0) for day in (2, 1)]
+    >>> check_given_rows(rows)
+    Traceback (most recent call last):
+    snowshed._core.InputError: the season, row 2, column date: 2024-12-01 00:00:00 is not after \
+row 1, 2024-12-02 00:00:00
+    """
+    weather: list[Weather] = []
+    for number, row in enumerate(rows, 1):
+        if not isinstance(row, Weather):
+            raise InputError(f"{name}, row {number}: {shown(row)}; needed: Weather")
+        weather.append(row)
+    if ordered:
+        positions = [
+            TableRow(name, f"row {number}", number, {}) for number in range(1, len(rows) + 1)
+        ]
+        check_rows(weather, positions, name, snowless=True)
+    return weather
 
 
 def warm_snow(rows: Sequence[Weather]) -> list[str]:

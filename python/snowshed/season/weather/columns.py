@@ -1,17 +1,14 @@
-"""The columns of a season's table, and the same values in rows of `Weather` made by hand."""
+"""The columns of a season's table: units and allowed values."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from datetime import date, datetime
 
 from snowshed._core import InputError
-from snowshed.base.arguments import is_number
-from snowshed.base.field_type import shown
-from snowshed.io.csv_table import TableRow
-from snowshed.season.weather.checks import check_rows
-from snowshed.season.weather.row import MAX_SNOWFALL, Weather
+
+#: Largest snowfall of a row, which may hold the snow of several days.
+MAX_SNOWFALL = 3.0  # m
 
 
 @dataclass(frozen=True)
@@ -63,49 +60,3 @@ COLUMN_OF: Mapping[str, str] = {
     "snow_depth": "snow_depth_m",
     "irradiance": "irradiance_w_m2",
 }
-
-
-def check_given_rows(
-    rows: Sequence[object], name: str = "the season", *, ordered: bool = True
-) -> list[Weather]:
-    """Return rows made by hand; raises InputError if they cannot be the weather of seasons.
-
-    Parameters
-    ----------
-    rows
-        The rows; they may have no snow.
-    name
-        The argument, for messages.
-    ordered
-        Whether the rows are a season, in order.
-
-    Examples
-    --------
-    >>> check_given_rows([Weather(2, datetime(2024, 12, 1), 20.0, None, -4.0)])
-    Traceback (most recent call last):
-    snowshed._core.InputError: the season, row 1, snowfall: 20 is outside the allowed range \
-(0 <= value <= 3 m); is it in cm, mm or inches?
-    """
-    weather: list[Weather] = []
-    for number, row in enumerate(rows, 1):
-        where = f"{name}, row {number}"
-        if not isinstance(row, Weather):
-            raise InputError(f"{where}: {shown(row)}; needed: Weather")
-        if not isinstance(row.date, datetime):
-            kind = "a date without a time" if isinstance(row.date, date) else shown(row.date)
-            raise InputError(f"{where}, date: {kind}; needed: a datetime")
-        if row.date.tzinfo is not None:
-            raise InputError(f"{where}, date: has a time zone; needed: a datetime without one")
-        for field, column in COLUMN_OF.items():
-            value = getattr(row, field)
-            if value is None and not COLUMNS[column].filled:
-                continue
-            if not is_number(value):
-                raise InputError(f"{where}, {field}: {shown(value)}; needed: a number")
-            COLUMNS[column].check(value, f"{where}, {field}")
-        weather.append(row)
-    if not ordered:
-        return weather
-    positions = [TableRow(name, f"row {number}", number, {}) for number in range(1, len(rows) + 1)]
-    check_rows(weather, positions, name, snowless=True)
-    return weather

@@ -18,8 +18,9 @@ import numpy as np
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
 from snowshed.base.arrays import Booleans, whole_number
-from snowshed.season.weather.columns import check_given_rows
-from snowshed.season.weather.row import MAX_SNOWFALL, Weather
+from snowshed.season.weather.checks import check_given_rows
+from snowshed.season.weather.columns import MAX_SNOWFALL
+from snowshed.season.weather.row import Weather
 from snowshed.season.weather.source import SnowSource
 
 MIN_DAYS = 20  # smallest number of days to fit a month

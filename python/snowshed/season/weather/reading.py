@@ -20,13 +20,13 @@ from snowshed.base.arguments import checked
 from snowshed.base.formatting import number_in
 from snowshed.base.messages import quoted
 from snowshed.base.notes import issue_note
-from snowshed.base.paths import PathLike, with_home
+from snowshed.base.paths import PathLike
 from snowshed.io.csv_table import TableRow, frame_as_text, read_text_table
 from snowshed.io.weather.joined import read_stations
 from snowshed.io.weather.observation import Station
 from snowshed.io.weather.recognise import read_station
-from snowshed.season.weather.checks import NO_SNOW, check_rows, warm_snow
-from snowshed.season.weather.columns import ALLOWED, COLUMNS, MeasuredColumn, check_given_rows
+from snowshed.season.weather.checks import NO_SNOW, check_given_rows, check_rows, warm_snow
+from snowshed.season.weather.columns import ALLOWED, COLUMNS, MeasuredColumn
 from snowshed.season.weather.observed import record_of
 from snowshed.season.weather.row import Weather
 from snowshed.season.weather.season_record import SeasonRecord
@@ -153,14 +153,10 @@ def read_record(
 def _weather_files(season: Season) -> list[Path]:
     """Return the weather files of a season; none if it is a table or rows."""
     if isinstance(season, (str, os.PathLike)):
-        return [_file(season)]
+        return [Path(season)]
     if isinstance(season, Sequence):
-        return [_file(path) for path in season if isinstance(path, (str, os.PathLike))]
+        return [Path(path) for path in season if isinstance(path, (str, os.PathLike))]
     return []
-
-
-def _file(path: PathLike) -> Path:
-    return Path(with_home(os.fspath(path)))
 
 
 def _station_record(station: Station, source: str, snow_from: str) -> SeasonRecord:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import date, datetime
 from typing import Optional
 
+from snowshed._core import InputError
+from snowshed.base.arguments import is_integer, is_number
+from snowshed.base.field_type import shown
+from snowshed.season.weather.columns import COLUMN_OF, COLUMNS
 from snowshed.season.weather.source import SnowSource
-
-#: Largest snowfall of a row, which may hold the snow of several days.
-MAX_SNOWFALL = 3.0  # m
 
 
 @dataclass(frozen=True)
@@ -38,6 +39,18 @@ class Weather:
         Origin of the snowfall.
     reason
         Reason why the snowfall differs from the file's value of that day; empty if it does not.
+
+    Raises
+    ------
+    InputError
+        If a value is of a wrong type or outside its range.
+
+    Examples
+    --------
+    >>> Weather(2, datetime(2024, 12, 1), 20.0, None, -4.0)
+    Traceback (most recent call last):
+    snowshed._core.InputError: snowfall on 2024-12-01: 20 is outside the allowed range \
+(0 <= value <= 3 m); is it in cm, mm or inches?
     """
 
     line: int
@@ -51,3 +64,20 @@ class Weather:
     source: SnowSource = SnowSource.GIVEN
     reason: str = ""
     irradiance: Optional[float] = None
+
+    def __post_init__(self) -> None:
+        if not is_integer(self.line):
+            raise InputError(f"line: {shown(self.line)}; needed: a whole number")
+        if not isinstance(self.date, datetime):
+            kind = "a date without a time" if isinstance(self.date, date) else shown(self.date)
+            raise InputError(f"date: {kind}; needed: a datetime")
+        if self.date.tzinfo is not None:
+            raise InputError("date: has a time zone; needed: a datetime without one")
+        for field, column in COLUMN_OF.items():
+            value = getattr(self, field)
+            if value is None and not COLUMNS[column].filled:
+                continue
+            where = f"{field} on {self.date.date()}"
+            if not is_number(value):
+                raise InputError(f"{where}: {shown(value)}; needed: a number")
+            COLUMNS[column].check(value, where)

@@ -10,6 +10,7 @@
 #include "snowshed/methods/mpm/kernels/material_lookup.hpp"
 #include "snowshed/methods/mpm/kernels/tile.hpp"
 #include "snowshed/methods/mpm/kernels/transfer_rules.hpp"
+#include "snowshed/methods/mpm/kernels/user_return.hpp"
 
 SNOWSHED_MODULE_VARIANT_BEGIN(methods::mpm)
 
@@ -193,6 +194,13 @@ struct ParticleKernels {
   /// Returns the stress of the present elastic strain. With plastic laws the strain is first
   /// returned to the yield surface, unless this has been done (`committed`).
   SNOWSHED_INLINE Stress stress(State& s, const Snow& snow, int at, int n, bool committed) const {
+    if constexpr (Snow::plastic)
+      if (step.constitutive) {
+        const auto user = user_stress(step, p, s.be_minus_identity, s.plastic, at, n, committed);
+        s.be_minus_identity = user.be_minus_identity;
+        s.plastic = user.plastic;
+        return {user.tau, user.strain_squared};
+      }
     const auto& el = snow.law.elastic;
     Tensor e = material::hencky_strain(s.be_minus_identity);
     const V volumetric = material::trace(e);
@@ -231,30 +239,10 @@ struct ParticleKernels {
   SNOWSHED_INLINE bool return_to_yield(material::PQ<V>& pq, State& s, const Snow& snow, int at,
                                        int n) const {
     if (!step.law) return snow.law.return_map(pq, s.plastic, step.overstress);
-    const Returned returned = user_return(pq.p, pq.q, s.plastic, at, n);
+    const auto returned = user_return(step, p, pq.p, pq.q, s.plastic, at, n);
     pq = {returned.p, returned.q};
     s.plastic = returned.plastic;
     return true;
-  }
-
-  struct Returned {
-    V p, q, plastic;
-  };
-  /// Values go in and out by copy, so that they stay in registers where no law of the user is.
-  __attribute__((noinline)) Returned user_return(V pressure, V mises, V plastic, int at,
-                                                 int n) const {
-    static constexpr std::uint8_t only_snow[W] = {};
-    T values[3][W];
-    std::memcpy(values[0], &pressure, sizeof(V));
-    std::memcpy(values[1], &mises, sizeof(V));
-    std::memcpy(values[2], &plastic, sizeof(V));
-    step.law(n, values[0], values[1], values[2], p.material_id ? p.material_id + at : only_snow,
-             double(step.dt));
-    Returned returned;
-    std::memcpy(&returned.p, values[0], sizeof(V));
-    std::memcpy(&returned.q, values[1], sizeof(V));
-    std::memcpy(&returned.plastic, values[2], sizeof(V));
-    return returned;
   }
 
   /// Records the elastic energy p^2/(2 K_d) + q^2/(6 mu) per initial volume, and the plastic work

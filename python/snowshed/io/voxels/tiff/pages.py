@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from snowshed._core import InputError
+from snowshed.base.callers import argument
 from snowshed.io.input_file import open_regular
 from snowshed.io.voxels.pixel_picture import ORIENTATIONS, PixelPicture
 from snowshed.io.voxels.tiff import segments
@@ -18,10 +19,6 @@ from snowshed.io.voxels.tiff.tags import Tags
 from snowshed.io.voxels.voxel_file import check_size
 
 WHITE_IS_ZERO, BLACK_IS_ZERO, PALETTE = 0, 1, 3
-WHITE_NOTE = (
-    "numbers are taken as they are stored; by its tag PhotometricInterpretation (WhiteIsZero), "
-    "larger numbers are darker. If ice has the smaller numbers, give `dark_ice=True`"
-)
 #: The sample formats of TIFF, by NumPy's letter for the kind.
 KINDS = {1: "u", 2: "i", 3: "f", 4: "u"}
 UNDEFINED_FORMAT = 4
@@ -80,7 +77,11 @@ def page_picture(path: Path, tags: Tags, big_endian: bool) -> PixelPicture:
         notes += seen
         dtype = palette.dtype
     elif photometric == WHITE_IS_ZERO:
-        notes += (WHITE_NOTE,)
+        notes += (
+            "numbers are taken as they are stored; by its tag PhotometricInterpretation "
+            "(WhiteIsZero), larger numbers are darker. If ice has the smaller numbers, give "
+            f"{argument('dark_ice', True)}",
+        )
     elif photometric != BLACK_IS_ZERO:
         raise InputError(
             f"{name}: has colours (PhotometricInterpretation {photometric}); convert it to shades "

@@ -9,6 +9,7 @@ from typing import Optional
 
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
+from snowshed.base.callers import argument
 from snowshed.base.limits import MAX_RASTER_CELLS, MAX_RESAMPLED_CELLS, MAX_SAVED_CELLS
 from snowshed.base.messages import quoted
 from snowshed.base.paths import PathLike
@@ -264,7 +265,7 @@ def _releases(folder: Path, project: ProjectSettings) -> list[Path]:
     if rasters:
         raise InputError(
             f"{rasters[0]}: com5SnowSlide takes no release from a raster; give polygons, or use "
-            "`terrain=` with `thickness_raster=`"
+            f"{argument('terrain')} with {argument('thickness_raster')}"
         )
     files = _files(folder, POLYGONS)
     if project.release_scenario:
