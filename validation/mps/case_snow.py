@@ -118,8 +118,8 @@ CASES = (
         title="Slab of snow that slides down a plane, as a fluid of particles",
         source="Newton's law with Coulomb's friction, g (sin a - cos a tan phi)",
         description="""
-        Snow without cohesion and viscosity, 0.1 m thick and 2.4 m long, with a friction angle of 24 degrees,
-        slides down a plane for 0.2 s. The mean speed of its middle sixth is compared.
+        Snow without cohesion and viscosity, 0.1 m thick and 2.4 m long, with a friction angle of 24
+        degrees, slides down a plane for 0.2 s. The mean speed of its middle sixth is compared.
         """,
         quantities=(
             Quantity("speed", "speed, m/s", limit=0.02, limit_for={"spacing": 0.01}),

@@ -88,9 +88,9 @@ TEST(SceneSchema, ObjectsAreClosedAndFieldsAreDescribed) {
     }
   });
   // The structs of scene.hpp except ShapeSpec, snow of layers and bodies, and the kinds of shape;
-  // terrain with its three kinds of areas and their holes, and the settings of the slide; sample,
-  // stage, cone and settings of grains; the settings of MPS.
-  EXPECT_EQ(objects, 14 + 2 + 12 + 7 + 1 + 4 + 1);
+  // terrain with its areas and their holes, hydrographs and dams, and the settings of the slide;
+  // sample, stage, cone and settings of grains; the settings of MPS.
+  EXPECT_EQ(objects, 14 + 2 + 12 + 14 + 1 + 4 + 1);
 }
 
 TEST(SceneSchema, ContainsUnitsLimitsDefaultsAndChoices) {

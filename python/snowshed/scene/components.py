@@ -16,7 +16,7 @@ from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.base.record import Alias, FieldsByField, Record, default
 from snowshed.io.json_file import read_object
-from snowshed.scene.shape import Outline, Shape, Vector
+from snowshed.scene.shape import Shape, Vector
 
 SnowModel = Literal["cam_clay", "elastic"]
 Condition = Literal["sticky", "slip", "separate"]

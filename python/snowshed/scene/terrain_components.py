@@ -10,7 +10,6 @@ from snowshed.base.record import Record, default
 from snowshed.scene.shape import Outline
 
 
-
 @dataclass
 class Hole(Record):
     """A part of an area that does not belong to it.

@@ -1,10 +1,10 @@
 // The elastic strain of snow, by which it remembers its shear stress until it yields (ours).
 //
-// Snow with the yield stress tau0 has the shear modulus tau0 over `yield_strain`. The elastic strain
-// is a symmetric matrix per particle; its shear strain, sqrt(2 e:e), is at most the yield strain. A
-// step adds the strain rate times the step, and then reduces the strain to the yield strain. The
-// stress of a pair of particles is that of the strain after the step, which follows from the
-// velocities after the step and the mean of both strains before it.
+// Snow with the yield stress tau0 has the shear modulus tau0 over `yield_strain`. The elastic
+// strain is a symmetric matrix per particle; its shear strain, sqrt(2 e:e), is at most the yield
+// strain. A step adds the strain rate times the step, and then reduces the strain to the yield
+// strain. The stress of a pair of particles is that of the strain after the step, which follows
+// from the velocities after the step and the mean of both strains before it.
 //
 // The trace belongs to the strain, because pairs resist changes of volume, too. The pressure does
 // not bear the small errors of forces at a free surface; without the trace a free corner crept by

@@ -190,7 +190,7 @@ def slide_scene(
             ]
             or None,
             secondary_release=[
-                _snow_area(area, secondary_thickness, most, argument="secondary_thickness")
+                _snow_area(area, secondary_thickness, most, name="secondary_thickness")
                 for area in waiting
             ]
             or None,
