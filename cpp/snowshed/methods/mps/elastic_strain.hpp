@@ -15,8 +15,8 @@
 
 namespace snowshed::methods::mps {
 
-/// The velocity at which a particle slides along a wall, m/s. That of elastic snow includes its
-/// elastic slip over the step.
+/// The velocity at which a particle slides along a wall, m/s. Elastic snow adds its elastic slip
+/// over the step.
 template <int D>
 VecD<D> sliding_velocity(const Model<D>& model, double dt, const VecD<D>& velocity,
                          const VecD<D>& elastic_slip, const WallContact<D>& c) {

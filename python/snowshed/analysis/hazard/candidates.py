@@ -25,6 +25,7 @@ from snowshed.analysis.hazard.candidate_cells import (
 from snowshed.analysis.hazard.terrain_shape import TerrainShape, terrain_shape
 from snowshed.base.arguments import checked
 from snowshed.base.arrays import Booleans, Floats, Integers
+from snowshed.base.callers import argument
 from snowshed.base.limits import MAX_CORNERS, MAX_POLYGONS
 from snowshed.base.notes import issue_note
 from snowshed.io.raster.areas import MapArea, Ring
@@ -222,11 +223,12 @@ def find_release_areas(
         files += [(area.file, area.crs) for area in forest]
     crs = common_system(files)
     if not RULE_CELL / 2.0 <= terrain.cell <= RULE_CELL * 2.0:
+        averaging = argument("cell", f"{RULE_CELL:g}")
         issue_note(
             f"{terrain.name}: cells of {terrain.cell:g} m; the rules for release areas were made "
             f"for cells of {RULE_CELL:g} m; "
             + (
-                "smaller ones show rougher ground (`cell=5` averages them)"
+                f"smaller ones show rougher ground ({averaging} averages them)"
                 if terrain.cell < RULE_CELL
                 else "larger ones hide ridges and rough ground"
             )
