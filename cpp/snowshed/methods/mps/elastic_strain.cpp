@@ -23,8 +23,8 @@ Eigen::Matrix<double, D, D> strain_after(const Eigen::Matrix<double, D, D>& stra
   return std::min(1.0, yield_strain / std::max(shear, 1e-300)) * turn * trial * turn.transpose();
 }
 
-/// The slip along the walls after a step with this velocity. Along each wall it is at most the
-/// yield strain times the distance.
+/// The slip along the walls after a step with this velocity, relative to the nearest of them. Along
+/// each wall it is at most that at which the wall's friction is reached.
 template <int D>
 VecD<D> slip_after(const Model<D>& model, const Workspace<D>& work, double dt, const VecD<D>& slip,
                    const VecD<D>& velocity, std::size_t i) {
@@ -33,15 +33,17 @@ VecD<D> slip_after(const Model<D>& model, const Workspace<D>& work, double dt, c
   for (const WallContact<D>* c = contacts.begin(i); c < contacts.end(i); ++c)
     if (!nearest || c->distance < nearest->distance) nearest = c;
   if (!nearest) return VecD<D>::Zero();
-  const double yield_strain = model.settings().yield_strain, spacing = model.settings().spacing;
   VecD<D> after = slip + dt * (velocity - nearest->velocity);
-  for (const WallContact<D>* c = contacts.begin(i); c < contacts.end(i); ++c) {
-    const VecD<D> along = after - after.dot(c->normal) * c->normal;
-    const double most = yield_strain * std::max(c->distance, 0.25 * spacing), length = along.norm();
-    if (length > most) after -= (1 - most / length) * along;
-  }
-  const double most = 2 * yield_strain * spacing, length = after.norm();
-  return length > most ? VecD<D>(most / length * after) : after;
+  const auto shorten = [&after](const VecD<D>& part, double most) {
+    const double length = part.norm();
+    if (length > most) after -= (1 - most / length) * part;
+  };
+  for (const WallContact<D>* c = contacts.begin(i); c < contacts.end(i); ++c)
+    shorten(after - after.dot(c->normal) * c->normal,
+            work.wall_friction.yield_slip[contacts.index_of(c)]);
+  // Motion along the normal of the only wall has no effect, and must not add up.
+  shorten(after, 2 * model.settings().yield_strain * model.settings().spacing);
+  return after;
 }
 
 }  // namespace
@@ -60,15 +62,17 @@ void update_elastic_strains(const Model<D>& model, double dt, Particles<D>& part
                             Workspace<D>& work) {
   find_rates(model, particles, work);
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
-    if (particles.moves(i)) {
-      particles.elastic_strain[i] = strain_after<D>(
-          particles.elastic_strain[i], work.rates.gradient[i], dt, model.settings().yield_strain);
-      particles.elastic_slip[i] =
-          slip_after(model, work, dt, particles.elastic_slip[i], particles.velocity[i], i);
-    } else {
+    if (!particles.moves(i)) {
       particles.elastic_strain[i].setZero();
       particles.elastic_slip[i].setZero();
+      return;
     }
+    const Rheology& law = model.rheology;
+    const double yield = law.yield_stress(law.friction > 0 ? work.rates.smooth_pressure[i] : 0.0);
+    particles.elastic_strain[i] = strain_after<D>(
+        particles.elastic_strain[i], work.rates.gradient[i], dt, dt * model.yield_rate(yield, dt));
+    particles.elastic_slip[i] =
+        slip_after(model, work, dt, particles.elastic_slip[i], particles.velocity[i], i);
   });
 }
 

@@ -53,12 +53,18 @@ struct Rheology {
     return stress * (x < 40 ? 1 - std::exp(-x) : 1.0) / rate;  // exp(-40) is lost beside 1
   }
 
+  /// The rate at which elastic snow without a stress yields in a step, 1/s: the yield strain over
+  /// the step. It is at most the rate at which the plastic viscosity alone has the yield stress,
+  /// because snow must not become stiffer when it yields.
+  double yield_rate(double yield, double yield_strain, double dt) const {
+    return std::min(yield_strain / dt, viscosity > 0 ? yield / viscosity : HUGE_VAL);
+  }
+
   /// The stress over the shear rate at which elastic snow would have deformed in a step, Pa s.
-  /// `rate` is the sum of the strain rate and of the elastic strain over the step, `yield_rate` the
-  /// yield strain over the step. Until the snow yields its stress is yield * rate / yield_rate, and
-  /// then that of the excess of the rate.
+  /// `rate` is the sum of the strain rate and of the elastic strain over the step. Until the snow
+  /// yields its stress is yield * rate / yield_rate, and then that of the excess of the rate.
   double elastic_viscosity(double yield, double rate, double yield_rate) const {
-    if (rate <= yield_rate) return yield / yield_rate;
+    if (rate <= yield_rate) return yield_rate > 0 ? yield / yield_rate : viscosity;
     return flow_stress(yield, rate - yield_rate) / rate;
   }
 

@@ -55,6 +55,10 @@ struct Model {
   bool is_elastic() const {
     return settings().stress == Stress::elastoplastic && !rheology.is_newtonian();
   }
+  /// See Rheology::yield_rate, 1/s.
+  double yield_rate(double yield, double dt) const {
+    return rheology.yield_rate(yield, settings().yield_strain, dt);
+  }
   bool is_sticky(const WallContact<D>& c) const {
     return options.obstacles[c.obstacle].law.condition == Condition::sticky;
   }
@@ -182,6 +186,7 @@ struct SplitForces {
 struct WallFriction {
   AlignedVector<double> share, weight_sum;  // see compute_wall_contact_fractions
   AlignedVector<double> drag;               // one per contact with a wall, 1/s
+  AlignedVector<double> yield_slip;         // one per contact, largest elastic slip, m
   AlignedVector<double> reaction;           // see find_wall_reactions, Pa
 };
 

@@ -60,7 +60,7 @@ void find_couplings(const Model<D>& model, double dt, const Particles<D>& partic
                          : 0.0;
     const double yield = law.yield_stress(pressure), rate = double(work.rates.pair_rate[e]);
     set(e,
-        model.is_elastic() ? law.elastic_viscosity(yield, rate, model.settings().yield_strain / dt)
+        model.is_elastic() ? law.elastic_viscosity(yield, rate, model.yield_rate(yield, dt))
                            : law.apparent_viscosity(yield, rate),
         is_wall);
   });

@@ -1,6 +1,7 @@
 #include "snowshed/methods/mps/wall_friction.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "snowshed/methods/mps/elastic_strain.hpp"
 #include "snowshed/methods/mps/forces.hpp"
@@ -40,32 +41,47 @@ double friction_weight_sum(const Model<D>& model, const Particles<D>& particles,
   return std::max(sum, min_touched_share * on_lattice);
 }
 
-/// The wall's shear stress is that of snow with the shear rate u/h at the pressure on the wall; u
-/// is the speed at which the particle slides, and h is its distance from the wall. The stress acts
-/// on the particles next to the wall. If the obstacle is not sticky, the stress is at most the
-/// obstacle's own friction. `reaction` is the pressure of the wall's hold, Pa. Returns the drag,
-/// 1/s.
+/// The pressure of the snow on a wall, continued from the particle beside it, with the pressure of
+/// the wall's hold, Pa.
 template <int D>
-double wall_drag(const Model<D>& model, double dt, const Particles<D>& particles, double share,
-                 double reaction, std::size_t i, const WallContact<D>& c) {
-  if (share == 0) return 0;
+double pressure_on_wall(const Model<D>& model, const Particles<D>& particles, double reaction,
+                        std::size_t i, const WallContact<D>& c) {
+  return std::max(0.0, particles.pressure[i] + reaction -
+                           model.settings().density * c.distance *
+                               particles.pressure_acceleration[i].dot(c.normal));
+}
+
+/// Finds the drag of a wall on a particle, 1/s, and the largest elastic slip of the particle. The
+/// wall's shear stress is that of snow with the shear rate u/h at the pressure on the wall; u is
+/// the speed at which the particle slides, and h is its distance from the wall. The stress acts on
+/// the particles next to the wall. If the obstacle is not sticky, the stress is at most the
+/// obstacle's own friction.
+template <int D>
+void find_drag(const Model<D>& model, double dt, const Particles<D>& particles, std::size_t i,
+               const WallContact<D>& c, std::size_t k, WallFriction& walls) {
+  walls.drag[k] = walls.yield_slip[k] = 0;
+  if (walls.share[k] == 0) return;
   const Settings& s = model.settings();
-  const double height = std::max(c.distance, min_friction_distance * s.spacing);
-  const double speed =
-      sliding_velocity(model, dt, particles.velocity[i], particles.elastic_slip[i], c).norm();
-  const double pressure =
-      std::max(0.0, particles.pressure[i] + reaction -
-                        s.density * c.distance * particles.pressure_acceleration[i].dot(c.normal));
   const Rheology& law = model.rheology;
   const ContactLaw& contact = model.options.obstacles[c.obstacle].law;
-  const double rate = speed / height, yield_rate = s.yield_strain / dt;
-  const double yield = law.yield_stress(pressure), friction = contact.friction * pressure;
-  double viscosity = model.is_elastic() ? law.elastic_viscosity(yield, rate, yield_rate)
-                                        : law.apparent_viscosity(yield, rate);
-  if (contact.condition != Condition::sticky)
-    viscosity = std::min(viscosity, model.is_elastic() ? friction / std::max(rate, yield_rate)
-                                                       : law.regularised(friction, rate));
-  return share * viscosity / (s.density * s.spacing * height);
+  const double height = std::max(c.distance, min_friction_distance * s.spacing);
+  const double pressure = pressure_on_wall(model, particles, walls.reaction[k], i, c);
+  const double rate =
+      sliding_velocity(model, dt, particles.velocity[i], particles.elastic_slip[i], c).norm() /
+      height;
+  const double friction =
+      contact.condition == Condition::sticky ? HUGE_VAL : contact.friction * pressure;
+  const double yield = std::min(law.yield_stress(pressure), friction);
+  const double yield_rate = model.yield_rate(yield, dt);
+  double viscosity = 0;
+  if (model.is_elastic())
+    viscosity = std::min(law.elastic_viscosity(yield, rate, yield_rate),
+                         friction / std::max({rate, yield_rate, 1e-300}));
+  else
+    viscosity = std::min(law.apparent_viscosity(law.yield_stress(pressure), rate),
+                         law.regularised(friction, rate));
+  walls.drag[k] = walls.share[k] * viscosity / (s.density * s.spacing * height);
+  walls.yield_slip[k] = yield_rate * dt * height;
 }
 
 /// A wall holds the snow that it presses with this many times the inertia of a particle.
@@ -99,6 +115,7 @@ void compute_wall_contact_fractions(const Model<D>& model, const Particles<D>& p
   const int threads = model.threads_for(particles.size());
   work.wall_friction.share.resize(near.contacts.all().size());
   work.wall_friction.drag.resize(near.contacts.all().size());
+  work.wall_friction.yield_slip.resize(near.contacts.all().size());
   work.wall_friction.reaction.assign(near.contacts.all().size(), 0.0);
   if (!model.has_wall_particles()) {
     for (std::size_t k = 0; k < work.wall_friction.share.size(); ++k)
@@ -133,9 +150,8 @@ void add_wall_action(const Model<D>& model, double dt, const AlignedVector<VecD<
   const RowLists<WallContact<D>>& contacts = work.near.contacts;
   for (const WallContact<D>* c = contacts.begin(i); c < contacts.end(i); ++c) {
     const std::size_t k = contacts.index_of(c);
-    double& drag = work.wall_friction.drag[k];
-    drag = wall_drag(model, dt, particles, work.wall_friction.share[k],
-                     work.wall_friction.reaction[k], i, *c);
+    find_drag(model, dt, particles, i, *c, k, work.wall_friction);
+    const double drag = work.wall_friction.drag[k];
     const Matrix normal = c->normal * c->normal.transpose();
     const Matrix along = dt * drag * (Matrix::Identity() - normal);
     const Matrix across = hold_of_wall(model, particles, i, *c) * normal;
