@@ -9,20 +9,6 @@
 namespace snowshed::methods::mps {
 namespace {
 
-/// The strain after a step with a velocity gradient: it grows by the strain rate, at most to the
-/// yield strain, and turns with the snow (Cayley's form of a rotation).
-template <int D>
-Eigen::Matrix<double, D, D> strain_after(const Eigen::Matrix<double, D, D>& strain,
-                                         const Eigen::Matrix<double, D, D>& gradient, double dt,
-                                         double yield_strain) {
-  using Matrix = Eigen::Matrix<double, D, D>;
-  const Matrix trial = strain + 0.5 * dt * (gradient + gradient.transpose());
-  const double shear = std::sqrt(2.0) * trial.norm();
-  const Matrix half_turn = 0.25 * dt * (gradient - gradient.transpose());
-  const Matrix turn = (Matrix::Identity() - half_turn).inverse() * (Matrix::Identity() + half_turn);
-  return std::min(1.0, yield_strain / std::max(shear, 1e-300)) * turn * trial * turn.transpose();
-}
-
 /// The slip along the walls after a step with this velocity, relative to the nearest of them. Along
 /// each wall it is at most that at which the wall's friction is reached.
 template <int D>
@@ -47,6 +33,18 @@ VecD<D> slip_after(const Model<D>& model, const Workspace<D>& work, double dt, c
 }
 
 }  // namespace
+
+template <int D>
+Eigen::Matrix<double, D, D> strain_after(const Eigen::Matrix<double, D, D>& strain,
+                                         const Eigen::Matrix<double, D, D>& gradient, double dt,
+                                         double yield_strain) {
+  using Matrix = Eigen::Matrix<double, D, D>;
+  const Matrix trial = strain + 0.5 * dt * (gradient + gradient.transpose());
+  const double shear = std::sqrt(2.0) * trial.norm();
+  const Matrix half_turn = 0.25 * dt * (gradient - gradient.transpose());
+  const Matrix turn = (Matrix::Identity() - half_turn).inverse() * (Matrix::Identity() + half_turn);
+  return std::min(1.0, yield_strain / std::max(shear, 1e-300)) * turn * trial * turn.transpose();
+}
 
 template <int D>
 void find_elastic_rates(const Model<D>& model, double dt, const Particles<D>& particles,
@@ -76,6 +74,10 @@ void update_elastic_strains(const Model<D>& model, double dt, Particles<D>& part
   });
 }
 
+template Eigen::Matrix2d strain_after<2>(const Eigen::Matrix2d&, const Eigen::Matrix2d&, double,
+                                         double);
+template Eigen::Matrix3d strain_after<3>(const Eigen::Matrix3d&, const Eigen::Matrix3d&, double,
+                                         double);
 template void find_elastic_rates(const Model<2>&, double, const Particles<2>&, Workspace<2>&);
 template void find_elastic_rates(const Model<3>&, double, const Particles<3>&, Workspace<3>&);
 template void update_elastic_strains(const Model<2>&, double, Particles<2>&, Workspace<2>&);

@@ -25,6 +25,13 @@ VecD<D> sliding_velocity(const Model<D>& model, double dt, const VecD<D>& veloci
   return relative - relative.dot(c.normal) * c.normal;
 }
 
+/// The strain after a step with a velocity gradient: it grows by the strain rate, at most to the
+/// yield strain, and turns with the snow (Cayley's form of a rotation).
+template <int D>
+Eigen::Matrix<double, D, D> strain_after(const Eigen::Matrix<double, D, D>& strain,
+                                         const Eigen::Matrix<double, D, D>& gradient, double dt,
+                                         double yield_strain);
+
 /// Finds the elastic strains before the step over the length of the step, `rates.elastic`, 1/s.
 template <int D>
 void find_elastic_rates(const Model<D>&, double dt, const Particles<D>&, Workspace<D>&);

@@ -58,6 +58,29 @@ TEST(MpsRheology, IsContinuousAtTheDilatantRate) {
   EXPECT_NEAR(law.apparent_viscosity(yield, 1e-18), s.viscosity + s.stress_growth * yield, 1e-6);
 }
 
+// The iteration for the viscosity converges because snow does not become stiffer when it yields,
+// even if the plastic viscosity is high; its stress is that of a Bingham fluid.
+TEST(MpsRheology, ElasticSnowDoesNotStiffenWhenItYields) {
+  Settings s;
+  s.rheology = ShearLaw::bingham;
+  for (const double viscosity : {0.0, 1.0, 1e4}) {
+    s.viscosity = viscosity;
+    const Rheology law = Rheology::from(s);
+    const double yield = 50, at_yield = law.yield_rate(yield, 3e-4, 0.01);
+    EXPECT_LE(at_yield, 3e-4 / 0.01);
+    double before = HUGE_VAL;
+    for (double rate = 0.01 * at_yield; rate < 1e3; rate *= 1.1) {
+      const double stiffness = law.elastic_viscosity(yield, rate, at_yield);
+      EXPECT_LE(stiffness, before * (1 + 1e-12)) << viscosity << ' ' << rate;
+      before = stiffness;
+      if (rate > at_yield) {
+        EXPECT_NEAR(stiffness * rate, yield + viscosity * (rate - at_yield), 1e-9 * rate * before);
+      }
+    }
+    EXPECT_EQ(law.elastic_viscosity(0, 2, law.yield_rate(0, 3e-4, 0.01)), viscosity);
+  }
+}
+
 /// The slope of the pressure over height, relative to the specific weight. Particles within two
 /// spacings from the bottom or the top are left out.
 double pressure_slope(const Method& method, const Options& o, double height) {
