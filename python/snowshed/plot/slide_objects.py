@@ -1,4 +1,4 @@
-"""What lies on the slope of a slide: areas of later snow, forest and dams, for maps and pages."""
+"""Areas of later snow, forest and dams on the slope of a slide, for maps and pages."""
 
 from __future__ import annotations
 

@@ -115,13 +115,13 @@ def write_slide_page(
     """
     outlines = [area["outline"] for area in scene["terrain"]["release"]]
     events = event_rows(facts)
-    told = {*event_notes(facts)} if events else set()
+    event_texts = {*event_notes(facts)} if events else set()
     assumed = str(scene["terrain"].get("notes") or "").splitlines()
     page = template("snowshed.plot", "slide.html.j2")
     text = page.render(
         title=scene.get("title") or "Snow slide",
         sentence=headline(figures),
-        notes=[note for note in figures.get("notes", ()) if note not in {*assumed, *told}],
+        notes=[note for note in figures.get("notes", ()) if note not in {*assumed, *event_texts}],
         assumed=assumed,
         facts=_facts(figures),
         areas=_area_table(areas),
