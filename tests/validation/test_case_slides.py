@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from validation.slide import case_block as slide_block
 from validation.slide import case_dam_break as dam_break
+from validation.slide import case_events as slide_events
 from validation.slide import case_gully as slide_gully
 from validation.slide import case_parabolic_cap as parabolic_cap
 from validation.slide import case_pool as slide_pool
@@ -74,3 +75,11 @@ def test_long_steps_do_not_change_a_slide_in_a_gully():
     assert {m.quantity: abs(m.error) < 0.01 for m in measured} == dict.fromkeys(
         ("speed", "area", "run_out"), True
     )
+
+
+@pytest.mark.parametrize("part", ["inflow", "forest", "held", "passed"])
+def test_later_snow_forest_and_dams_keep_their_limits(part):
+    outcome = slide_events.measure({**slide_events.DEFAULTS, "part": part})
+    limits = {quantity.name: quantity.limit for quantity in slide_events.CASE.quantities}
+    for measured in outcome.measured:
+        assert abs(measured.error) <= limits[measured.quantity]

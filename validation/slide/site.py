@@ -94,7 +94,7 @@ def rectangle(west: float, south: float, east: float, north: float, thickness: f
 
 
 def slide_drive(
-    site: Site, settings: CaseSettings, case_settings: Collection[str] = ()
+    site: Site, settings: CaseSettings, case_settings: Collection[str] = (), **parts: object
 ) -> TimedEventDriver:
     """Return a slide before its first step.
 
@@ -107,6 +107,8 @@ def slide_drive(
         friction is Coulomb's, and the slide uses one thread.
     case_settings
         Names of settings that belong to the case, not to the method.
+    parts
+        Further fields of the terrain: inflows, resistance, dams.
     """
     bare = SlideSettings(
         bonds=False, mixing_rate=0.0, friction_law="coulomb", stop_ratio=0.0, threads=1
@@ -121,11 +123,14 @@ def slide_drive(
     with TemporaryDirectory() as folder:
         file = Path(folder) / "terrain.asc"
         write_ascii_grid(file, Raster(site.height(x, y), site.west, site.south, cell))
+        terrain = Terrain(file=file, release=site.release, max_slope=90.0)
+        for name, part in parts.items():
+            setattr(terrain, name, part)
         scene = Scene(
             method="slide",
             dimension=3,
             # Some grounds of the cases have cliffs.
-            terrain=Terrain(file=file, release=site.release, max_slope=90.0),
+            terrain=terrain,
             numerics=bare,
             events=Events(max_time=400.0),
         )

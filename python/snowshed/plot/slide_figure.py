@@ -9,6 +9,7 @@ import numpy as np
 
 from snowshed.methods.slide.maps import SlideMaps
 from snowshed.plot.figure_style import INK, STYLE, blank_figure
+from snowshed.plot.slide_objects import SlopeObject, draw_objects
 from snowshed.plot.terrain_map import (
     Outline,
     coordinates,
@@ -32,7 +33,11 @@ PEAKS = {
 
 
 def slide_figure(
-    maps: SlideMaps, outlines: Sequence[Outline], quantity: str = "peak_speed", area: float = 45.0
+    maps: SlideMaps,
+    outlines: Sequence[Outline],
+    quantity: str = "peak_speed",
+    area: float = 45.0,
+    objects: Sequence[SlopeObject] = (),
 ) -> Figure:
     """Return the map of a slide: hillshade, contours, a peak value, and the release areas.
 
@@ -46,13 +51,15 @@ def slide_figure(
         Name in `PEAKS`.
     area
         Area of the figure's map, square inches.
+    objects
+        Areas of later snow, forest and dams on the slope.
     """
     from matplotlib import rc_context
 
     label, colours = PEAKS[quantity]
     ground = maps.raster(maps.terrain)
     snow = maps.peak_thickness > MIN_SHOWN_THICKNESS
-    part = focus(ground, snow, outlines)
+    part = focus(ground, snow, [*outlines, *(each.corners for each in objects)])
     width, height = panel_size(part, area)
     with rc_context(STYLE):
         figure = blank_figure(width + 1.5, height + 0.9)
@@ -61,6 +68,7 @@ def slide_figure(
         values = np.where(snow, getattr(maps, quantity), np.nan)
         drawn = draw_values(axes, ground, values, cmap=colours, vmin=0.0)
         draw_outlines(axes, outlines)
+        draw_objects(axes, objects)
         axes.contour(
             *coordinates(ground), maps.thickness, levels=[MIN_SHOWN_THICKNESS], colors=[INK],
             linewidths=1.2, linestyles="--", zorder=5,

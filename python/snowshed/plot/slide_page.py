@@ -7,6 +7,7 @@ import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import matplotlib as mpl
@@ -16,12 +17,14 @@ from matplotlib.image import imsave
 
 from snowshed.io.atomic import write_text
 from snowshed.io.raster.raster import Raster
+from snowshed.methods.slide.event_notes import event_notes
 from snowshed.methods.slide.frames import Frame
 from snowshed.methods.slide.maps import SlideMaps
 from snowshed.methods.slide.validity import ReleaseArea
 from snowshed.plot.figure_style import STYLE, blank_figure
 from snowshed.plot.html_page import HtmlTable, Picture, template
 from snowshed.plot.slide_figure import MIN_SHOWN_THICKNESS, PEAKS, slide_figure
+from snowshed.plot.slide_objects import SlopeObject, draw_objects, event_rows
 from snowshed.plot.terrain_map import (
     Extent,
     Outline,
@@ -65,6 +68,8 @@ class SlideFilm:
         CSS colours of the scale, from nothing to `largest`.
     outlines
         Corners of the release areas, as shares of width and height of the picture, in percent.
+    objects
+        The same of areas of later snow, forest and dams.
     """
 
     ground: str
@@ -74,6 +79,7 @@ class SlideFilm:
     largest: float
     colours: Sequence[str]
     outlines: Sequence[str]
+    objects: Sequence[tuple[SlopeObject, str]] = ()
 
 
 def write_slide_page(
@@ -83,6 +89,8 @@ def write_slide_page(
     areas: Sequence[ReleaseArea],
     figures: Mapping[str, Any],
     frames: Sequence[Frame],
+    objects: Sequence[SlopeObject] = (),
+    facts: Mapping[str, Any] = MappingProxyType({}),
 ) -> None:
     """Write the page of a slide, a single file that needs no network.
 
@@ -100,22 +108,29 @@ def write_slide_page(
         The summary of the slide, as in ``slide.json``.
     frames
         The snow over time.
+    objects
+        Areas of later snow, forest and dams on the slope.
+    facts
+        ``slide_facts`` of the core's simulation, for what happened to each of them.
     """
     outlines = [area["outline"] for area in scene["terrain"]["release"]]
+    events = event_rows(facts)
+    event_texts = {*event_notes(facts)} if events else set()
     assumed = str(scene["terrain"].get("notes") or "").splitlines()
     page = template("snowshed.plot", "slide.html.j2")
     text = page.render(
         title=scene.get("title") or "Snow slide",
         sentence=headline(figures),
-        notes=[note for note in figures.get("notes", ()) if note not in assumed],
+        notes=[note for note in figures.get("notes", ()) if note not in {*assumed, *event_texts}],
         assumed=assumed,
         facts=_facts(figures),
         areas=_area_table(areas),
+        events=HtmlTable(("", "name", "during the slide"), events, "lll") if events else None,
         mass=_mass_table(figures),
         settings=_settings_table(scene),
-        peaks=[_peak(maps, outlines, quantity) for quantity in PEAKS],
-        film=_film(maps, outlines, frames) if len(frames) > 1 else None,
-        multiples=_multiples(maps, outlines, frames) if len(frames) > 1 else None,
+        peaks=[_peak(maps, outlines, quantity, objects) for quantity in PEAKS],
+        film=_film(maps, outlines, frames, objects) if len(frames) > 1 else None,
+        multiples=_multiples(maps, outlines, frames, objects) if len(frames) > 1 else None,
         crs=scene["terrain"].get("crs") or "not given",
         cell=maps.cell,
         accuracy=GRID_ERROR,
@@ -177,17 +192,22 @@ def _area_table(areas: Sequence[ReleaseArea]) -> HtmlTable:
 
 
 def _mass_table(figures: Mapping[str, Any]) -> HtmlTable:
-    released, entrained = figures["released_kg"], figures["entrained_kg"]
-    left = figures["left_terrain_kg"]
-    rows = [
-        ("released", released),
-        ("entrained", entrained),
-        ("left the terrain", 0.0 - left),
-        ("on the terrain at the end", released + entrained - left),
+    always = ("released_kg", "entrained_kg", "left_terrain_kg", "on_terrain_kg")
+    masses = [
+        ("released", "released_kg", 1.0),
+        ("released by snow of the slide", "secondary_kg", 1.0),
+        ("brought by inflows", "inflow_kg", 1.0),
+        ("entrained", "entrained_kg", 1.0),
+        ("taken by forest", "detrained_kg", -1.0),
+        ("left the terrain", "left_terrain_kg", -1.0),
+        ("on the terrain at the end", "on_terrain_kg", 1.0),
     ]
-    return HtmlTable(
-        ("mass", "t"), [(name, f"{1e-3 * value + 0.0:,.3f}") for name, value in rows], "lr"
-    )
+    rows = [
+        (name, f"{1e-3 * sign * figures.get(key, 0.0) + 0.0:,.3f}")
+        for name, key, sign in masses
+        if key in always or figures.get(key, 0.0) > 0.0
+    ]
+    return HtmlTable(("mass", "t"), rows, "lr")
 
 
 def _settings_table(scene: Mapping[str, Any]) -> HtmlTable:
@@ -205,11 +225,17 @@ def _setting_text(value: Any) -> str:
     return str(value).lower() if isinstance(value, (bool, str)) else f"{value:g}"
 
 
-def _peak(maps: SlideMaps, outlines: Sequence[Outline], quantity: str) -> Picture:
-    figure = slide_figure(maps, outlines, quantity, area=38.0)
+def _peak(
+    maps: SlideMaps, outlines: Sequence[Outline], quantity: str, objects: Sequence[SlopeObject]
+) -> Picture:
+    figure = slide_figure(maps, outlines, quantity, 38.0, objects)
     name = PEAKS[quantity][0].partition(",")[0]
     caption = "Largest value over time at every node; the dashed line holds the snow at the end."
     return Picture.drawn(figure, quantity, name.capitalize(), caption)
+
+
+def _shown(outlines: Sequence[Outline], objects: Sequence[SlopeObject]) -> list[Outline]:
+    return [*outlines, *(each.corners for each in objects)]
 
 
 def _window(maps: SlideMaps, outlines: Sequence[Outline]) -> tuple[slice, slice, Extent]:
@@ -228,8 +254,13 @@ def _window(maps: SlideMaps, outlines: Sequence[Outline]) -> tuple[slice, slice,
     return slice(r0, r1), slice(c0, c1), part
 
 
-def _film(maps: SlideMaps, outlines: Sequence[Outline], frames: Sequence[Frame]) -> SlideFilm:
-    rows, columns, part = _window(maps, outlines)
+def _film(
+    maps: SlideMaps,
+    outlines: Sequence[Outline],
+    frames: Sequence[Frame],
+    objects: Sequence[SlopeObject] = (),
+) -> SlideFilm:
+    rows, columns, part = _window(maps, _shown(outlines, objects))
     ground = maps.raster(maps.terrain)
     width, height = panel_size(part, 38.0)
     figure = blank_figure(width, height)
@@ -245,7 +276,9 @@ def _film(maps: SlideMaps, outlines: Sequence[Outline], frames: Sequence[Frame])
     shown = [(frame.time, _overlay(frame.window(rows, columns), largest)) for frame in frames]
     encoded = base64.b64encode(file.getvalue()).decode()
     rings = [_in_percent(outline, part) for outline in outlines]
-    return SlideFilm(encoded, shown, round(96 * width), width / height, largest, scale, rings)
+    lines = [(each, _in_percent(each.corners, part)) for each in objects]
+    ratio = width / height
+    return SlideFilm(encoded, shown, round(96 * width), ratio, largest, scale, rings, lines)
 
 
 def _in_percent(outline: Outline, part: Extent) -> str:
@@ -275,10 +308,15 @@ def _overlay(thickness: Any, largest: float) -> str:
     return base64.b64encode(file.getvalue()).decode()
 
 
-def _multiples(maps: SlideMaps, outlines: Sequence[Outline], frames: Sequence[Frame]) -> Picture:
+def _multiples(
+    maps: SlideMaps,
+    outlines: Sequence[Outline],
+    frames: Sequence[Frame],
+    objects: Sequence[SlopeObject],
+) -> Picture:
     title = "The slide over time"
     caption = "Thickness of the snow, and the release."
-    figure = multiples_figure(maps, outlines, frames)
+    figure = multiples_figure(maps, outlines, frames, objects=objects)
     return Picture.drawn(figure, "over_time", title, caption)
 
 
@@ -287,6 +325,7 @@ def multiples_figure(
     outlines: Sequence[Outline],
     frames: Sequence[Frame],
     count: int = SMALL_MULTIPLES,
+    objects: Sequence[SlopeObject] = (),
 ) -> Figure:
     """Return small maps of the thickness of the snow, more of them while it moves fast.
 
@@ -300,9 +339,11 @@ def multiples_figure(
         The snow over time; at most `count` frames are shown.
     count
         Largest number of small maps.
+    objects
+        Areas of later snow, forest and dams on the slope.
     """
     chosen = _moving(frames, count)
-    rows, columns, part = _window(maps, outlines)
+    rows, columns, part = _window(maps, _shown(outlines, objects))
     ground: Raster = maps.raster(maps.terrain)
     across = 3 if (part[1] - part[0]) < 2.2 * (part[3] - part[2]) else 2
     down = -(-len(chosen) // across)
@@ -318,6 +359,7 @@ def multiples_figure(
             thickness[rows, columns] = np.where(cut > MIN_SHOWN_THICKNESS, cut, np.nan)
             drawn = draw_values(axes, ground, thickness, cmap=COLOURS, norm=norm)
             draw_outlines(axes, outlines)
+            draw_objects(axes, objects)
             axes.set_title(f"{frame.time:.0f} s" if frame.time >= 10 else f"{frame.time:.1f} s")
             axes.set(xticks=[], yticks=[])
         for axes in panels[len(chosen) :]:

@@ -45,8 +45,15 @@ void renumber(Bonds& bonds, const std::vector<std::uint32_t>& new_index);
 /// bonds. A bond has the stiffness k = E h / sqrt(3). A particle of mass m whose bonds have the
 /// total stiffness K vibrates with omega^2 <= 2 K / m (Gershgorin). Forces are evaluated at the
 /// positions to which the velocities before the step lead, which is stable if omega dt <= sqrt(2).
+/// `thinned`: whether bonds weaken with the mass that forest takes.
 double max_bond_step(const Bonds& bonds, const Particles& particles,
-                     const AlignedVector<double>& thickness, double modulus);
+                     const AlignedVector<double>& thickness, double modulus, bool thinned);
+
+/// The share of its strength that a bond has where forest takes snow: that of the fresh mass which
+/// is left in the lighter of its two columns. Force over mass then never exceeds that of fresh
+/// snow.
+double bond_share(const double* mass, const double* fresh_mass, std::uint32_t first,
+                  std::uint32_t second);
 
 /// Removes the bonds that are marked.
 void remove_bonds(Bonds& bonds, const std::vector<char>& marked);

@@ -21,6 +21,23 @@ double bond_energy(double modulus, double thickness, double length, double rest)
   return modulus * thickness / std::sqrt(3.0) * rest * rest * strain * strain * (0.5 + strain / 3);
 }
 
+/// The energy of all bonds between particles of these masses, J.
+double bonds_energy(const Model& model, const State& state, const Workspace& work,
+                    const double* masses) {
+  const Particles& p = state.particles;
+  const Bonds& bonds = state.bonds;
+  double sum = 0;
+  for (std::size_t b = 0; b < bonds.size(); ++b) {
+    const std::uint32_t k = bonds.first[b], l = bonds.second[b];
+    const Vec3 separation{p.x[l] - p.x[k], p.y[l] - p.y[k], p.z[l] - p.z[k]};
+    const double thickness = 0.5 * (work.thickness[k] + work.thickness[l]);
+    const double share = model.thins_bonds() ? bond_share(masses, p.fresh_mass.data(), k, l) : 1;
+    sum += share * bond_energy(model.settings.bond_modulus, thickness, separation.norm(),
+                               bonds.rest_length[b]);
+  }
+  return sum;
+}
+
 /// The parts of a particle's friction that grow with the square of its speed, 1/m.
 struct Drag {
   double turbulent, resistance;
@@ -94,19 +111,12 @@ NamedEnergies named_energies(const EnergyBalance& e) {
 
 void store_energy(const Model& model, const State& state, const Workspace& work, EnergyBalance& e) {
   const Particles& p = state.particles;
-  e.kinetic = e.bonds = 0;
+  e.kinetic = 0;
+  e.bonds = bonds_energy(model, state, work, p.mass.data());
   e.potential = pressure_energy(model, state, work, p.mass.data());
   for (std::size_t i = 0; i < p.size(); ++i) {
     e.kinetic += 0.5 * p.mass[i] * velocity_at(state, i).squaredNorm();
     e.potential += p.mass[i] * model.gravity * p.z[i];
-  }
-  const Bonds& bonds = state.bonds;
-  for (std::size_t b = 0; b < bonds.size(); ++b) {
-    const std::uint32_t k = bonds.first[b], l = bonds.second[b];
-    const Vec3 separation{p.x[l] - p.x[k], p.y[l] - p.y[k], p.z[l] - p.z[k]};
-    const double thickness = 0.5 * (work.thickness[k] + work.thickness[l]);
-    e.bonds += bond_energy(model.settings.bond_modulus, thickness, separation.norm(),
-                           bonds.rest_length[b]);
   }
 }
 
@@ -133,33 +143,39 @@ void EnergyRecorder::after_ground(const Model& model, const State& state, const 
     e.added += (grown - masses_[i]) * model.gravity * heights_[i];
     before_[i] = u;
   }
-  add_detrained_thickness(model, state, work, e);
+  add_detrained_stores(model, state, work, e);
 }
 
-/// Adds the energy of the thickness by which detrainment thins the snow.
-void EnergyRecorder::add_detrained_thickness(const Model& model, const State& state,
-                                             const Workspace& work, EnergyBalance& e) {
+/// Adds the energy of the thickness and the bonds by which detrainment thins the snow.
+void EnergyRecorder::add_detrained_stores(const Model& model, const State& state,
+                                          const Workspace& work, EnergyBalance& e) {
   if (work.detrained.empty()) return;
   const Particles& p = state.particles;
   const std::size_t n = p.size();
   masses_.resize(n);
   for (std::size_t i = 0; i < n; ++i) masses_[i] = p.mass[i] + work.detrained[i];
-  e.detrainment += pressure_energy(model, state, work, masses_.data());
+  e.detrainment += pressure_energy(model, state, work, masses_.data()) +
+                   bonds_energy(model, state, work, masses_.data());
   for (std::size_t i = 0; i < n; ++i) masses_[i] = work.gone[i] ? 0.0 : p.mass[i];
-  e.detrainment -= pressure_energy(model, state, work, masses_.data());
+  e.detrainment -= pressure_energy(model, state, work, masses_.data()) +
+                   bonds_energy(model, state, work, masses_.data());
 }
 
 /// Adds the energy of the bonds that break in this step.
 void EnergyRecorder::add_broken(const Model& model, const State& state, const Workspace& work,
                                 EnergyBalance& e) const {
   const Bonds& bonds = state.bonds;
+  const Particles& p = state.particles;
   for (std::size_t b = 0; b < bonds.size(); ++b) {
     const double* k = &work.predicted[4 * std::size_t(bonds.first[b])];
     const double* l = &work.predicted[4 * std::size_t(bonds.second[b])];
     const double length = Vec3(l[0] - k[0], l[1] - k[1], l[2] - k[2]).norm();
+    const double share = model.thins_bonds() ? bond_share(p.mass.data(), p.fresh_mass.data(),
+                                                          bonds.first[b], bonds.second[b])
+                                             : 1;
     if (work.bonds_break && work.broken[b])
-      e.broken += bond_energy(model.settings.bond_modulus, 0.5 * (k[3] + l[3]), length,
-                              bonds.rest_length[b]);
+      e.broken += share * bond_energy(model.settings.bond_modulus, 0.5 * (k[3] + l[3]), length,
+                                      bonds.rest_length[b]);
   }
 }
 

@@ -60,7 +60,7 @@ class EnergyRecorder {
   void after_motion(const Model&, const State&, const Workspace&, EnergyBalance&) const;
 
  private:
-  void add_detrained_thickness(const Model&, const State&, const Workspace&, EnergyBalance&);
+  void add_detrained_stores(const Model&, const State&, const Workspace&, EnergyBalance&);
   void add_broken(const Model&, const State&, const Workspace&, EnergyBalance&) const;
 
   std::vector<Vec3> before_;  // m/s

@@ -88,8 +88,10 @@ ForestAction forest_action(const Model& model, const State& state, const GridFie
   return passes ? ForestAction::resists : ForestAction::detrains;
 }
 
-/// Default mode: forest takes all of a particle of which less than this share is left.
-constexpr double min_share = 0.01;
+/// Shares of the fresh mass below which forest takes all of a particle. Among thicker snow a
+/// particle loses the same share in each step, so that it would never vanish, but get too light to
+/// divide by its mass. AvaFrame has no such limit; that of the compatible mode changes no figure.
+constexpr double min_share = 0.01, min_share_as_avaframe = 1e-12;
 
 /// Takes mass from a particle. A particle that loses all of it keeps its mass to the end of the
 /// step, because accelerations are divided by it, but is marked.
@@ -119,7 +121,7 @@ void apply_areas(const Model& model, State& state, Workspace& work) {
     const ForestAction action = forest_action(model, state, work.fields, node);
     if (action == ForestAction::detrains)
       detrain(model, before / (h * model.settings.density), state.step, v.speed[i], i, p.mass[i],
-              model.compatible() ? 0.0 : min_share * p.fresh_mass[i], work);
+              (model.compatible() ? min_share_as_avaframe : min_share) * p.fresh_mass[i], work);
     if (action == ForestAction::resists) v.drag[i] += model.resistance[node] / h;
     if (model.compatible() && p.mass[i] != before) {  // there forces act on the mass before
       const double share = before / p.mass[i];
@@ -149,17 +151,16 @@ void apply_ground(const Model& model, State& state, Workspace& work) {
 
 namespace {
 
-/// Marks the bonds of particles that have lost half of their mass to forest. Their snow is no slab
-/// any more, and the lighter a particle is, the shorter are the steps that its bonds need.
-void mark_torn(const State& state, Workspace& work) {
+/// Weakens the bonds of snow that forest has thinned. The kernel takes the thickness of the snow
+/// around, with which a light particle would be thrown away: force over mass would have no bound.
+void weaken_thinned(const State& state, Workspace& work) {
+  const Bonds& bonds = state.bonds;
   const Particles& p = state.particles;
-  const auto is_torn = [&p](std::uint32_t i) { return p.mass[i] < 0.5 * p.fresh_mass[i]; };
-  for (std::size_t b = 0; b < state.bonds.size(); ++b)
-    if (is_torn(state.bonds.first[b]) || is_torn(state.bonds.second[b])) {
-      work.broken[b] = 1;
-      std::fill_n(&work.bond_force[4 * b], 4, 0.0);  // it would throw the light particle away
-      work.bonds_break = true;
-    }
+  for (std::size_t b = 0; b < bonds.size(); ++b) {
+    const double share =
+        bond_share(p.mass.data(), p.fresh_mass.data(), bonds.first[b], bonds.second[b]);
+    for (std::size_t axis = 0; axis < 3; ++axis) work.bond_force[4 * b + axis] *= share;
+  }
 }
 
 }  // namespace
@@ -184,7 +185,7 @@ void apply_neighbours(const Model& model, State& state, Workspace& work) {
                   if (kernels.stretch_bonds(view, begin, end)) breaks = true;
                 }});
   work.bonds_break = breaks;
-  if (!work.detrained.empty() && !model.compatible()) mark_torn(state, work);
+  if (model.thins_bonds()) weaken_thinned(state, work);
 }
 
 void mark_detrained(State& state, Workspace& work) {

@@ -191,8 +191,8 @@ void SolverImpl::release_in_step() {
 void SolverImpl::choose_step(State& next, const Workspace& work) const {
   const Settings& s = model_.settings;
   if (model_.compatible()) return;
-  const double max_step =
-      0.5 * max_bond_step(next.bonds, next.particles, work.thickness, s.bond_modulus);
+  const double max_step = 0.5 * max_bond_step(next.bonds, next.particles, work.thickness,
+                                              s.bond_modulus, model_.thins_bonds());
   const double parts = std::ceil(s.time_step / max_step);
   if (parts > max_substeps)
     throw InputError("/numerics/time_step",

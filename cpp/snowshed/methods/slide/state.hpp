@@ -33,6 +33,8 @@ struct Model {
   Model(const Settings&, double gravity, const geometry::HeightField&, Areas, bool keeps_energy);
 
   bool detrains() const { return settings.detrainment > 0 && !areas.resistance.empty(); }
+  /// Whether bonds weaken with the mass that forest takes.
+  bool thins_bonds() const { return detrains() && !compatible(); }
   bool compatible() const { return settings.mode == Mode::compatible; }
   /// Maximum number of threads for a step of this number of particles.
   int threads_for(std::size_t particles) const {

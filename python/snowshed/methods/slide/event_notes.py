@@ -20,7 +20,7 @@ def event_notes(facts: Mapping[str, Any]) -> tuple[str, ...]:
     >>> event_notes({"late_releases": [], "detrained_kg": 12.0, "dams": []})
     ('Forest took 12 kg of snow from the slide.',)
     """
-    late = facts["late_releases"]
+    late = facts.get("late_releases", ())
     by_contact = [release for release in late if release["by_contact"]]
     inflows = groupby(
         (release for release in late if not release["by_contact"]), lambda each: each["name"]
@@ -28,8 +28,8 @@ def event_notes(facts: Mapping[str, Any]) -> tuple[str, ...]:
     return (
         *(_secondary_note(release) for release in by_contact),
         *(_inflow_note(name, list(pulses)) for name, pulses in inflows),
-        *_forest_notes(facts["detrained_kg"]),
-        *(_dam_note(dam) for dam in facts["dams"]),
+        *_forest_notes(facts.get("detrained_kg", 0.0)),
+        *(_dam_note(dam) for dam in facts.get("dams", ())),
     )
 
 

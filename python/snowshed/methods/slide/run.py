@@ -85,13 +85,18 @@ class SlideRun(MethodRun):
         """Draw ``slide.png`` and the energies, and write ``slide.html``."""
         from snowshed.plot.figure_style import save_figure
         from snowshed.plot.slide_figure import slide_figure
+        from snowshed.plot.slide_objects import slope_objects
         from snowshed.plot.slide_page import write_slide_page
 
         self.draw_energies()
         scene, page = self.scene.data, self.folder / "slide.html"
-        save_figure(slide_figure(self.maps, release_outlines(scene)), self.folder / "slide.png")
+        facts = self.simulation.slide_facts()
+        objects = slope_objects(scene["terrain"], facts["late_releases"])
+        figure = slide_figure(self.maps, release_outlines(scene), objects=objects)
+        save_figure(figure, self.folder / "slide.png")
         frames = _frames(self.folder, self.maps)
-        write_slide_page(page, self.maps, scene, self.areas, asdict(self.summary), frames)
+        figures = asdict(self.summary)
+        write_slide_page(page, self.maps, scene, self.areas, figures, frames, objects, facts)
 
     @classmethod
     def rows(cls, folder: Path) -> list[dict[str, Cell]]:

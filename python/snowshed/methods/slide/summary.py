@@ -69,9 +69,15 @@ class SlideSummary(Summary):
     def lines(self) -> Mapping[str, str]:
         """Return the lines that people read, by name."""
         broken = f"{self.bonds_broken:,} of {self.bonds_made:,}"
+        later = {
+            "released later": self.secondary_kg,
+            "brought by inflows": self.inflow_kg,
+            "taken by forest": self.detrained_kg,
+        }
         return {
             "ended": f"{self.ended} after {self.sim_time_s:.2f} s",
             "released": f"{self.released_kg:,.0f} kg",
+            **{name: f"{mass:,.0f} kg" for name, mass in later.items() if mass > 0.0},
             "entrained": f"{self.entrained_kg:,.0f} kg",
             "left the terrain": f"{self.left_terrain_kg:,.0f} kg",
             "bonds broken": broken if self.bonds_made else "no bonds",

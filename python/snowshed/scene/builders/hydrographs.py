@@ -36,7 +36,10 @@ def read_hydrograph(file: Path) -> list[Pulse]:
     names = [cell.strip().lower() for cell in rows[0]] if rows else []
     for column in COLUMNS:
         if names.count(column) != 1:
-            raise InputError(f"{file}: needs one column {column}; allowed: {', '.join(COLUMNS)}")
+            raise InputError(
+                f"{file}: needs one column {column}; allowed: {', '.join(COLUMNS)}, with commas "
+                "between them"
+            )
     if not 1 <= len(rows) - 1 <= MAX_PULSES:
         raise InputError(f"{file}: {len(rows) - 1} rows; allowed: 1 to {MAX_PULSES}")
     pulses = [_pulse(names, row, f"{file}, row {number}") for number, row in enumerate(rows[1:], 2)]
