@@ -93,9 +93,7 @@ def frame_content(html):
 
 @pytest.mark.slow
 def test_cells_run_twice_and_interrupted_cells_resume(execute):
-    _, first, second, stopped, resumed = execute(
-        SETUP, RUN, RUN, INTERRUPTED, RESUMED, fails=[3]
-    )
+    _, first, second, stopped, resumed = execute(SETUP, RUN, RUN, INTERRUPTED, RESUMED, fails=[3])
     for outputs in (first, second):
         assert not [output for output in outputs if output["output_type"] == "error"]
         assert "text/html" in outputs[-1]["data"] and "height_m" in texts(outputs)
@@ -109,7 +107,9 @@ def test_cells_run_twice_and_interrupted_cells_resume(execute):
 def test_scenes_results_and_the_moving_view_show_themselves(execute):
     _, scene, results, view = execute(SETUP, SCENE, WITH_PICTURES, SHOWN)
     for outputs in (scene, results, view):
-        assert outputs[-1]["output_type"] == "execute_result" and "text/plain" in outputs[-1]["data"]
+        assert (
+            outputs[-1]["output_type"] == "execute_result" and "text/plain" in outputs[-1]["data"]
+        )
     assert "<svg" in scene[-1]["data"]["text/html"] and "tilt" in texts(scene)
     shown = results[-1]["data"]["text/html"]
     assert "data:image/png;base64" in shown and "height_m" in shown

@@ -77,7 +77,9 @@ class TurnedBody:
         phase = random.uniform(0, 2 * np.pi, WAVES)
         east, north = self._turned(waves[:, 0], waves[:, 1])
         upward = np.exp(1j * (np.outer(z, waves[:, 2]) + phase))
-        layer = np.exp(1j * np.outer(north, x))[:, :, None] * np.exp(1j * np.outer(east, x))[:, None]
+        layer = (
+            np.exp(1j * np.outer(north, x))[:, :, None] * np.exp(1j * np.outer(east, x))[:, None]
+        )
         field = (upward @ layer.reshape(WAVES, -1)).real * np.sqrt(2 / WAVES)
         return np.asarray(field.reshape(len(z), len(x), len(x)))
 

@@ -96,13 +96,14 @@ void soft(std::int64_t n, double* e, double* stress, double*, double* own, const
 
 std::atomic<std::int64_t> returned{0}, asked_again{0};
 
-/// A liquid of Maxwell's kind: shear is lost at once, and a tenth of the volumetric strain.
+/// A liquid of Maxwell's kind: shear is lost at once, and a thousandth of the
+/// volumetric strain in each step.
 void flowing(std::int64_t n, double* e, double* stress, double* plastic, double* own,
              const std::uint8_t*, double dt) {
   (dt > 0 ? returned : asked_again) += n;
   for (std::int64_t i = 0; i < n; ++i) {
     const double volumetric = e[i] + e[n + i];
-    const double left = dt > 0 ? 0.9 * volumetric : volumetric;
+    const double left = dt > 0 ? 0.999 * volumetric : volumetric;
     stress[i] = stress[n + i] = 1e6 * left;
     stress[2 * n + i] = 0;
     if (!(dt > 0)) continue;
@@ -189,12 +190,13 @@ void expect_counted_steps(Precision precision) {
   const auto law = reinterpret_cast<void*>(&count_steps<T>);
   Simulation sim(scene, ".", with(law, 4));
   sim.begin_event();
-  sim.step(400);  // until the liquid has flowed far enough that sorting rearranges its particles
+  sim.step(400);  // several sorts
   for (const double steps : field_of<T>(sim, "own_0")) EXPECT_EQ(steps, 400);
   for (const double time : field_of<T>(sim, "own_1"))
     EXPECT_NEAR(time, sim.event_time(), 1e-5 * sim.event_time());
   const auto pressure = field_of<double>(sim, "pressure"), stress = field_of<T>(sim, "own_2");
-  for (std::size_t i = 0; i < stress.size(); ++i) EXPECT_NEAR(pressure[i], -stress[i], 0.5 + 1e-3 * std::abs(stress[i]));
+  for (std::size_t i = 0; i < stress.size(); ++i)
+    EXPECT_NEAR(pressure[i], -stress[i], 0.5 + 1e-3 * std::abs(stress[i]));
   EXPECT_GT(*std::max_element(pressure.begin(), pressure.end()), 50);
 }
 
@@ -234,16 +236,18 @@ TEST(ConstitutiveLaw, StressesInResultsAreItsOwnAlsoInShear) {
   expect_own_stress<3>(falling_box(3, Precision::float64), 200);
 }
 
+/// The plastic strain is no number of the law's own, so it shows whether those follow their
+/// particle.
 TEST(ConstitutiveLaw, ReturnsEachParticleOnceAStepAndItsStateStays) {
-  scene::Scene scene = one_event();
+  scene::Scene scene = falling_box(2, Precision::float64);
   scene.numerics.as<methods::mpm::Settings>().sleep_speed = 0;
   returned = asked_again = 0;
   Simulation sim(scene, ".", with(reinterpret_cast<void*>(&flowing), 2));
   sim.begin_event();
   const double before = field_of<double>(sim, "volumetric_plastic_strain").at(0);
-  sim.step(100);
+  sim.step(400);  // until sorting has rearranged the particles
   const auto pressure = field_of<double>(sim, "pressure");
-  EXPECT_EQ(returned, 100 * std::int64_t(pressure.size()));
+  EXPECT_EQ(returned, 400 * std::int64_t(pressure.size()));
   EXPECT_GT(asked_again, 0);  // for the grid after sorting, and for the fields
   const auto flowed = field_of<double>(sim, "own_0"), left = field_of<double>(sim, "own_1");
   const auto plastic = field_of<double>(sim, "volumetric_plastic_strain");

@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Optional
 
-#: Ratio of numbers of grains, and of densities, up to which a record applies to a sample.
-MAX_GRAIN_RATIO, MAX_DENSITY_RATIO = 1.5, 1.1
+from snowshed.base.formatting import percent
+
+#: Ratios of numbers of grains, of densities and of voxels up to which a record applies to a sample.
+MAX_GRAIN_RATIO, MAX_DENSITY_RATIO, MAX_VOXEL_RATIO = 1.3, 1.1, 1.2
 
 
 @dataclass(frozen=True)
@@ -19,6 +21,8 @@ class RecordedScatter:
         Mean number of grains of a sample.
     density
         Mean density, kg/m3.
+    voxel
+        Edge of a voxel, m.
     samples
         Number of samples.
     scatter
@@ -27,6 +31,7 @@ class RecordedScatter:
 
     grains: int
     density: float
+    voxel: float
     samples: int
     scatter: float
 
@@ -34,12 +39,16 @@ class RecordedScatter:
 #: Synthetic samples, from docs/trust/grains-record.md: "Strength and the grid of voxels", and
 #: "Sensitivity".
 RECORDS = (
-    RecordedScatter(grains=150, density=320.0, samples=10, scatter=0.35),
-    RecordedScatter(grains=1050, density=318.0, samples=3, scatter=0.09),
+    RecordedScatter(grains=45, density=319.0, voxel=1e-4, samples=10, scatter=0.61),
+    RecordedScatter(grains=84, density=319.0, voxel=7.5e-5, samples=10, scatter=0.44),
+    RecordedScatter(grains=113, density=319.0, voxel=5e-5, samples=10, scatter=0.13),
+    RecordedScatter(grains=1050, density=318.0, voxel=1e-4, samples=3, scatter=0.09),
 )
 
 
-def recorded_scatter(grains: int, density: float, kind: str) -> Optional[RecordedScatter]:
+def recorded_scatter(
+    grains: int, density: float, voxel: float, kind: str
+) -> Optional[RecordedScatter]:
     """Return the recorded scatter of samples like one; None if there is none.
 
     Parameters
@@ -48,14 +57,16 @@ def recorded_scatter(grains: int, density: float, kind: str) -> Optional[Recorde
         Number of grains of the sample.
     density
         Its density, kg/m3.
+    voxel
+        Edge of its voxels, m.
     kind
-        Kind of the loading stage.
+        Kind of the loading stage; only compression has been recorded.
 
     Examples
     --------
-    >>> recorded_scatter(1000, 320.0, "compress").samples
+    >>> recorded_scatter(1000, 320.0, 1e-4, "compress").samples
     3
-    >>> recorded_scatter(1000, 320.0, "shear") is None
+    >>> recorded_scatter(1000, 320.0, 1e-4, "shear") is None
     True
     """
     if kind != "compress":
@@ -64,49 +75,48 @@ def recorded_scatter(grains: int, density: float, kind: str) -> Optional[Recorde
         if (
             _ratio(grains, record.grains) <= MAX_GRAIN_RATIO
             and _ratio(density, record.density) <= MAX_DENSITY_RATIO
+            and _ratio(voxel, record.voxel) <= MAX_VOXEL_RATIO
         ):
             return record
     return None
 
 
-def scatter_note(grains: int, density: float, kind: str) -> str:
+def scatter_note(record: Optional[RecordedScatter]) -> str:
     """Return a note on the strength of a single sample.
+
+    Parameters
+    ----------
+    record
+        From `recorded_scatter`.
 
     Examples
     --------
-    >>> scatter_note(20, 320.0, "compress")
-    'the strength is that of one sample; the scatter between samples of this size is not known'
-    >>> scatter_note(1000, 320.0, "compress")  # doctest: +ELLIPSIS
-    'the strength is that of one sample; strengths of samples of this size scatter by 9 % (...)'
+    >>> scatter_note(None)[:70]
+    'the strength is that of one sample; how much strengths of such samples'
+    >>> scatter_note(recorded_scatter(1000, 320.0, 1e-4, "compress"))[-71:]
+    '(standard deviation of 3 synthetic samples of 1050 grains and 318 kg/m3)'
     """
-    record = recorded_scatter(grains, density, kind)
     if record is None:
-        unknown = "the scatter between samples of this size is not known"
-        if recorded_scatter(grains, RECORDS[0].density, "compress"):
-            unknown = f"the scatter between samples {_other(density, kind)} is not known"
-        return f"the strength is that of one sample; {unknown}"
+        return (
+            "the strength is that of one sample; how much strengths of such samples scatter is not "
+            "known: load several"
+        )
     return (
         "the strength is that of one sample; strengths of samples of this size scatter by "
-        f"{100 * record.scatter:.0f} % (standard deviation of {record.samples} synthetic samples, "
-        f"{record.grains} grains, {record.density:.0f} kg/m3)"
+        f"{percent(record.scatter)} (standard deviation of {record.samples} synthetic samples of "
+        f"{record.grains} grains and {record.density:.0f} kg/m3)"
     )
 
 
-def scatter_words(grains: int, density: float, kind: str) -> str:
+def scatter_words(record: Optional[RecordedScatter]) -> str:
     """Return a few words that stand beside the strength of a single sample.
 
     Examples
     --------
-    >>> scatter_words(1000, 320.0, "compress"), scatter_words(20, 320.0, "compress")
-    ('scatter between samples 9 %', 'scatter between samples not known')
+    >>> scatter_words(None)
+    'scatter between samples not known'
     """
-    record = recorded_scatter(grains, density, kind)
-    return f"scatter between samples {f'{100 * record.scatter:.0f} %' if record else 'not known'}"
-
-
-def _other(density: float, kind: str) -> str:
-    """Return the property of a sample for which there is no record."""
-    return f"of {density:.0f} kg/m3" if kind == "compress" else f'under the load "{kind}"'
+    return f"scatter between samples {percent(record.scatter) if record else 'not known'}"
 
 
 def _ratio(first: float, other: float) -> float:

@@ -17,7 +17,12 @@ from snowshed.methods.grains.phases import (
     find_phases,
     mean_stress,
 )
-from snowshed.methods.grains.strength_scatter import scatter_note, scatter_words
+from snowshed.methods.grains.strength_scatter import (
+    RecordedScatter,
+    recorded_scatter,
+    scatter_note,
+    scatter_words,
+)
 from snowshed.methods.summary import Summary
 
 #: Number of grains below which a sample hardly represents its snow.
@@ -170,13 +175,12 @@ def summarise(
         None if phases.unknown else mean_stress(strain, stress, *ends)
         for ends in MEAN_STRAIN_RANGES
     ]
-    snow = _density(curve, scene)
     return GrainsSummary(
         ended=ended,
         sim_time_s=float(curve["time_s"][-1]),
         final_particles=grains,
         spheres=spheres,
-        density_kg_m3=snow,
+        density_kg_m3=_density(curve, scene),
         solid_fraction=float(curve["solid_fraction"][0]),
         solid_fraction_at_end=float(curve["solid_fraction"][-1]),
         axial_strain=float(curve["axial_strain"][-1]),
@@ -195,7 +199,7 @@ def summarise(
         hardening_onset_strain=phases.hardening_onset,
         hardening_rate=phases.hardening_rate,
         largest_cone_force_n=_cone_force(curve, scene),
-        strength_scatter=scatter_words(grains, snow, kind) if phases.strength else "",
+        strength_scatter=scatter_words(_scatter(curve, scene, grains)) if phases.strength else "",
         synthetic=synthetic or None,
         notes=tuple(_notes(curve, first, kind, scene, grains)),
         sample_notes=tuple(sample_notes),
@@ -205,6 +209,13 @@ def summarise(
 def _density(curve: LoadingCurve, scene: Mapping[str, Any]) -> float:
     """Return the density of the snow at the beginning, kg/m3."""
     return float(scene["numerics"]["density"]) * float(curve["solid_fraction"][0])
+
+
+def _scatter(
+    curve: LoadingCurve, scene: Mapping[str, Any], grains: int
+) -> Optional[RecordedScatter]:
+    kind, voxel = str(scene["loading"][0]["kind"]), float(scene["sample"]["voxel_size"])
+    return recorded_scatter(grains, _density(curve, scene), voxel, kind)
 
 
 def _cone_force(curve: LoadingCurve, scene: Mapping[str, Any]) -> Optional[float]:
@@ -247,7 +258,7 @@ def _notes(
             "modulus is fitted from there on; all strains count from the beginning"
         )
     if phases.strength:
-        notes.append(scatter_note(grains, _density(curve, scene), kind))
+        notes.append(scatter_note(_scatter(curve, scene, grains)))
     linearity = phases.linearity
     if linearity is not None and linearity < MIN_LINEARITY:
         notes.append(
