@@ -163,7 +163,7 @@ def test_the_strength_agrees_with_a_finely_sampled_run(scene, tmp_path):
 
 def test_the_scatter_between_samples_stands_beside_the_strength(scene, tmp_path):
     summary = run(scene, tmp_path / "out", pictures=False).summary
-    assert summary.lines()["strength"].endswith("kPa, scatter between samples not known")
+    assert summary.lines()["strength"].endswith("MPa, scatter between samples not known")
     assert any("scatter is not known: load several" in note for note in summary.notes)
     assert GrainsSummary.read(tmp_path / "out").strength_scatter == summary.strength_scatter
     known = recorded_scatter(110, 310.0, 5e-5, "compress")

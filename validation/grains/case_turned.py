@@ -83,7 +83,9 @@ class _Tests:
             labels = segment(image, SegmentationSettings(threads=1)).labels
         speed, strain = float(self.settings["speed"]), float(self.settings["strain"])
         stages = [LoadingStage(kind="compress", speed=speed, strain=strain)]
-        drive = grains_drive(labels, body.voxel, stages, self.settings, CASE_SETTINGS)
+        drive = grains_drive(
+            labels.astype(np.int64), body.voxel, stages, self.settings, CASE_SETTINGS
+        )
         curve = load_all(drive, stages, HEIGHT)
         cost = drive.outcome([])
         self.wall_s += cost.wall_s
@@ -110,14 +112,14 @@ def measure(settings: CaseSettings) -> Outcome:
             Measured(name, ratio.mean, 1.0, ratio.mean - 1.0),
             Measured(f"{name}_error", ratio.error, 0.0, ratio.error),
             Measured(f"{name}_away", away, 0.0, away),
-            Measured(f"{name}_scatter", *_scatter(np.std(np.log(strengths / base), ddof=1))),
+            Measured(f"{name}_scatter", *_scatter(float(np.std(np.log(strengths / base), ddof=1)))),
         ]
-    measured.append(Measured("scatter", *_scatter(base.std(ddof=1) / base.mean())))
+    measured.append(Measured("scatter", *_scatter(float(base.std(ddof=1) / base.mean()))))
     return Outcome(measured, tests.wall_s, tests.updates, tests.steps, tests.particles)
 
 
 def _scatter(value: float) -> tuple[float, float, float]:
-    return float(value), 0.0, float(value)
+    return value, 0.0, value
 
 
 def matrix(full: bool) -> list[CaseSettings]:

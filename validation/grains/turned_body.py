@@ -57,8 +57,8 @@ class TurnedBody:
         ((30, 34, 34), False)
         """
         tall, wide = round(HEIGHT / self.voxel), round(DIAMETER / self.voxel) + 2 * MARGIN
-        z = (np.arange(tall) + 0.5) * self.voxel
-        x = (np.arange(wide) + 0.5 - 0.5 * wide - self.shift) * self.voxel
+        z: Floats = (np.arange(tall, dtype=float) + 0.5) * self.voxel
+        x: Floats = (np.arange(wide, dtype=float) + 0.5 - 0.5 * wide - self.shift) * self.voxel
         inside = np.hypot(*np.meshgrid(x, x)) <= 0.5 * DIAMETER
         ice = (self._field(z, x) > ndtri(1.0 - ICE_FRACTION)) & inside
         return IceImage(

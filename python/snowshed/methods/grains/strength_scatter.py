@@ -93,7 +93,7 @@ def scatter_note(record: Optional[RecordedScatter]) -> str:
     --------
     >>> scatter_note(None)[:70]
     'the strength is that of one sample; how much strengths of such samples'
-    >>> scatter_note(recorded_scatter(1000, 320.0, 1e-4, "compress"))[-71:]
+    >>> scatter_note(recorded_scatter(1000, 320.0, 1e-4, "compress"))[-72:]
     '(standard deviation of 3 synthetic samples of 1050 grains and 318 kg/m3)'
     """
     if record is None:
