@@ -69,7 +69,7 @@ class TurnedBody:
         )
 
     def _field(self, z: Floats, x: Floats) -> Floats:
-        """Return the field, of unit variance, at heights z and at places x along both sides."""
+        """Return the field, of unit variance, at heights z and at centres x along both sides."""
         random = np.random.default_rng(self.seed)
         waves = random.standard_normal((WAVES, 3))
         length = WAVELENGTH / (1 + SHELL_WIDTH * random.standard_normal(WAVES))
@@ -94,10 +94,10 @@ class TurnedBody:
         random = np.random.default_rng((self.seed, CELLS))
         points = random.uniform(-0.6, 0.6, (CELLS, 3)) * DIAMETER
         points[:, :2] = np.transpose(self._turned(points[:, 0], points[:, 1]))
-        places = (np.argwhere(ice) + 0.5) * self.voxel - 0.5 * HEIGHT
+        centres = (np.argwhere(ice) + 0.5) * self.voxel - 0.5 * HEIGHT
         wide = ice.shape[2]
-        places[:, 1:] += 0.5 * HEIGHT - (0.5 * wide + self.shift) * self.voxel
-        nearest = cKDTree(points).query(places[:, ::-1])[1]
+        centres[:, 1:] += 0.5 * HEIGHT - (0.5 * wide + self.shift) * self.voxel
+        nearest = cKDTree(points).query(centres[:, ::-1])[1]
         labels = np.zeros(ice.shape, dtype=np.int32)
         labels[ice] = nearest + 1
         return labels

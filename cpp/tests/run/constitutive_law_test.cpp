@@ -236,8 +236,7 @@ TEST(ConstitutiveLaw, StressesInResultsAreItsOwnAlsoInShear) {
   expect_own_stress<3>(falling_box(3, Precision::float64), 200);
 }
 
-/// The plastic strain is no number of the law's own, so it shows whether those follow their
-/// particle.
+/// Sorting moves the plastic strain apart from the law's numbers, so the two must agree afterwards.
 TEST(ConstitutiveLaw, ReturnsEachParticleOnceAStepAndItsStateStays) {
   scene::Scene scene = falling_box(2, Precision::float64);
   scene.numerics.as<methods::mpm::Settings>().sleep_speed = 0;

@@ -41,7 +41,7 @@ class RecordedScatter:
 RECORDS = (
     RecordedScatter(grains=45, density=319.0, voxel=1e-4, samples=10, scatter=0.61),
     RecordedScatter(grains=84, density=319.0, voxel=7.5e-5, samples=10, scatter=0.44),
-    RecordedScatter(grains=113, density=319.0, voxel=5e-5, samples=10, scatter=0.13),
+    RecordedScatter(grains=115, density=319.0, voxel=5e-5, samples=30, scatter=0.30),
     RecordedScatter(grains=1050, density=318.0, voxel=1e-4, samples=3, scatter=0.09),
 )
 

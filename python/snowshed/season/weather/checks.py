@@ -143,8 +143,8 @@ def untold_warm_snow(rows: Sequence[Weather]) -> list[str]:
     >>> untold_warm_snow([first]), len(untold_warm_snow([first, other]))
     ([], 1)
     """
-    told = all(_told.get(id(row)) is row for row in rows if _is_warm_snow(row))
-    return [] if told else warm_snow(rows)
+    is_known = all(_told.get(id(row)) is row for row in rows if _is_warm_snow(row))
+    return [] if is_known else warm_snow(rows)
 
 
 def _is_warm_snow(row: Weather) -> bool:
