@@ -14,6 +14,8 @@ from snowshed.base.interrupt import Interrupted
 from snowshed.base.notes import record_notes
 from snowshed.io.vtk.vtp import read_particles
 from snowshed.methods.grains.curve import LoadingCurve, carried_stress
+from snowshed.methods.grains.strength_scatter import recorded_scatter, scatter_words
+from snowshed.methods.grains.summary import GrainsSummary
 from snowshed.running.run import run
 from snowshed.running.sequence import open_sequence
 from snowshed.scene import grains_scene
@@ -157,6 +159,22 @@ def test_the_strength_agrees_with_a_finely_sampled_run(scene, tmp_path):
     sampled = carried_stress(curve, "compress").max()
     assert coarse.strength_pa > 1.001 * sampled
     assert coarse.strength_pa == pytest.approx(finest, rel=2e-3)
+
+
+def test_the_scatter_between_samples_stands_beside_the_strength(scene, tmp_path):
+    summary = run(scene, tmp_path / "out", pictures=False).summary
+    assert summary.lines()["strength"].endswith("MPa, scatter between samples not known")
+    assert any("scatter is not known: load several" in note for note in summary.notes)
+    assert GrainsSummary.read(tmp_path / "out").strength_scatter == summary.strength_scatter
+    known = recorded_scatter(110, 310.0, 5e-5, "compress")
+    assert scatter_words(known) == "scatter between samples 30 %"
+    for other in (
+        (110, 310.0, 5e-5, "stretch"),
+        (400, 310.0, 5e-5, "compress"),
+        (110, 200.0, 5e-5, "compress"),
+        (110, 310.0, 2e-5, "compress"),
+    ):
+        assert recorded_scatter(*other) is None
 
 
 def test_without_contact_with_the_plates_figures_are_null(scene, tmp_path):

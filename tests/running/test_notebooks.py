@@ -1,7 +1,9 @@
 """Runs in notebooks: the bar, cells that are run again, and interrupted cells."""
 
 import json
+import re
 import sys
+from html.parser import HTMLParser
 
 import pytest
 
@@ -22,6 +24,9 @@ RUN = """
 results = snowshed.run(tiny, "out", resume="auto", progress=ProgressBar(), pictures=False)
 results
 """
+WITH_PICTURES = """
+snowshed.run(tiny, "out")
+"""
 INTERRUPTED = """
 bar = ProgressBar()
 
@@ -38,6 +43,7 @@ same = (again.events.drop(columns="wall_s", errors="ignore")
         .equals(results.events.drop(columns="wall_s", errors="ignore")))
 print("same" if same else "different")
 """
+SCENE = "tiny"
 SHOWN = """
 from snowshed.results import InlineView
 InlineView(snowshed.Results("out"))
@@ -74,11 +80,20 @@ def texts(outputs):
     return "\n".join(json.dumps(output) for output in outputs)
 
 
+def frame_content(html):
+    """Return the page within a frame, as a browser reads it."""
+    frames = []
+    parser = HTMLParser()
+    parser.handle_starttag = lambda tag, attributes: frames.append((tag, dict(attributes)))
+    parser.feed(html)
+    ((tag, attributes),) = frames
+    assert tag == "iframe"
+    return attributes["srcdoc"]
+
+
 @pytest.mark.slow
 def test_cells_run_twice_and_interrupted_cells_resume(execute):
-    _, first, second, stopped, resumed, shown = execute(
-        SETUP, RUN, RUN, INTERRUPTED, RESUMED, SHOWN, fails=[3]
-    )
+    _, first, second, stopped, resumed = execute(SETUP, RUN, RUN, INTERRUPTED, RESUMED, fails=[3])
     for outputs in (first, second):
         assert not [output for output in outputs if output["output_type"] == "error"]
         assert "text/html" in outputs[-1]["data"] and "height_m" in texts(outputs)
@@ -86,7 +101,21 @@ def test_cells_run_twice_and_interrupted_cells_resume(execute):
     (error,) = [output for output in stopped if output["output_type"] == "error"]
     assert error["ename"] == "Interrupted" and "resume with" in error["evalue"]
     assert resumed[-1]["text"] == "same\n"
-    assert "<iframe" in shown[-1]["data"]["text/html"]
+
+
+@pytest.mark.slow
+def test_scenes_results_and_the_moving_view_show_themselves(execute):
+    _, scene, results, view = execute(SETUP, SCENE, WITH_PICTURES, SHOWN)
+    for outputs in (scene, results, view):
+        assert (
+            outputs[-1]["output_type"] == "execute_result" and "text/plain" in outputs[-1]["data"]
+        )
+    assert "<svg" in scene[-1]["data"]["text/html"] and "tilt" in texts(scene)
+    shown = results[-1]["data"]["text/html"]
+    assert "data:image/png;base64" in shown and "height_m" in shown
+    page = frame_content(view[-1]["data"]["text/html"])
+    assert page.startswith("<!") and "<canvas" in page and "<script" in page
+    assert not re.search(r"""(src|href)=["']?(https?:)?//""", page)  # it needs no network
 
 
 def test_a_run_that_may_resume_begins_resumes_and_returns_what_is_finished(tiny, tmp_path):

@@ -97,6 +97,15 @@ def test_accumulation_tells_of_snow_in_warm_air():
         accumulate(rows_with(temperature=25.0), SeasonSettings(), 40.0)
 
 
+def test_rows_that_were_read_are_told_of_once():
+    rows = rows_with(temperature=25.0)
+    with record_notes() as notes:
+        accumulate(read_season(rows), SeasonSettings(), 40.0)
+    assert sum(WARM in note for note in notes) == 1
+    with pytest.warns(SnowshedNote, match=WARM):  # others of the same values
+        accumulate([replace(row) for row in rows], SeasonSettings(), 40.0)
+
+
 def test_a_season_tells_of_snow_in_warm_air_once(tmp_path):
     flat = Scene.preset("lab-40").set("panel.tilt", 20)
     with record_notes() as notes:

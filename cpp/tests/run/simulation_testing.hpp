@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -34,6 +35,35 @@ inline scene::Scene small_scene(methods::mpm::Transfer transfer = methods::mpm::
 
 inline const auto keep_running = [](const RunReport&) { return true; };
 inline constexpr double never = 1e9;
+
+/// A box of snow that falls on the ground so fast that it yields and its particles mix.
+inline scene::Scene falling_box(int dimension, methods::mpm::Precision precision) {
+  scene::Scene scene;
+  scene.dimension = dimension;
+  scene.ground.emplace();
+  scene::BodySpec& body = scene.bodies.emplace_back();
+  body.shape.type = "box";
+  body.shape.center = {0, 0, 0.12};
+  body.shape.size = {0.2, 0.2, 0.2};
+  body.velocity = {0.5, dimension == 3 ? 0.2 : 0.0, -3};
+  auto& settings = scene.numerics.as<methods::mpm::Settings>();
+  settings.precision = precision;
+  settings.dx = 0.025;
+  return scene;
+}
+
+/// Expects that some particles have yielded, so that the law's state has changed.
+inline void expect_yielded(const Simulation& sim) {
+  const auto strain = sim.method().field("volumetric_plastic_strain");
+  double low = 1e9, high = -1e9;
+  for (std::size_t i = 0; i < strain.count; ++i) {
+    const double value = strain.info.type == particles::FieldType::float32
+                             ? double(static_cast<const float*>(strain.elements.get())[i])
+                             : static_cast<const double*>(strain.elements.get())[i];
+    low = std::min(low, value), high = std::max(high, value);
+  }
+  EXPECT_GT(high - low, 1e-5);
+}
 
 inline void expect_same_bits(const Simulation& a, const Simulation& b) {
   const methods::ParticleState x = a.method().state(), y = b.method().state();

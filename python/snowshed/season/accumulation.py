@@ -13,7 +13,7 @@ from snowshed.running.ageing.ageing import Ageing, Interval
 from snowshed.season.release import SnowBalance, snow_balance
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.settling_column import SnowColumn
-from snowshed.season.weather.checks import check_given_rows, check_one_season, warm_snow
+from snowshed.season.weather.checks import check_given_rows, check_one_season, untold_warm_snow
 from snowshed.season.weather.row import Weather
 from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
 
@@ -61,7 +61,8 @@ def accumulate(
 
     Snow of a depth h on level ground has the thickness h cos(Phi) normal to the panel, because its
     mass per area of the ground is the same. All snow is released at once (`snow_balance`). It melts
-    by degree-days (`SeasonSettings.melt`). Wind is left out. A note tells of snowfalls in warm air.
+    by degree-days (`SeasonSettings.melt`). Wind is left out. A note tells of snowfalls in warm air,
+    unless `read_season` has told of them.
 
     Parameters
     ----------
@@ -88,7 +89,7 @@ def accumulate(
     >>> round(day.load), round(day.balance.driving), round(day.balance.resisting), day.event
     (10, 85, 84, 1)
     """
-    for note in warm_snow(check_given_rows(season)):
+    for note in untold_warm_snow(check_given_rows(season)):
         issue_note(note)
     return snow_on_panel(season, settings, tilt, gravity)
 

@@ -17,6 +17,12 @@ from snowshed.methods.grains.phases import (
     find_phases,
     mean_stress,
 )
+from snowshed.methods.grains.strength_scatter import (
+    RecordedScatter,
+    recorded_scatter,
+    scatter_note,
+    scatter_words,
+)
 from snowshed.methods.summary import Summary
 
 #: Number of grains below which a sample hardly represents its snow.
@@ -60,6 +66,10 @@ class GrainsSummary(Summary):
         Strain at which its stress begins to grow like exp(rate * strain), and this rate.
     largest_cone_force_n
         Largest force on the cone of all time steps; None if it never touched the snow.
+    strength_scatter
+        Words on the scatter of the strength between samples of this size
+        (`snowshed.methods.grains.strength_scatter`); empty if there is no strength, and in results
+        of earlier versions.
     synthetic
         Origin of a sample that is known as synthetic; else None.
     notes
@@ -91,6 +101,7 @@ class GrainsSummary(Summary):
     hardening_onset_strain: Optional[float]
     hardening_rate: Optional[float]
     largest_cone_force_n: Optional[float]
+    strength_scatter: str = ""
     synthetic: Optional[str] = None
     notes: tuple[str, ...] = ()
     sample_notes: tuple[str, ...] = ()
@@ -98,7 +109,12 @@ class GrainsSummary(Summary):
     FILE: ClassVar[str] = "grains.json"
     TITLE: ClassVar[str] = "Loading test"
     OPENED: ClassVar[str] = "curve.csv, grains.png and forces.png"
-    REMARKS: ClassVar[tuple[str, ...]] = ("synthetic", "notes", "sample_notes")
+    REMARKS: ClassVar[tuple[str, ...]] = (
+        "strength_scatter",
+        "synthetic",
+        "notes",
+        "sample_notes",
+    )
 
     def lines(self) -> Mapping[str, str]:
         """Return the lines that people read, by name, without unknown figures."""
@@ -112,7 +128,9 @@ class GrainsSummary(Summary):
             f"and {self.broken_in_shear:,} in shear",
             "elastic up to": _strain(self.elastic_limit_strain),
             "tangent modulus": _pressure(self.tangent_modulus_pa),
-            "strength": _pressure(self.strength_pa),
+            "strength": ", ".join(
+                filter(None, (_pressure(self.strength_pa), self.strength_scatter))
+            ),
             "mean stress, 5 to 10 %": _pressure(self.mean_stress_5_10_pa),
             "mean stress, 10 to 15 %": _pressure(self.mean_stress_10_15_pa),
             "mean stress, 25 to 30 %": _pressure(self.mean_stress_25_30_pa),
@@ -157,13 +175,12 @@ def summarise(
         None if phases.unknown else mean_stress(strain, stress, *ends)
         for ends in MEAN_STRAIN_RANGES
     ]
-    density = float(scene["numerics"]["density"])
     return GrainsSummary(
         ended=ended,
         sim_time_s=float(curve["time_s"][-1]),
         final_particles=grains,
         spheres=spheres,
-        density_kg_m3=density * float(curve["solid_fraction"][0]),
+        density_kg_m3=_density(curve, scene),
         solid_fraction=float(curve["solid_fraction"][0]),
         solid_fraction_at_end=float(curve["solid_fraction"][-1]),
         axial_strain=float(curve["axial_strain"][-1]),
@@ -182,10 +199,23 @@ def summarise(
         hardening_onset_strain=phases.hardening_onset,
         hardening_rate=phases.hardening_rate,
         largest_cone_force_n=_cone_force(curve, scene),
+        strength_scatter=scatter_words(_scatter(curve, scene, grains)) if phases.strength else "",
         synthetic=synthetic or None,
         notes=tuple(_notes(curve, first, kind, scene, grains)),
         sample_notes=tuple(sample_notes),
     )
+
+
+def _density(curve: LoadingCurve, scene: Mapping[str, Any]) -> float:
+    """Return the density of the snow at the beginning, kg/m3."""
+    return float(scene["numerics"]["density"]) * float(curve["solid_fraction"][0])
+
+
+def _scatter(
+    curve: LoadingCurve, scene: Mapping[str, Any], grains: int
+) -> Optional[RecordedScatter]:
+    kind, voxel = str(scene["loading"][0]["kind"]), float(scene["sample"]["voxel_size"])
+    return recorded_scatter(grains, _density(curve, scene), voxel, kind)
 
 
 def _cone_force(curve: LoadingCurve, scene: Mapping[str, Any]) -> Optional[float]:
@@ -227,6 +257,8 @@ def _notes(
             f"nothing touched the snow before a strain of {percent(phases.contact_strain)}: the "
             "modulus is fitted from there on; all strains count from the beginning"
         )
+    if phases.strength:
+        notes.append(scatter_note(_scatter(curve, scene, grains)))
     linearity = phases.linearity
     if linearity is not None and linearity < MIN_LINEARITY:
         notes.append(

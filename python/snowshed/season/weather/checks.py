@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from datetime import date, datetime
+from weakref import WeakValueDictionary
 
 from snowshed._core import InputError
 from snowshed.base.field_type import shown
@@ -30,6 +31,9 @@ MIN_LONE_GAP_DAYS = 3 * YEAR
 TOO_WARM_FOR_SNOW = 10.0
 NO_SNOW = "it never snows"
 HINT = "is it in cm, mm or inches?"
+
+#: Rows whose warm snow was told, by their identity, as long as they exist.
+_told: WeakValueDictionary[int, Weather] = WeakValueDictionary()
 
 
 def check_rows(
@@ -109,7 +113,7 @@ def warm_snow(rows: Sequence[Weather]) -> list[str]:
     >>> warm_snow([Weather(2, datetime(2024, 12, 1), 0.1, None, 25.0)])[0][:62]
     '1 snowfall in air of 10 °C and more, the warmest 25 °C on 2024'
     """
-    warm = [row for row in rows if row.snowfall and row.temperature >= TOO_WARM_FOR_SNOW]
+    warm = [row for row in rows if _is_warm_snow(row)]
     if not warm:
         return []
     warmest = max(warm, key=lambda row: row.temperature)
@@ -118,6 +122,33 @@ def warm_snow(rows: Sequence[Weather]) -> list[str]:
         f"{warmest.temperature:g} °C on {warmest.date.date()}, where precipitation is rain; are "
         "temperatures in degrees F, or sums of water in the column of snow?"
     ]
+
+
+def mark_told(rows: Sequence[Weather]) -> None:
+    """Remember rows whose warm snow a note has told, so that `untold_warm_snow` is silent on them.
+
+    Rows are remembered themselves, not by their values: a season of the same values that nothing
+    was told about still has its note.
+    """
+    _told.update((id(row), row) for row in rows if _is_warm_snow(row))
+
+
+def untold_warm_snow(rows: Sequence[Weather]) -> list[str]:
+    """Return what `warm_snow` returns, unless each such row was told before.
+
+    Examples
+    --------
+    >>> first, other = (Weather(2, datetime(2024, 12, 1), 0.1, None, 25.0) for _ in range(2))
+    >>> mark_told([first])
+    >>> untold_warm_snow([first]), len(untold_warm_snow([first, other]))
+    ([], 1)
+    """
+    is_known = all(_told.get(id(row)) is row for row in rows if _is_warm_snow(row))
+    return [] if is_known else warm_snow(rows)
+
+
+def _is_warm_snow(row: Weather) -> bool:
+    return row.snowfall > 0.0 and row.temperature >= TOO_WARM_FOR_SNOW
 
 
 def check_one_season(rows: Sequence[Weather]) -> None:
