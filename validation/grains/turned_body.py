@@ -69,7 +69,7 @@ class TurnedBody:
         )
 
     def _field(self, z: Floats, x: Floats) -> Floats:
-        """Return the field, of unit variance, at heights z and at centres x along both sides."""
+        """Return the field, of unit variance, at heights z and at x along both sides."""
         random = np.random.default_rng(self.seed)
         waves = random.standard_normal((WAVES, 3))
         length = WAVELENGTH / (1 + SHELL_WIDTH * random.standard_normal(WAVES))
