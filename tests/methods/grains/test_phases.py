@@ -6,6 +6,7 @@ import pytest
 from snowshed import InputError
 from snowshed.methods.grains.curve import COLUMNS, LoadingCurve
 from snowshed.methods.grains.phases import find_phases, mean_stress
+from snowshed.methods.grains.strength_scatter import scatter_note
 from snowshed.methods.grains.summary import summarise
 
 STRAIN = 0.3 * (np.arange(301) / 300) ** 2
@@ -151,6 +152,7 @@ def test_a_short_curve_has_no_phases():
 def scene_of(kind="compress", speed=0.02, **numerics):
     return {
         "loading": [{"kind": kind, "speed": speed}],
+        "sample": {"voxel_size": 1e-4},
         "numerics": {**NUMERICS, **numerics},
     }
 
@@ -166,7 +168,7 @@ def test_the_summary_notes_why_its_figures_are_doubtful():
     assert "87 grains" in notes and "density_scaling times speed squared is 0.4" in notes
     assert "differ by 200 %" in notes
     many_grains = summarise(brittle(), scene_of(), ended="rest", grains=1000, spheres=9)
-    assert many_grains.notes == ()
+    assert many_grains.notes == (scatter_note(None),)
 
 
 def test_a_curve_is_read_back_as_written(tmp_path):
