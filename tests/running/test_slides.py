@@ -189,7 +189,9 @@ def test_the_page_of_a_killed_slide_is_complete_after_resuming(tmp_path, monkeyp
     scene = example_slide(tmp_path).set("output.checkpoint_interval", 0.05)
     (tmp_path / "scene.json").write_text(scene.resolve().json)
     drawn = []
-    monkeypatch.setattr(slide_page, "_film", lambda *args: drawn.append(args[-1]))
+    monkeypatch.setattr(
+        slide_page, "_film", lambda maps, outlines, frames, objects: drawn.append(frames)
+    )
     run(tmp_path / "scene.json", tmp_path / "straight")
 
     out = tmp_path / "killed"
