@@ -1,4 +1,4 @@
-"""What both algorithms share: names, the program's path, and files of layers."""
+"""The base of both algorithms: their names, the path of the program, the files of layers."""
 
 from __future__ import annotations
 

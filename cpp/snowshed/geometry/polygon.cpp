@@ -78,6 +78,16 @@ bool segments_meet(const Point2& a, const Point2& b, const Point2& c, const Poin
 
 }  // namespace
 
+RingBounds bounds_of(const Ring& ring) {
+  RingBounds b{ring[0], ring[0]};
+  for (const Point2& p : ring)
+    for (const std::size_t axis : {0, 1}) {
+      b.low[axis] = std::min(b.low[axis], p[axis]);
+      b.high[axis] = std::max(b.high[axis], p[axis]);
+    }
+  return b;
+}
+
 bool contains(const Ring& ring, const Point2& p) {
   bool inside = false;
   for (std::size_t i = 0; i < ring.size(); ++i) {

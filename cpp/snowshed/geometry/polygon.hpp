@@ -15,6 +15,17 @@ struct Polygon {
   std::vector<Ring> holes;
 };
 
+/// The smallest rectangle around a ring, parallel to the axes.
+struct RingBounds {
+  Point2 low, high;
+
+  /// Whether a point lies in it, the edges included.
+  bool contain(const Point2& p) const {
+    return p[0] >= low[0] && p[0] <= high[0] && p[1] >= low[1] && p[1] <= high[1];
+  }
+};
+RingBounds bounds_of(const Ring& ring);
+
 /// Whether a point lies within a ring (even-odd rule).
 bool contains(const Ring& ring, const Point2& point);
 

@@ -11,22 +11,25 @@ void describe(V& v, methods::HoleSpec& h) {
   v.outline("outline", h.outline, "Corners, in the terrain's coordinates");
 }
 
-template <class V>
-void describe(V& v, methods::AreaSpec& a) {
+/// The name and the shape of an area.
+template <class V, class Area>
+void describe_polygon(V& v, Area& a) {
   v.text("name", a.name, "Name in messages and results");
   v.outline("outline", a.outline, "Corners, in the terrain's coordinates");
   v.list("holes", a.holes, methods::between(0, 1000),
          "Parts within the outline that do not belong to it");
+}
+
+template <class V>
+void describe(V& v, methods::AreaSpec& a) {
+  describe_polygon(v, a);
   v.number("thickness", a.thickness, "m", methods::positive.up_to(100.0).required().usual(0.02, 4),
            "Thickness of the snow, normal to the ground");
 }
 
 template <class V>
 void describe(V& v, methods::ResistanceSpec& r) {
-  v.text("name", r.name, "Name in messages and results");
-  v.outline("outline", r.outline, "Corners, in the terrain's coordinates");
-  v.list("holes", r.holes, methods::between(0, 1000),
-         "Parts within the outline that do not belong to it");
+  describe_polygon(v, r);
 }
 
 template <class V>
@@ -40,10 +43,7 @@ void describe(V& v, methods::PulseSpec& p) {
 
 template <class V>
 void describe(V& v, methods::InflowSpec& i) {
-  v.text("name", i.name, "Name in messages and results");
-  v.outline("outline", i.outline, "Corners, in the terrain's coordinates");
-  v.list("holes", i.holes, methods::between(0, 1000),
-         "Parts within the outline that do not belong to it");
+  describe_polygon(v, i);
   v.flag("bonds", i.bonds,
          "Whether the snow of each time is a slab with bonds; in the mode \"improved\" only");
   v.list("hydrograph", i.hydrograph, methods::between(1, 1000).required(),

@@ -90,8 +90,8 @@ def run(
         Whether to leave out large files that follow from smaller ones, as in a study of many runs:
         for a slide, ``peaks.npz`` replaces the rasters.
     map_format
-        Format of maps, for a method that has them: "ascii", or "geotiff" (extra ``terrain``), which
-        is compressed and exact.
+        Format of the maps of a slide: "ascii" or "geotiff". GeoTIFF is compressed and exact; it
+        needs the extra ``terrain``.
 
     Returns
     -------

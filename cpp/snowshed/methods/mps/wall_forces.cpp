@@ -12,16 +12,9 @@
 
 #include "snowshed/methods/mps/elastic_strain.hpp"
 #include "snowshed/methods/mps/solver_impl.hpp"
+#include "snowshed/methods/mps/wall_friction.hpp"
 
 namespace snowshed::methods::mps {
-
-/// The pressure at a wall's surface, continued from the particle beside it, Pa.
-template <int D>
-static double pressure_at_wall(const Model<D>& model, const Particles<D>& p, std::size_t i,
-                               const WallContact<D>& c) {
-  return std::max(0.0, p.pressure[i] - model.settings().density * c.distance *
-                                           p.pressure_acceleration[i].dot(c.normal));
-}
 
 /// Records the drag of the walls, which the last solve for the viscosity has used.
 template <int D>

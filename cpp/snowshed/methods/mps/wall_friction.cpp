@@ -41,16 +41,6 @@ double friction_weight_sum(const Model<D>& model, const Particles<D>& particles,
   return std::max(sum, min_touched_share * on_lattice);
 }
 
-/// The pressure of the snow on a wall, continued from the particle beside it, with the pressure of
-/// the wall's hold, Pa.
-template <int D>
-double pressure_on_wall(const Model<D>& model, const Particles<D>& particles, double reaction,
-                        std::size_t i, const WallContact<D>& c) {
-  return std::max(0.0, particles.pressure[i] + reaction -
-                           model.settings().density * c.distance *
-                               particles.pressure_acceleration[i].dot(c.normal));
-}
-
 /// Finds the drag of a wall on a particle, 1/s, and the largest elastic slip of the particle. The
 /// wall's shear stress is that of snow with the shear rate u/h at the pressure on the wall; u is
 /// the speed at which the particle slides, and h is its distance from the wall. The stress acts on
@@ -65,7 +55,7 @@ void find_drag(const Model<D>& model, double dt, const Particles<D>& particles, 
   const Rheology& law = model.rheology;
   const ContactLaw& contact = model.options.obstacles[c.obstacle].law;
   const double height = std::max(c.distance, min_friction_distance * s.spacing);
-  const double pressure = pressure_on_wall(model, particles, walls.reaction[k], i, c);
+  const double pressure = pressure_at_wall(model, particles, i, c, walls.reaction[k]);
   const double rate =
       sliding_velocity(model, dt, particles.velocity[i], particles.elastic_slip[i], c).norm() /
       height;

@@ -2,10 +2,21 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 
 #include "snowshed/methods/mps/state.hpp"
 
 namespace snowshed::methods::mps {
+
+/// The pressure at a wall's surface, continued from the particle beside it, together with the
+/// `reaction` by which the wall holds the snow, Pa.
+template <int D>
+double pressure_at_wall(const Model<D>& model, const Particles<D>& p, std::size_t i,
+                        const WallContact<D>& c, double reaction = 0) {
+  return std::max(
+      0.0, p.pressure[i] + reaction -
+               model.settings().density * c.distance * p.pressure_acceleration[i].dot(c.normal));
+}
 
 /// Computes the share of the wall's shear stress that each contact carries. The particles that
 /// touch the obstacle around a wall particle divide its friction among them.

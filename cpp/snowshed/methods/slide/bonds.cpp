@@ -161,8 +161,9 @@ Bonds bonds_between(const Particles& particles, std::size_t begin, double spacin
   return bonds;
 }
 
-double bond_share(const double* mass, const double* fresh_mass, std::uint32_t first,
+double bond_share(bool thinned, const double* mass, const double* fresh_mass, std::uint32_t first,
                   std::uint32_t second) {
+  if (!thinned) return 1;
   return std::min({1.0, mass[first] / fresh_mass[first], mass[second] / fresh_mass[second]});
 }
 
@@ -172,7 +173,7 @@ double max_bond_step(const Bonds& bonds, const Particles& particles,
   for (std::size_t b = 0; b < bonds.size(); ++b) {
     const std::uint32_t k = bonds.first[b], l = bonds.second[b];
     const double share =
-        thinned ? bond_share(particles.mass.data(), particles.fresh_mass.data(), k, l) : 1;
+        bond_share(thinned, particles.mass.data(), particles.fresh_mass.data(), k, l);
     const double each = share * modulus * 0.5 * (thickness[k] + thickness[l]) / std::sqrt(3.0);
     stiffness[k] += each;
     stiffness[l] += each;

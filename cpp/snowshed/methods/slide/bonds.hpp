@@ -51,8 +51,8 @@ double max_bond_step(const Bonds& bonds, const Particles& particles,
 
 /// The share of its strength that a bond has where forest takes snow: that of the fresh mass which
 /// is left in the lighter of its two columns. Force over mass then never exceeds that of fresh
-/// snow.
-double bond_share(const double* mass, const double* fresh_mass, std::uint32_t first,
+/// snow. Without `thinned` it is 1.
+double bond_share(bool thinned, const double* mass, const double* fresh_mass, std::uint32_t first,
                   std::uint32_t second);
 
 /// Removes the bonds that are marked.

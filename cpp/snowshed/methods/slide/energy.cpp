@@ -31,7 +31,7 @@ double bonds_energy(const Model& model, const State& state, const Workspace& wor
     const std::uint32_t k = bonds.first[b], l = bonds.second[b];
     const Vec3 separation{p.x[l] - p.x[k], p.y[l] - p.y[k], p.z[l] - p.z[k]};
     const double thickness = 0.5 * (work.thickness[k] + work.thickness[l]);
-    const double share = model.thins_bonds() ? bond_share(masses, p.fresh_mass.data(), k, l) : 1;
+    const double share = bond_share(model.thins_bonds(), masses, p.fresh_mass.data(), k, l);
     sum += share * bond_energy(model.settings.bond_modulus, thickness, separation.norm(),
                                bonds.rest_length[b]);
   }
@@ -170,9 +170,8 @@ void EnergyRecorder::add_broken(const Model& model, const State& state, const Wo
     const double* k = &work.predicted[4 * std::size_t(bonds.first[b])];
     const double* l = &work.predicted[4 * std::size_t(bonds.second[b])];
     const double length = Vec3(l[0] - k[0], l[1] - k[1], l[2] - k[2]).norm();
-    const double share = model.thins_bonds() ? bond_share(p.mass.data(), p.fresh_mass.data(),
-                                                          bonds.first[b], bonds.second[b])
-                                             : 1;
+    const double share = bond_share(model.thins_bonds(), p.mass.data(), p.fresh_mass.data(),
+                                    bonds.first[b], bonds.second[b]);
     if (work.bonds_break && work.broken[b])
       e.broken += share * bond_energy(model.settings.bond_modulus, 0.5 * (k[3] + l[3]), length,
                                       bonds.rest_length[b]);

@@ -158,7 +158,7 @@ void weaken_thinned(const State& state, Workspace& work) {
   const Particles& p = state.particles;
   for (std::size_t b = 0; b < bonds.size(); ++b) {
     const double share =
-        bond_share(p.mass.data(), p.fresh_mass.data(), bonds.first[b], bonds.second[b]);
+        bond_share(true, p.mass.data(), p.fresh_mass.data(), bonds.first[b], bonds.second[b]);
     for (std::size_t axis = 0; axis < 3; ++axis) work.bond_force[4 * b + axis] *= share;
   }
 }

@@ -83,17 +83,11 @@ void check_times(const Settings& s, const Inflow& inflow, const std::string& whe
 }
 
 bool contains_snow(const LateRelease& late, const Particles& p) {
-  const geometry::Ring& ring = late.area.polygon.outline;
-  double low[2] = {ring[0][0], ring[0][1]}, high[2] = {low[0], low[1]};
-  for (const geometry::Point2& corner : ring)
-    for (const int axis : {0, 1}) {
-      low[axis] = std::min(low[axis], corner[axis]);
-      high[axis] = std::max(high[axis], corner[axis]);
-    }
-  for (std::size_t i = 0; i < p.size(); ++i)
-    if (p.x[i] >= low[0] && p.x[i] <= high[0] && p.y[i] >= low[1] && p.y[i] <= high[1] &&
-        geometry::contains(late.area.polygon, {p.x[i], p.y[i]}))
-      return true;
+  const geometry::RingBounds bounds = geometry::bounds_of(late.area.polygon.outline);
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const geometry::Point2 x{p.x[i], p.y[i]};
+    if (bounds.contain(x) && geometry::contains(late.area.polygon, x)) return true;
+  }
   return false;
 }
 

@@ -62,20 +62,6 @@ double projected_share(const Terrain& terrain, const std::vector<double>& thickn
 
 // --- improved -----------------------------------------------------------------------------------
 
-struct Bounds {
-  double low[2], high[2];
-};
-
-Bounds bounds_of(const geometry::Ring& ring) {
-  Bounds b{{ring[0][0], ring[0][1]}, {ring[0][0], ring[0][1]}};
-  for (const geometry::Point2& p : ring)
-    for (const int axis : {0, 1}) {
-      b.low[axis] = std::min(b.low[axis], p[axis]);
-      b.high[axis] = std::max(b.high[axis], p[axis]);
-    }
-  return b;
-}
-
 double map_area(const geometry::Polygon& polygon) {
   double area = std::abs(geometry::twice_signed_area(polygon.outline));
   for (const geometry::Ring& hole : polygon.holes)
@@ -116,7 +102,7 @@ SnowOfMap snow_of(const geometry::HeightField& map) {
 double mean_thickness(const Area& area, const Terrain& terrain, const std::string& path) {
   if (!area.map) return area.thickness;
   const geometry::HeightField& m = *area.map;
-  const Bounds b = bounds_of(area.polygon.outline);
+  const geometry::RingBounds b = geometry::bounds_of(area.polygon.outline);
   const double half = m.cell / 2, rounding = 1e-6 * m.cell;
   const int west = node_of(b.low[0] + rounding, m.west, m.cell);
   const int east = node_of(b.high[0] - rounding, m.west, m.cell);
@@ -168,7 +154,7 @@ struct Ground {
 Ground ground_under(const Terrain& terrain, const geometry::Polygon& polygon) {
   Ground g;
   double fall[2] = {0, 0};
-  const Bounds b = bounds_of(polygon.outline);
+  const geometry::RingBounds b = geometry::bounds_of(polygon.outline);
   const double step = terrain.cell() / 2;
   const auto look_at = [&](double x, double y) {
     const geometry::CellPosition p = terrain.cell_position(x, y);
@@ -296,10 +282,9 @@ void refuse_overlap(const Terrain& terrain, const std::vector<NamedArea>& areas,
   };
   const NamedArea& own = areas[last];
   for (std::size_t other = 0; other < last; ++other) {
-    const Bounds b = bounds_of(areas[other].area->polygon.outline);
+    const geometry::RingBounds b = geometry::bounds_of(areas[other].area->polygon.outline);
     for (const Vec3& p : batch.positions) {
-      if (p.x() < b.low[0] || p.x() > b.high[0] || p.y() < b.low[1] || p.y() > b.high[1]) continue;
-      if (!well_within(areas[other].area->polygon, p.x(), p.y()) ||
+      if (!b.contain({p.x(), p.y()}) || !well_within(areas[other].area->polygon, p.x(), p.y()) ||
           !well_within(own.area->polygon, p.x(), p.y()))
         continue;
       refuse_area(own.path, own.area->name,

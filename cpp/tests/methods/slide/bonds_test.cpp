@@ -133,7 +133,7 @@ TEST(SlideBonds, ThinnedBondsNeedNoShorterSteps) {
   thinned.fresh_mass = {100, 100};
   Particles heavy = thinned;
   heavy.mass = heavy.fresh_mass;
-  EXPECT_NEAR(bond_share(thinned.mass.data(), thinned.fresh_mass.data(), 0, 1), 0.01, 1e-15);
+  EXPECT_NEAR(bond_share(true, thinned.mass.data(), thinned.fresh_mass.data(), 0, 1), 0.01, 1e-15);
   EXPECT_NEAR(max_bond_step(bonds, thinned, thickness, 1e5, true),
               max_bond_step(bonds, heavy, thickness, 1e5, true), 1e-12);
   EXPECT_NEAR(max_bond_step(bonds, thinned, thickness, 1e5, false),

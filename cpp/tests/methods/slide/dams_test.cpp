@@ -188,12 +188,8 @@ TEST_F(SlideDamCheckpoint, ResumesToTheSameBitsOnAnyNumberOfThreads) {
     Options o = slide_against_dam(0.6, mode);
     const auto slide = released_slide(o);
     step(*slide, 400);
-    io::BinaryWriter out;
-    slide->save(out);
-    out.save(path("c.bin"), [](const std::filesystem::path&) {});
     o.settings.threads = 3;
-    const auto resumed = make_solver(o);
-    resumed->load(io::BinaryReader::load(path("c.bin")));
+    const auto resumed = resumed_slide(o, *slide, path("c.bin"));
     step(*slide, 350);
     step(*resumed, 350);
     EXPECT_GT(slide->dams()[0].passed, 0);

@@ -194,12 +194,8 @@ TEST_F(SlideDetrainmentCheckpoint, ResumesWithTheForestThatStandsOnAnyNumberOfTh
   o.areas.resistance = {rectangle(40, 2, 120, 76)};
   const auto slide = released_slide(o);
   step(*slide, 150);
-  io::BinaryWriter out;
-  slide->save(out);
-  out.save(path("c.bin"), [](const std::filesystem::path&) {});
   o.settings.threads = 3;
-  const auto resumed = make_solver(o);
-  resumed->load(io::BinaryReader::load(path("c.bin")));
+  const auto resumed = resumed_slide(o, *slide, path("c.bin"));
   step(*slide, 150);
   step(*resumed, 150);
   EXPECT_GT(slide->mass_balance().detrained, 0);

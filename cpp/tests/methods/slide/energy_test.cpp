@@ -101,11 +101,7 @@ TEST_F(SlideEnergyCheckpoint, ResumesToTheSameEnergies) {
   const Options o = options_with_energy(run_out(), rectangle(20.3, 30.3, 50.3, 64.3));
   const auto slide = released_slide(o);
   step(*slide, 100);
-  io::BinaryWriter out;
-  slide->save(out);
-  out.save(path("c.bin"), [](const std::filesystem::path&) {});
-  const auto resumed = make_solver(o);
-  resumed->load(io::BinaryReader::load(path("c.bin")));
+  const auto resumed = resumed_slide(o, *slide, path("c.bin"));
   step(*slide, 50);
   step(*resumed, 50);
   EXPECT_EQ(energies(*slide), energies(*resumed));

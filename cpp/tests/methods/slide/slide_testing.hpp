@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cmath>
+#include <filesystem>
 #include <memory>
 
 #include "geometry/terrain_testing.hpp"
 #include "snowshed/core/angles.hpp"
+#include "snowshed/io/binary_archive.hpp"
 #include "snowshed/methods/slide/solver.hpp"
 
 namespace snowshed::methods::slide {
@@ -39,6 +41,17 @@ inline std::unique_ptr<Solver> released_slide(const Options& options) {
 
 inline void step(Method& method, int steps) {
   for (int i = 0; i < steps; ++i) method.step();
+}
+
+/// A solver that begins at the state of another, by way of a checkpoint in this file.
+inline std::unique_ptr<Solver> resumed_slide(const Options& options, const Solver& slide,
+                                             const std::filesystem::path& file) {
+  io::BinaryWriter out;
+  slide.save(out);
+  out.save(file, [](const std::filesystem::path&) {});
+  auto resumed = make_solver(options);
+  resumed->load(io::BinaryReader::load(file));
+  return resumed;
 }
 
 inline double total_mass(const Method& method) {

@@ -159,11 +159,7 @@ TEST_F(SlideCheckpoint, ResumesToTheSameBits) {
   const Options o = slide_on(inclined(38, 100, 40), rectangle(20.3, 18.3, 50.3, 58.3));
   const auto slide = released_slide(o);
   step(*slide, 45);  // between two sorts
-  io::BinaryWriter out;
-  slide->save(out);
-  out.save(path("c.bin"), [](const std::filesystem::path&) {});
-  const auto resumed = make_solver(o);
-  resumed->load(io::BinaryReader::load(path("c.bin")));
+  const auto resumed = resumed_slide(o, *slide, path("c.bin"));
   step(*slide, 60);
   step(*resumed, 60);
   EXPECT_TRUE(are_equal(*slide, *resumed));

@@ -11,6 +11,7 @@ import numpy as np
 from snowshed.base.arrays import Booleans, Floats, Integers
 from snowshed.base.extras import require
 from snowshed.io.raster.areas import MapArea
+from snowshed.io.raster.cell_outlines import cell_transform
 from snowshed.io.raster.raster import Raster
 
 
@@ -161,9 +162,7 @@ def nearest_values(source: Raster, terrain: Raster) -> Floats:
 def covered_cells(areas: Sequence[MapArea], terrain: Raster) -> Booleans:
     """Return the cells of a terrain whose middles lie in areas."""
     features: Any = require("rasterio.features", "terrain", "areas of forest")
-    affine: Any = require("rasterio", "terrain", "areas of forest").Affine
     shapely: Any = require("shapely", "terrain", "areas of forest")
-    west, south = terrain.east - 0.5 * terrain.cell, terrain.north - 0.5 * terrain.cell
     shapes = [shapely.Polygon(area.outline, area.holes) for area in areas]
     if not shapes:
         return np.zeros(terrain.heights.shape, dtype=bool)
@@ -171,7 +170,7 @@ def covered_cells(areas: Sequence[MapArea], terrain: Raster) -> Booleans:
         features.geometry_mask(
             shapes,
             out_shape=terrain.heights.shape,
-            transform=affine(terrain.cell, 0.0, west, 0.0, terrain.cell, south),
+            transform=cell_transform(terrain),
             invert=True,
         ),
         dtype=bool,

@@ -13,11 +13,11 @@ def numbers(option: str, text: str, *, example: str, steps: bool = False) -> lis
     Parameters
     ----------
     option
-        The option, for the error.
+        Name of the option, which an error repeats.
     text
         The text.
     example
-        An example of a list, for the error.
+        A list that an error gives as an example.
     steps
         Whether the text may also be FROM:TO:STEP.
 
@@ -57,11 +57,11 @@ def span(option: str, text: str, *, example: str) -> tuple[float, float]:
     Parameters
     ----------
     option
-        The option, for the error.
+        Name of the option, which an error repeats.
     text
         The text.
     example
-        An example of a span, for the error.
+        A span that an error gives as an example.
 
     Raises
     ------
@@ -74,12 +74,18 @@ def span(option: str, text: str, *, example: str) -> tuple[float, float]:
     (28.0, 60.0)
     """
     try:
-        low, high = (float(end) for end in text.split(":"))
+        return _ends(text)
     except ValueError:
         raise InputError(
             f"{option}: {text!r} is not of the form LOW:HIGH, such as {example}"
         ) from None
-    return low, high
+
+
+def _ends(text: str, *, single: bool = False) -> tuple[float, float]:
+    ends = [float(end) for end in text.split(":")]
+    if not (1 if single else 2) <= len(ends) <= 2:
+        raise ValueError
+    return ends[0], ends[-1]
 
 
 def named_span(
@@ -90,11 +96,11 @@ def named_span(
     Parameters
     ----------
     option
-        The option, for the error.
+        Name of the option, which an error repeats.
     text
         The text.
     example
-        An example of a span, for the error.
+        A span that an error gives as an example.
     single
         Whether the text may also be NAME=VALUE, which gives equal ends.
 
@@ -110,10 +116,7 @@ def named_span(
     """
     name, _, values = text.partition("=")
     try:
-        ends = [float(end) for end in values.split(":")]
-        if not (1 if single else 2) <= len(ends) <= 2:
-            raise ValueError
-        return name, (ends[0], ends[-1])
+        return name, _ends(values, single=single)
     except ValueError:
         raise InputError(
             f"{option}: {text!r} is not of the form NAME=LOW:HIGH, such as {example}"

@@ -38,12 +38,9 @@ def cell_outlines(place: Raster, labels: AnyIntegers) -> list[tuple[int, list[Ri
         Label, and corners (x, y) of the outline and of its holes, m, the first not repeated.
     """
     features: Any = require("rasterio.features", "terrain", PURPOSE)
-    affine: Any = require("rasterio", "terrain", PURPOSE).Affine
     shapely: Any = require("shapely", "terrain", PURPOSE)
-    west, south = place.east - 0.5 * place.cell, place.north - 0.5 * place.cell
-    transform = affine(place.cell, 0.0, west, 0.0, place.cell, south)
     shapes = features.shapes(
-        labels.astype(np.int32), mask=labels > 0, connectivity=4, transform=transform
+        labels.astype(np.int32), mask=labels > 0, connectivity=4, transform=cell_transform(place)
     )
     inner = [
         (
@@ -57,6 +54,13 @@ def cell_outlines(place: Raster, labels: AnyIntegers) -> list[tuple[int, list[Ri
         for label, shape in inner
         for area in shapely.get_parts(shape)
     ]
+
+
+def cell_transform(place: Raster) -> Any:
+    """Return the map coordinates of the corners of cells, for rasterio: the first row is south."""
+    affine: Any = require("rasterio", "terrain", PURPOSE).Affine
+    west, south = place.east - 0.5 * place.cell, place.north - 0.5 * place.cell
+    return affine(place.cell, 0.0, west, 0.0, place.cell, south)
 
 
 def _corners(ring: Any) -> list[tuple[float, float]]:
