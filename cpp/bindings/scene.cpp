@@ -30,6 +30,8 @@ py::dict plan_dict(const py::object& argument, const std::filesystem::path& base
   for (const auto& [name, count] : report.cost.parts) parts[name.c_str()] = std::int64_t(count);
   d["parts"] = parts;
   d["memory_bytes"] = std::int64_t(report.cost.bytes);
+  d["card_memory_bytes"] = std::int64_t(report.cost.card_bytes);
+  d["device"] = report.device;
   d["time_step_s"] = report.cost.time_step;
   d["steps_per_event"] = std::int64_t(report.cost.steps / events);
   d["expected_wall_s"] = report.wall_time;
@@ -100,7 +102,7 @@ void bind_scene(py::module_& m) {
   m.def("update_version", &updated, "text"_a,
         "The JSON of a scene in the present version, with the same meaning.");
   m.def("scene_checksum", &scene::scene_checksum, "text"_a,
-        "A checksum of the values in a scene's text, except the number of threads.");
+        "A checksum of the values in a scene's text, except the threads and the device.");
   m.def("scene_schema", &scene::scene_schema, "The JSON Schema of a scene.");
   m.def(
       "preset", [](const std::string& name) { return write_scene(scene::preset_scene(name)); },

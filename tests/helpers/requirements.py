@@ -48,13 +48,21 @@ MODULE_BY_PACKAGE = {
 }
 
 
+#: Extras whose libraries the compiled core opens; Python imports nothing of them.
+OF_THE_CORE = {"gpu"}
+
+
 def required() -> tuple[set[str], dict[str, set[str]]]:
-    """Return the required packages of snowshed and of each extra that combines no others."""
+    """Return the required packages of snowshed and of each extra of Python modules.
+
+    Extras that combine others are left out.
+    """
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     extras = {
         extra: {_name(requirement) for requirement in listed}
         for extra, listed in project["optional-dependencies"].items()
-        if not any(requirement.startswith("snowshed[") for requirement in listed)
+        if extra not in OF_THE_CORE
+        and not any(requirement.startswith("snowshed[") for requirement in listed)
     }
     return {_name(requirement) for requirement in project["dependencies"]}, extras
 

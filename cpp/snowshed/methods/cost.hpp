@@ -47,6 +47,7 @@ struct CostEstimate {
   double updates = 0.0;           // updates of awake particles, all events
   double scattering = 1.0;        // work of an update in scattered snow, relative to a slab
   double bytes = 0.0;             // peak memory, particles and grid
+  double card_bytes = 0.0;        // memory of a graphics card, if the settings may use one
   // Named parts of the particle count, if there are any.
   std::vector<std::pair<std::string, double>> parts;
 };

@@ -67,7 +67,8 @@ class MethodDescriptor {
   virtual double resolution() const = 0;
   /// The threads that the method shall use; 0: all.
   virtual int threads() const = 0;
-  virtual void set_threads(int) = 0;
+  /// Takes over from other settings with what the machine computes: threads and device.
+  virtual void adopt_machine(const MethodDescriptor& other) = 0;
   /// Multiplies the cell size (or spacing) by `factor`, if it is a setting, for quick coarse copies
   /// of a scene.
   virtual void coarsen(double /*factor*/) {}
@@ -96,7 +97,13 @@ class MethodDescriptor {
                                                   const std::filesystem::path& /*base_dir*/) const {
     return nullptr;
   }
-  /// Builds the method, without snow.
+  /// Chooses the device for a scene of this cost, and opens it. Throws InputError if the settings
+  /// ask for one that is missing or cannot compute the scene.
+  virtual DeviceChoice choose_device(const SceneView&, const Surroundings&,
+                                     const CostEstimate&) const {
+    return {};
+  }
+  /// Builds the method, without snow, on the device of the surroundings.
   virtual std::unique_ptr<Method> build(const SceneView&, const Surroundings&) const = 0;
 
   // --- filling of bodies, for methods with their own seeding -------------------------------------
@@ -154,7 +161,9 @@ class DescriptorBase : public WithSettings<Settings> {
   }
   double resolution() const override { return settings_.resolution(); }
   int threads() const override { return settings_.threads; }
-  void set_threads(int threads) override { settings_.threads = threads; }
+  void adopt_machine(const MethodDescriptor& other) override {
+    settings_.threads = other.threads();
+  }
 
  protected:
   using WithSettings<Settings>::settings_;

@@ -1,4 +1,4 @@
-// Surroundings of the snow in a scene: solids, and a method's input files, built once.
+// Surroundings of the snow in a scene, built once: solids, a method's input files, the device.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "snowshed/material/snow.hpp"
+#include "snowshed/methods/device_choice.hpp"
 #include "snowshed/methods/obstacle.hpp"
 #include "snowshed/methods/user_laws.hpp"
 
@@ -37,6 +38,7 @@ struct Surroundings {
   std::vector<std::string> notes;            // assumptions and changes, a sentence each
   UserLaws laws;                             // the user's; the obstacles have theirs
   std::shared_ptr<const MethodInput> input;  // null if the method reads no files
+  DeviceChoice device;                       // on which the method shall run
 };
 
 }  // namespace snowshed::methods

@@ -63,6 +63,7 @@ CostReport report_cost(const scene::Scene& given, const std::filesystem::path& b
   report.cost = sim.cost();
   report.threads = sim.threads();
   report.kernels = kernel_variant_name();
+  report.device = sim.device().name();
   report.updates_per_s = measured_speed(scene, base_dir, report.cost);
   report.wall_time = work_of(report.cost) / std::max(report.updates_per_s, 1.0);
   return report;

@@ -16,6 +16,7 @@ struct CostReport {
   double wall_time = 0;      // s, expected
   int threads = 0;
   std::string kernels;  // instruction set
+  std::string device;   // name of the card, or "cpu"
 };
 
 /// Expected work of a run in particle updates of unbroken snow; updates of spread and yielding snow

@@ -20,12 +20,13 @@ namespace fs = std::filesystem;
 namespace snowshed::run {
 namespace {
 
-/// The JSON paths at which two scenes differ, "/panel/tilt, /snow/density". The number of threads
-/// does not change the results of a scene.
+/// The JSON paths at which two scenes differ, "/panel/tilt, /snow/density", except for settings
+/// that a run may be resumed with.
 std::string differences(const scene::Scene& one, const scene::Scene& other) {
   const auto json_of = [](const scene::Scene& s) {
-    return scene::parse_json(scene::write_scene(scene::resolve(scene::with_threads(s, 0))),
-                             "scene");
+    auto json = scene::parse_json(scene::write_scene(scene::resolve(s)), "scene");
+    for (const char* setting : scene::settings_of_machines) json["numerics"].erase(setting);
+    return json;
   };
   std::set<std::string> paths;
   for (const auto& change : nlohmann::json::diff(json_of(one), json_of(other)))
@@ -99,7 +100,7 @@ ResultsFolder::ResultsFolder(fs::path folder) : folder_(std::move(folder)), lock
 
 std::unique_ptr<Simulation> ResultsFolder::load_checkpoint(const scene::Scene& scene,
                                                            const methods::UserLaws& laws) const {
-  auto sim = Simulation::load(checkpoint(), scene.numerics->threads(), laws);
+  auto sim = Simulation::load(checkpoint(), &scene, laws);
   const std::string paths = differences(sim->scene(), scene);
   if (!paths.empty())
     throw InputError(checkpoint().string(),

@@ -217,6 +217,7 @@ void RunRecord::write(const std::filesystem::path& file, const Simulation& sim, 
                  {"commit", build_commit()},    {"compiler", compiler_name()},
                  {"date", utc_now()},           {"kernels", kernel_variant_name()}};
   for (const auto& [key, fact] : machine) j[key] = fact;
+  j["device"] = sim.device().name();
   j["threads"] = sim.threads();
   j["scalar"] = sim.scene().numerics->scalar();
   j["dimension"] = sim.scene().dimension;

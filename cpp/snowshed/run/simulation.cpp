@@ -52,6 +52,9 @@ Simulation::Simulation(const scene::Scene& scene, const std::filesystem::path& b
   notes_ = surroundings_.notes;
   listed_obstacles_ = scene::listed_obstacles(scene_, surroundings_.obstacles);
   resolved_obstacles_ = scene::listed_obstacles(scene_, surroundings_.resolved);
+  surroundings_.device =
+      scene_.numerics->choose_device(scene::view_of(scene_), surroundings_, cost_);
+  if (!device().note.empty()) notes_.push_back(device().note);
   method_ = empty_method();
   if (!takes_bodies) {
     const methods::SceneView view = scene::view_of(scene_);

@@ -103,11 +103,12 @@ class Simulation {
   /// SimulationError if no run could resume from it, and FileError if it cannot be written; the
   /// older file then stays.
   void save(const std::filesystem::path& checkpoint) const;
-  /// Throws InputError if the file is not a sound checkpoint. Any number of `threads` (0: all)
-  /// gives the same bits; by default it is that of the checkpoint's scene. Laws of the user must be
-  /// given again, under the same name.
+  /// Throws InputError if the file is not a sound checkpoint. Threads and device are those of
+  /// the scene `machine`; null: of the checkpoint's scene. Any number of threads gives the same
+  /// bits, another device the same results to rounding. Laws of the user must be given again, under
+  /// the same name.
   static std::unique_ptr<Simulation> load(const std::filesystem::path& checkpoint,
-                                          std::optional<int> threads = {},
+                                          const scene::Scene* machine = nullptr,
                                           const methods::UserLaws& laws = {});
   /// The same for another scene, which may lay other snow from the next event on, or have more
   /// events. It must have the same method and obstacles, and its snows must begin with those of the
@@ -122,6 +123,8 @@ class Simulation {
   /// The laws of the user; none by default.
   const methods::UserLaws& laws() const { return surroundings_.laws; }
   const methods::CostEstimate& cost() const { return cost_; }
+  /// The device on which the steps are computed.
+  const methods::DeviceChoice& device() const { return surroundings_.device; }
   const methods::Method& method() const { return *method_; }
   /// The curve measured after each step so far; null for methods without such a curve.
   const methods::Curve* curve() const { return curve_.get(); }

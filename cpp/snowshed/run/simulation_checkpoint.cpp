@@ -51,9 +51,24 @@ void check_shape_files(const io::BinaryReader& in, const scene::Scene& scene,
   for (std::size_t i = 0; i < files.size(); ++i) check_file(in, files[i], then[i], now[i]);
 }
 
-/// Other kernels round differently, so that the run would not continue to the same bits.
-void check_kernels(const io::BinaryReader& in) {
-  if (!in.has("kernels")) return;
+/// The kinds of devices, for checkpoints.
+const char* kind_of(const methods::DeviceChoice& device) {
+  return device.is_card() ? "gpu" : "cpu";
+}
+
+/// Returns a note if the checkpoint was made on a device of another kind; otherwise an empty text.
+std::string note_on_device(const io::BinaryReader& in, const methods::DeviceChoice& device) {
+  const std::string then = in.has("device") ? in.text("device") : "cpu", now = kind_of(device);
+  if (then == now) return "";
+  return "the checkpoint was made on a " + then + ", and the run continues on a " + now +
+         ": to rounding, not to the same bits";
+}
+
+/// Other kernels round differently, so that the run would not continue to the same bits. (Those of
+/// cards are not of an instruction set.)
+void check_kernels(const io::BinaryReader& in, const methods::DeviceChoice& device) {
+  if (!in.has("kernels") || device.is_card()) return;
+  if (in.has("device") && in.text("device") != kind_of(device)) return;
   const std::string then = in.text("kernels"), now = kernel_variant_name();
   if (then != now)
     throw InputError(in.path().string(),
@@ -94,6 +109,7 @@ void Simulation::save(const std::filesystem::path& checkpoint) const {
   out.add_text("scene", scene_text_);
   out.add_text("base_dir", std::filesystem::absolute(base_dir_).string());
   out.add_text("kernels", kernel_variant_name());
+  out.add_text("device", kind_of(device()));
   if (surroundings_.laws.any()) out.add_text("laws", surroundings_.laws.name);
   if (surroundings_.laws.own_numbers)
     out.add_text("own_numbers", std::to_string(surroundings_.laws.own_numbers));
@@ -127,12 +143,12 @@ void Simulation::read_back(const std::filesystem::path& checkpoint) const {
 }
 
 std::unique_ptr<Simulation> Simulation::load(const std::filesystem::path& checkpoint,
-                                             std::optional<int> threads,
+                                             const scene::Scene* machine,
                                              const methods::UserLaws& laws) {
   const io::BinaryReader in = io::BinaryReader::load(checkpoint);
   in.require_finite();  // a clock that is not a number would never reach the end of an event
   const scene::Scene scene = scene::parse_scene(in.text("scene"), checkpoint.string());
-  return from_archive(in, threads ? scene::with_threads(scene, *threads) : scene,
+  return from_archive(in, machine ? scene::with_machine_of(*machine, scene) : scene,
                       in.text("base_dir"), laws);
 }
 
@@ -157,7 +173,9 @@ std::unique_ptr<Simulation> Simulation::from_archive(const io::BinaryReader& in,
                                                      const methods::UserLaws& laws) {
   check_laws(in, laws);
   auto sim = std::make_unique<Simulation>(scene, base_dir, laws);
-  check_kernels(in);
+  check_kernels(in, sim->device());
+  if (const std::string note = note_on_device(in, sim->device()); !note.empty())
+    sim->notes_.push_back(note);
   check_files(in, sim->surroundings_);
   check_shape_files(in, sim->scene_, sim->shape_fingerprints_);
   const auto event = in.get<std::int64_t>("event", 2);

@@ -172,15 +172,15 @@ std::string write_scene(const Scene& scene) {
   return indented_text(Writer::write(copy, copy.dimension));
 }
 
-Scene with_threads(Scene scene, int threads) {
-  scene.numerics->set_threads(threads);
+Scene with_machine_of(const Scene& other, Scene scene) {
+  scene.numerics->adopt_machine(*other.numerics.operator->());
   return scene;
 }
 
 std::string scene_checksum(const std::string& text) {
   nlohmann::json json = parse_json(text, "scene");
   if (json.is_object() && json.contains("numerics") && json["numerics"].is_object())
-    json["numerics"].erase("threads");
+    for (const char* setting : settings_of_machines) json["numerics"].erase(setting);
   const std::string values = json.dump();
   io::Crc32 sum;
   sum.update(values.data(), values.size());

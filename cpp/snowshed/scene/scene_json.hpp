@@ -38,10 +38,13 @@ Scene load_scene(const std::filesystem::path& file, std::vector<std::string>* no
 /// A shape has only the fields that its type uses, and in 2D only x and z of a vector.
 std::string write_scene(const Scene& scene);
 
-/// The same scene on another number of threads; 0: all.
-Scene with_threads(Scene scene, int threads);
+/// The same scene with the threads and the device of another.
+Scene with_machine_of(const Scene& other, Scene scene);
 
-/// A checksum of the values in the text of a scene without the number of threads. It depends
+/// Settings that say with what a machine computes, by their keys: a run may be resumed with others.
+inline constexpr const char* settings_of_machines[] = {"threads", "device"};
+
+/// A checksum of the values in the text of a scene without `settings_of_machines`. It depends
 /// neither on the order of keys nor on keys that a later version of the program adds.
 std::string scene_checksum(const std::string& text);
 

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 MAX_RUNS = 1_000_000  # runs
 
 #: Parameters that cannot vary, because they do not change a result.
-WITHOUT_EFFECT = ("title", "output", "numerics.threads")
+WITHOUT_EFFECT = ("title", "output", "numerics.threads", "numerics.device")
 
 
 @checked

@@ -3,8 +3,8 @@
 The hash covers everything that decides a result: the complete scene as the core normalises it, and
 the version of snowshed. Files such as meshes and grids count by their contents, not by their paths.
 The title, the output and the number of threads do not change a result and are left out. The
-instruction set is left out, too, so that a study may be resumed on another machine.
-``SNOWSHED_KERNELS`` makes all machines round alike.
+instruction set and the device are left out, too, so that a study may be resumed on another machine.
+``SNOWSHED_KERNELS`` makes all processors round alike.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ TERRAIN_WITHOUT_EFFECT = ("notes", "max_slope", "max_thickness")
 #: recognised; for the same reason a scene of the default method does not name it.
 HASHED_AS = {"courant_factor": "step_factor"}
 #: Settings that do not decide a result by themselves: a scheme is a name for others.
-SETTINGS_WITHOUT_EFFECT = ("threads", "scheme")
+SETTINGS_WITHOUT_EFFECT = ("threads", "device", "scheme")
 #: Settings of later versions, with the value that stands for the former behaviour. A setting
 #: with this value is left out of the hash.
 FORMER_BEHAVIOUR: Mapping[str, object] = {

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "snowshed/methods/enum_names.hpp"
+#include "snowshed/methods/mpm/gpu_support.hpp"
 #include "snowshed/methods/mpm/kernel_api.hpp"
 #include "snowshed/methods/mpm/time_step.hpp"
 
@@ -120,6 +121,7 @@ CostEstimate estimate_cost(const Settings& n, const SceneView& scene, const Scen
   const double voxels = std::max(filled, nodes);
   estimate.bytes = per_particle * estimate.total_particles + per_voxel * voxels +
                    surroundings_bytes(n, outline, voxels);
+  if (n.device != DeviceSetting::cpu) estimate.card_bytes = bytes_on_gpu(estimate.total_particles);
   return estimate;
 }
 

@@ -58,6 +58,9 @@ void describe(SettingsVisitor& v, Settings& n) {
   v.number("sleep_time", n.sleep_time, "s", allowed::time,
            "Time for which snow must stay below sleep_speed without speeding up");
   v.integer("threads", n.threads, non_negative.up_to(4096), "Threads; 0: all");
+  v.choice("device", n.device,
+           "Device that computes the steps: the processor (cpu), a graphics card of NVIDIA (gpu), "
+           "or a card if one is there and can compute the scene (auto)");
 }
 
 }  // namespace snowshed::methods::mpm

@@ -39,6 +39,13 @@ struct EnumNames<mpm::Scheme> {
 };
 
 template <>
+struct EnumNames<mpm::DeviceSetting> {
+  static constexpr Named<mpm::DeviceSetting> list[] = {{mpm::DeviceSetting::cpu, "cpu"},
+                                                       {mpm::DeviceSetting::gpu, "gpu"},
+                                                       {mpm::DeviceSetting::automatic, "auto"}};
+};
+
+template <>
 struct EnumNames<mpm::Basis> {
   static constexpr Named<mpm::Basis> list[] = {{mpm::Basis::quadratic, "quadratic"},
                                                {mpm::Basis::cubic, "cubic"}};

@@ -5,6 +5,8 @@
 #include "snowshed/methods/mpm/boundary.hpp"
 #include "snowshed/methods/mpm/cost.hpp"
 #include "snowshed/methods/mpm/describe.hpp"
+#include "snowshed/methods/mpm/device_choice.hpp"
+#include "snowshed/methods/mpm/gpu_support.hpp"
 #include "snowshed/methods/mpm/solver.hpp"
 
 namespace snowshed::methods::mpm {
@@ -76,6 +78,11 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
     return info;
   }
 
+  void adopt_machine(const MethodDescriptor& other) override {
+    DescriptorBase::adopt_machine(other);
+    if (const auto* same = dynamic_cast<const Descriptor*>(&other))
+      settings_.device = same->settings_.device;
+  }
   void coarsen(double factor) override { settings_.dx *= factor; }
   std::string step_setting() const override { return "courant_factor"; }
   const char* scalar() const override { return name_of(settings_.precision); }
@@ -91,8 +98,29 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
   geometry::ThickSolid thickened(const geometry::Shape& shape, int dimension) const override {
     return thickened_for_grid(shape, settings_.dx, dimension);
   }
+  DeviceChoice choose_device(const SceneView& scene, const Surroundings& surroundings,
+                             const CostEstimate& cost) const override {
+    if (settings_.device == DeviceSetting::cpu) return {};
+    return mpm::choose_device(options_of(scene, surroundings), cost.total_particles);
+  }
   std::unique_ptr<Method> build(const SceneView& scene,
                                 const Surroundings& surroundings) const override {
+    const std::shared_ptr<gpu::Device>& card = surroundings.device.card;
+    if (card) return make_gpu_solver(options_of(scene, surroundings), card);
+    return make_solver(options_of(scene, surroundings));
+  }
+
+  CostEstimate cost_of_bodies(const SceneView& scene, const SceneOutline& outline,
+                              std::vector<double> particles) const override {
+    return estimate_cost(settings_, scene, outline, std::move(particles));
+  }
+  std::vector<Feature> features(const SceneView& scene,
+                                const SceneOutline& outline) const override {
+    return features_of(settings_, scene, outline);
+  }
+
+ private:
+  Options options_of(const SceneView& scene, const Surroundings& surroundings) const {
     Options o;
     o.dimension = scene.dimension;
     o.gravity = scene.gravity;
@@ -103,16 +131,7 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
     o.energy = scene.output.energy;
     o.forces = scene.output.forces;
     o.laws = surroundings.laws;
-    return make_solver(std::move(o));
-  }
-
-  CostEstimate cost_of_bodies(const SceneView& scene, const SceneOutline& outline,
-                              std::vector<double> particles) const override {
-    return estimate_cost(settings_, scene, outline, std::move(particles));
-  }
-  std::vector<Feature> features(const SceneView& scene,
-                                const SceneOutline& outline) const override {
-    return features_of(settings_, scene, outline);
+    return o;
   }
 };
 

@@ -13,6 +13,8 @@ enum class Basis { quadratic, cubic };
 enum class ContactRule { kernel, touch };
 enum class Scheme { thesis, objective };
 enum class Fields { one, events };
+/// `automatic`: on a card if one is there and can compute the scene, otherwise on the processor.
+enum class DeviceSetting { cpu, gpu, automatic };
 
 /// Settings of the material point method: grid, transfer, time step, sleep.
 struct Settings {
@@ -35,6 +37,7 @@ struct Settings {
   double sleep_speed = 0.02;    // m/s, snow slower than this drops out of the steps; 0: never
   double sleep_time = 0.04;     // s, time for which snow must be slower before it drops out
   int threads = 0;              // 0: all
+  DeviceSetting device = DeviceSetting::cpu;
 
   /// Sets the mechanisms of a scheme; all other settings stay. `thesis` is the scheme of the
   /// thesis. The results of `objective` depend less on the grid.

@@ -427,6 +427,8 @@ template class SolverImpl<double, 2>;
 template class SolverImpl<double, 3>;
 
 std::unique_ptr<Solver> make_solver(Options options) {
+  if (options.settings.device == DeviceSetting::gpu)
+    throw InputError("/numerics/device", "is \"gpu\", but no card was opened for this solver");
   const bool single = options.settings.precision == Precision::float32;
   if (options.dimension == 2) {
     if (single) return std::make_unique<SolverImpl<float, 2>>(std::move(options));

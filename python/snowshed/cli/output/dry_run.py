@@ -32,6 +32,7 @@ def issue_notes(scene: ResolvedScene) -> None:
 
 def cost_rows(plan: dict[str, Any]) -> dict[str, str]:
     """Return the lines of a plan, with units, by their titles."""
+    card = plan["card_memory_bytes"]
     return {
         "used": ", ".join(plan["used"]),
         "left out": ", ".join(plan["left_out"]) or "nothing",
@@ -39,10 +40,12 @@ def cost_rows(plan: dict[str, Any]) -> dict[str, str]:
         "particles in all": f"{plan['particles_total']:,}",
         **{name: f"{count:,}" for name, count in plan["parts"].items()},
         "memory": f"{plan['memory_bytes'] / 1e6:,.1f} MB for particles and grid",
+        **({"memory of the card": f"{card / 1e6:,.1f} MB"} if card else {}),
         "time step": f"{plan['time_step_s']:.3g} s",
         "steps": f"{plan['steps_per_event']:,} per event",
         "run time": f"about {duration(plan['expected_wall_s'])}",
         "speed": f"{plan['updates_per_s'] / 1e6:.1f} M particle updates/s, measured now",
+        "device": plan["device"],
         "threads": f"{plan['threads']} at most",
         "scalar": f"{plan['scalar']}, {plan['kernels']}",
     }

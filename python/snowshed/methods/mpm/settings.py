@@ -80,6 +80,9 @@ class MpmSettings(MethodSettings):
         1e+09; default 0.04.
     threads : int
         Threads; 0: all. 0 <= value <= 4096; default 0.
+    device : {"cpu", "gpu", "auto"}
+        Device that computes the steps: the processor (cpu), a graphics card of NVIDIA (gpu), or a
+        card if one is there and can compute the scene (auto). Default "cpu".
     """
 
     dx: Optional[float] = default(0.01)
@@ -101,6 +104,7 @@ class MpmSettings(MethodSettings):
     sleep_speed: Optional[float] = default(0.02)
     sleep_time: Optional[float] = default(0.04)
     threads: Optional[int] = default(0)
+    device: Optional[Literal["cpu", "gpu", "auto"]] = default("cpu")
 
     RESOLUTION: ClassVar[str] = "dx"
     INSTEAD_OF: ClassVar[Mapping[str, str]] = {"damping_rate": "flip_ratio"}
