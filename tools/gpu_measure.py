@@ -155,12 +155,12 @@ def measured(program: str, folder: Path, case: Case, seconds: float) -> dict[str
 def verdicts(rows: list[dict[str, Any]]) -> list[tuple[str, Optional[bool]]]:
     """Return each bound with its number, and whether it holds; None if it was not measured."""
     on = {(row["case"], row["device"]): row for row in rows if "error" not in row}
-    found: list[tuple[str, Optional[bool]]] = []
+    bounds: list[tuple[str, Optional[bool]]] = []
     for case, speed in MIN_SPEED.items():
         row = on.get((case, "gpu"))
         value = row["updates_per_s"] if row else None
         text = "not measured" if value is None else f"{value / 1e9:.2f}"
-        found.append(
+        bounds.append(
             (
                 f"{case}: {text} G updates/s, at least {speed / 1e9:.2f}",
                 None if value is None else value >= speed,
@@ -173,13 +173,13 @@ def verdicts(rows: list[dict[str, Any]]) -> list[tuple[str, Optional[bool]]]:
             ratio = card[quantity] / threads[quantity]
             ratio = 1.0 / ratio if quantity == "wall_s" else ratio
         text = "not measured" if ratio is None else f"{ratio:.1f}"
-        found.append(
+        bounds.append(
             (
                 f"{case}: {text} times two threads, at least {least:g}",
                 None if ratio is None else ratio >= least,
             )
         )
-    return found
+    return bounds
 
 
 def write_result(record: dict[str, Any], folder: Path, kind: str) -> Path:
@@ -241,8 +241,8 @@ def main() -> int:
         "cases": rows,
         "bounds": [{"bound": text, "holds": holds} for text, holds in bounds],
     }
-    kept = given.folder if given.rehearse else RESULTS
-    print("gpu_check: written:", write_result(record, kept, "gpu"))
+    target = given.folder if given.rehearse else RESULTS
+    print("gpu_check: written:", write_result(record, target, "gpu"))
     for text, holds in bounds:
         print("gpu_check:", {True: "holds", False: "MISSED", None: "-"}[holds], text)
     if given.rehearse:

@@ -13,7 +13,7 @@ from helpers.processes import EXECUTABLE, modules_after
 import snowshed._core as _core
 from snowshed import InputError, Scene, Simulation
 from snowshed.base import compiler_folders as packages
-from snowshed.cli.main import main
+from snowshed.cli.main import cli
 from snowshed.study import Study, axis
 from snowshed.study.scene_hash import RunKey
 
@@ -27,7 +27,7 @@ def without_driver(monkeypatch):
 
 def scene(device):
     return Scene.preset("lab-50").update(
-        {"dimension": 2, "numerics.dx": 0.02, "numerics.device": device, "events.max_time": 0.01}
+        {"dimension": 2, "numerics.dx": 0.02, "numerics.device": device, "events.max_time": 0.06}
     )
 
 
@@ -51,7 +51,7 @@ def test_the_processor_is_the_default_and_needs_no_word():
 
 @pytest.mark.parametrize("command", ["snowshed", "snowshed-run"])
 def test_without_a_card_a_program_exits_with_code_2_and_writes_nothing(command, tmp_path):
-    scene("gpu").save(tmp_path / "scene.json")
+    scene("gpu").resolve().save(tmp_path / "scene.json")
     run = [sys.executable, "-m", "snowshed", "run"] if command == "snowshed" else [EXECUTABLE]
     arguments = [tmp_path / "scene.json", "-o", tmp_path / "out"]
     done = subprocess.run([*run, *arguments], capture_output=True, text=True)
@@ -61,10 +61,10 @@ def test_without_a_card_a_program_exits_with_code_2_and_writes_nothing(command, 
 
 
 def test_the_record_of_a_run_has_the_device_and_the_reason(tmp_path):
-    arguments = ["panel", "--preset", "lab-50", "--dim", "2", "--dx", "0.02", "--max-time", "0.01"]
+    arguments = ["panel", "--preset", "lab-50", "--dim", "2", "--dx", "0.02", "--max-time", "0.06"]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        done = CliRunner().invoke(main, [*arguments, "--device", "auto", "-o", str(tmp_path / "o")])
+        done = CliRunner().invoke(cli, [*arguments, "--device", "auto", "-o", str(tmp_path / "o")])
     assert done.exit_code == 0, done.output
     record = json.loads((tmp_path / "o" / "run.json").read_text(encoding="utf-8"))
     assert record["device"] == "cpu"
@@ -81,8 +81,8 @@ def test_a_plan_tells_the_memory_that_a_card_would_need():
 
 
 def test_a_run_may_be_resumed_on_another_device(tmp_path):
-    (tmp_path / "first.json").write_text(scene("cpu").resolve().json, encoding="utf-8")
-    (tmp_path / "second.json").write_text(scene("auto").resolve().json, encoding="utf-8")
+    scene("cpu").resolve().save(tmp_path / "first.json")
+    scene("auto").resolve().save(tmp_path / "second.json")
     for file, more in (("first.json", []), ("second.json", ["--resume"])):
         command = [EXECUTABLE, tmp_path / file, "-o", tmp_path / "out", "--quiet", *more]
         done = subprocess.run(command, capture_output=True, text=True)

@@ -1,5 +1,5 @@
 // Sources that are compiled for a graphics card while the program runs. The build puts their text
-// into the library, so that a run reads no file; cmake/EmbeddedSources.cmake lists them.
+// into the library, so that a run reads no file; cmake/EmbeddedSources.cmake chooses them.
 #pragma once
 
 #include <vector>

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "gpu/gpu_testing.hpp"
 #include "io/temporary_folder.hpp"
 #include "snowshed/gpu/unavailable.hpp"
@@ -79,6 +81,33 @@ TEST(Card, OpensWithItsNameAndTheKernelsOfTheProgram) {
   EXPECT_EQ(card.architecture, 90);
   const auto device = open_device(card, {"one.cu", "extern \"C\" __global__ void add_one() {}"});
   EXPECT_EQ(device->name(), "Fake card");
+}
+
+/// The card of this machine, if it has one: the only test that needs it.
+TEST(Card, ARealOneRunsAKernelOfThisProgram) {
+  const KernelProgram program{"add_one.cu", R"(
+extern "C" __global__ void add_one(int* values, int count) {
+  const int i = blockIdx.x * blockDim.x + threadIdx.x;
+  if (i < count) ++values[i];
+})"};
+  std::unique_ptr<Device> device;
+  try {
+    set_compiler_folders(&package_folders);
+    device = open_device(find_card(), program);
+  } catch (const Unavailable& error) {
+    GTEST_SKIP() << error.what();
+  }
+  int count = 1000;
+  std::vector<int> values(std::size_t(count), 0);
+  const std::size_t bytes = sizeof(int) * values.size();
+  Address place = device->allocate(bytes);
+  device->clear(place, bytes);
+  void* arguments[] = {&place, &count};
+  for (int i = 0; i < 3; ++i) device->launch("add_one", {8, 128}, arguments);
+  device->download(values.data(), place, bytes);
+  EXPECT_EQ(values, std::vector<int>(std::size_t(count), 3));
+  device->free(place);
+  EXPECT_THROW(device->allocate(std::size_t(1) << 50), SimulationError);
 }
 
 }  // namespace

@@ -78,10 +78,10 @@ inline std::optional<RuntimeCompiler> installed_compiler() try {
   return std::nullopt;
 }
 
-#define SNOWSHED_REQUIRE_COMPILER(compiler)                                                     \
-  const std::optional<RuntimeCompiler> compiler = installed_compiler();                         \
-  if (!compiler)                                                                                \
-  GTEST_SKIP() << "NVIDIA's runtime compiler is not installed: pip install nvidia-cuda-nvrtc, " \
-                  "or name its library by SNOWSHED_NVRTC"
+#define SNOWSHED_REQUIRE_COMPILER(compiler)                                  \
+  const auto compiler = ::snowshed::gpu::installed_compiler();               \
+  if (!compiler)                                                             \
+  GTEST_SKIP() << "NVIDIA's runtime compiler is not installed: pip install " \
+                  "nvidia-cuda-nvrtc, or name its library by SNOWSHED_NVRTC"
 
 }  // namespace snowshed::gpu

@@ -70,6 +70,18 @@ TEST(RuntimeCompiler, CompilesTheLawsOfTheCoreUnchanged) {
   }
 }
 
+TEST(RuntimeCompiler, CompilesTheKernelsOfEveryMethod) {
+  SNOWSHED_REQUIRE_COMPILER(compiler);
+  int methods = 0;
+  for (const SourceText& source : embedded_sources()) {
+    const std::string name = source.name, last = "/gpu/kernels.cuh";
+    if (name.size() < last.size() || name.substr(name.size() - last.size()) != last) continue;
+    EXPECT_FALSE(compiler->compile({name, "#include \"" + name + "\"\n"}, 90).empty());
+    ++methods;
+  }
+  if (methods == 0) GTEST_SKIP() << "no method has kernels for a card yet";
+}
+
 TEST(RuntimeCompiler, TheErrorHasTheLogWithFileAndLine) {
   SNOWSHED_REQUIRE_COMPILER(compiler);
   const std::string message = message_of<Unavailable>(

@@ -83,8 +83,8 @@ inline auto tied(const methods::Seeding& s) {
   return std::tie(a, b, c, d);
 }
 inline auto tied(const methods::mpm::Settings& s) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t] = s;
-  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t);
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u] = s;
+  return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u);
 }
 inline auto tied(const methods::Events& s) {
   auto& [a, b, c, d, e] = s;

@@ -11,24 +11,9 @@ namespace {
 
 std::string gigabytes(double bytes) { return show_briefly(bytes / 1e9) + " GB"; }
 
-void require_support(const Options& options) {
-  std::string list;
-  for (const std::string& part : unsupported_on_gpu(options))
-    list += (list.empty() ? "" : "; ") + part;
-  if (!list.empty()) throw gpu::Unavailable("not supported on a graphics card: " + list);
-}
-
-void require_memory(const gpu::Device& card, double particles) {
-  const double needed = bytes_on_gpu(particles), free = double(card.free_bytes());
-  if (needed > free)
-    throw gpu::Unavailable(show_rounded(particles) + " particles need " + gigabytes(needed) +
-                           " on the card; free on the " + card.name() + " are " + gigabytes(free) +
-                           "; give fewer particles or a larger dx");
-}
-
 std::shared_ptr<gpu::Device> open_card(const Options& options, double particles) {
   const gpu::Card card = gpu::find_card();
-  require_support(options);
+  require_supported_on_gpu(options);
   std::shared_ptr<gpu::Device> device = gpu::open_device(card, gpu_kernels(options));
   require_memory(*device, particles);
   return device;
@@ -40,13 +25,22 @@ DeviceChoice fall_back(const std::string& reason) {
 
 }  // namespace
 
+void require_memory(const gpu::Device& card, double particles) {
+  const double needed = bytes_on_gpu(particles), free = double(card.free_bytes());
+  if (needed > free)
+    throw gpu::Unavailable(show_rounded(particles) + " particles need " + gigabytes(needed) +
+                           " on the card; free on the " + card.name() + " are " + gigabytes(free) +
+                           "; give fewer particles or a larger dx");
+}
+
 DeviceChoice choose_device(const Options& options, double particles) {
   const DeviceSetting asked = options.settings.device;
   if (asked == DeviceSetting::cpu) return {};
   try {
     return {open_card(options, particles), ""};
-  } catch (const gpu::Unavailable& error) {
+  } catch (const InputError& error) {
     if (asked == DeviceSetting::automatic) return fall_back(error.what());
+    if (!error.where().empty()) throw;
     throw InputError("/numerics/device", error.what());
   } catch (const SimulationError& error) {  // the card is there, but does not work
     if (asked == DeviceSetting::automatic) return fall_back(error.what());

@@ -1,12 +1,15 @@
 #include "snowshed/methods/mpm/gpu_support.hpp"
 
 #include <stdexcept>
+#include <string>
+#include <vector>
 
+#include "snowshed/core/errors.hpp"
 #include "snowshed/gpu/device.hpp"
 
 namespace snowshed::methods::mpm {
 
-std::vector<std::string> unsupported_on_gpu(const Options& o) {
+void require_supported_on_gpu(const Options& o) {
   std::vector<std::string> parts;
   if (o.dimension == 2) parts.push_back("two dimensions (the blocks of its threads are cubes)");
   if (o.settings.precision == Precision::float64)
@@ -14,7 +17,9 @@ std::vector<std::string> unsupported_on_gpu(const Options& o) {
   if (o.laws.any()) parts.push_back("laws of the user (they are code for a processor)");
   // Until this version has kernels, no scene gets past here.
   parts.push_back("the steps of this method (this version has no kernels for cards yet)");
-  return parts;
+  std::string list;
+  for (const std::string& part : parts) list += (list.empty() ? "" : "; ") + part;
+  throw InputError("", "not supported on a graphics card: " + list);
 }
 
 double bytes_on_gpu(double particles) {

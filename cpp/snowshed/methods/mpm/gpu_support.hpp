@@ -2,8 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "snowshed/gpu/kernel_program.hpp"
 #include "snowshed/methods/mpm/solver.hpp"
@@ -14,9 +12,8 @@ class Device;
 
 namespace snowshed::methods::mpm {
 
-/// Parts of a simulation that no card can compute yet, each with the reason in brackets if it is
-/// not plain. Empty if a card can compute all of it.
-std::vector<std::string> unsupported_on_gpu(const Options&);
+/// Throws InputError, with all reasons, if a card cannot compute the simulation.
+void require_supported_on_gpu(const Options&);
 
 /// Memory of a card that this many particles need with their grid, bytes.
 double bytes_on_gpu(double particles);
