@@ -61,6 +61,20 @@ TEST_F(SimulationCheckpoint, EmptyBlocksAreRefused) {
   EXPECT_THROW(Simulation::load(path("forged")), InputError);
 }
 
+/// The results then agree to rounding, and not to the same bits.
+TEST_F(SimulationCheckpoint, ARunFromAnotherDeviceGoesOnWithANote) {
+  Simulation sim(drop(0.02));
+  sim.begin_event();
+  sim.save(path("of_cpu"));
+  EXPECT_TRUE(Simulation::load(path("of_cpu"))->notes().empty());
+  const std::string bytes = content(path("of_cpu"));
+  write_plainly(path("of_gpu"), io::forged(bytes, io::data_of(bytes, "device"), 'g'));
+  EXPECT_EQ(Simulation::load(path("of_gpu"))->notes(),
+            std::vector<std::string>{
+                "the checkpoint was made on a gpu, and the run continues on a cpu: to rounding, "
+                "not to the same bits"});
+}
+
 /// There is enough snow for three threads.
 TEST_F(SimulationCheckpoint, ThreadsDoNotChangeTheBytes) {
   scene::Scene scene = drop(0.003);
