@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "gpu/gpu_testing.hpp"
+#include "gpu/cuda_testing.hpp"
 #include "io/temporary_folder.hpp"
 #include "snowshed/gpu/unavailable.hpp"
 

@@ -5,7 +5,7 @@
 #include <thread>
 #include <vector>
 
-#include "gpu/gpu_testing.hpp"
+#include "gpu/cuda_testing.hpp"
 #include "io/temporary_folder.hpp"
 #include "snowshed/core/errors.hpp"
 

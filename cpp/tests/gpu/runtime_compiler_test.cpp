@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "gpu/gpu_testing.hpp"
+#include "gpu/cuda_testing.hpp"
 #include "io/temporary_folder.hpp"
 #include "snowshed/gpu/embedded_sources.hpp"
 #include "snowshed/gpu/machine_code.hpp"

@@ -48,8 +48,6 @@ inline constexpr int steps_between_sorts = 64;
 /// before a sort.
 inline constexpr double contacts_per_particle = 100;
 
-/// Makes a solver on the processor. Throws InputError if the settings ask for a graphics card
-/// (gpu_support.hpp).
 std::unique_ptr<Solver> make_solver(Options);
 
 }  // namespace snowshed::methods::mpm

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "gpu/gpu_testing.hpp"
+#include "gpu/cuda_testing.hpp"
 #include "io/temporary_folder.hpp"
 #include "snowshed/gpu/cuda_device.hpp"
 #include "snowshed/methods/mpm/gpu_support.hpp"
