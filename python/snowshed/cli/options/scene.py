@@ -45,8 +45,8 @@ BASIC_PATHS = (
     "dimension", "panel.height", "panel.length", "panel.width", "panel.tilt", "panel.friction",
     "panel.condition", "slab.thickness", "slab.layers", "ground.tilt", "snow.density",
     "snow.youngs_modulus", "snow.preconsolidation_pressure", "snow.cohesion", "numerics.dx",
-    "numerics.threads", "numerics.device", "events.count", "events.max_time", "output.snapshot_interval",
-    "output.forces",
+    "numerics.threads", "numerics.device", "events.count", "events.max_time",
+    "output.snapshot_interval", "output.forces",
 )  # fmt: skip
 PREFIXED_SECTIONS = ("panel", "slab", "ground", "domain")
 TYPES: Mapping[str, Any] = {"number": float, "integer": int, "string": str}
