@@ -73,7 +73,7 @@ def large_panel() -> dict[str, Any]:
         "panel": {"height": 1.0, "length": 4.0, "width": 2.0, "tilt": 45, "friction": 0.3},
         "slab": {"thickness": 0.2},
         "ground": {"condition": "sticky"},
-        "numerics": {"dx": 0.01, "scheme": "objective"},
+        "numerics": {"dx": 0.01},
         "seeding": {"pattern": "jittered"},
         "events": {"count": 5},
         "output": {"film": False},
@@ -119,7 +119,8 @@ def measured(program: str, folder: Path, case: Case, seconds: float) -> dict[str
     scene = json.loads(json.dumps(case.scene))
     scene["numerics"].update(device=device, threads=case.threads)
     if case.seconds is not None:
-        scene["events"] = {"count": 1, "max_time": case.seconds, "rest_speed": 0}
+        rest = {"rest_speed": 1e-9, "rest_time": case.seconds}  # the snow never rests
+        scene["events"] = {"count": 1, "max_time": case.seconds, **rest}
     name = f"{case.name}-{device}"
     file, results = folder / f"{name}.json", folder / name
     file.write_text(json.dumps(scene, indent=1) + "\n", encoding="utf-8")
@@ -218,7 +219,7 @@ def main() -> int:
         scene = slab(1, FLOW)
         scene["bodies"][0]["shape"].update(size=[0.25, 0.25, 0.25], center=[0.0, 0.0, 0.125])
         scene["numerics"]["device"] = "gpu"
-        scene["events"] = {"max_time": 0.005}
+        scene["events"] = {"max_time": 0.005, "rest_time": 0.005}
         given.write_small.write_text(json.dumps(scene) + "\n", encoding="utf-8")
         return 0
     if not (given.card or given.rehearse):
