@@ -4,9 +4,9 @@
 #   gpu_check.sh [FOLDER]          build and logs in FOLDER, by default build/gpu-check
 #   gpu_check.sh --rehearse [FOLDER]   the same on the processor, with small scenes, without a card
 # The last lines are the verdicts, and benchmarks/results/DATE-gpu.json has the numbers. The exit
-# code is 0 only if every test and every bound held on a card, or if a rehearsal ran. The machine needs a compiler, CMake,
-# Python, the driver of the card, and NVIDIA's runtime compiler (of a CUDA toolkit, or by pip).
-# Headers of Eigen, nlohmann-json and zlib come from the system or from .venv.
+# code is 0 only if every test and every bound held on a card, or if a rehearsal ran. The machine
+# needs a compiler, CMake, Python, the driver of the card, and NVIDIA's runtime compiler (of a CUDA
+# toolkit, or by pip). Headers of Eigen, nlohmann-json and zlib come from the system or from .venv.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 2
 
