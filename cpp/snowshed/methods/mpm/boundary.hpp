@@ -1,7 +1,7 @@
 // Collision objects on the grid: which nodes an obstacle constrains, and how.
 //
 // The conditions are the thesis's (section 1.2.3; see Condition). Two things are ours:
-// - Friction acts on the running mean of the net normal impulse (see NodeKernels::apply), so the
+// - Friction acts on the running mean of the net normal impulse (see push_and_rub), so the
 //   contacts have a memory that outlives a step.
 // - Where gravity presses snow onto an obstacle, `separate` releases the snow only when pulls have
 //   used up the stored push. A vibrating slab thus stays on its panel. Elsewhere `separate`

@@ -276,8 +276,8 @@ double SolverImpl<T, D>::shorten_to_limits(double dt) {
     const double strain = largest_strain() * dt;
     if (strain <= limit) return dt;
     ++state_.totals.counters.rejected;
-    dt *= std::min(0.5, 0.8 * limit / strain);
-    if (!(dt > 1e-7 * state_.elastic_limit)) {  // also if the strain is not finite
+    dt = shortened_time_step(dt, strain, limit);
+    if (!(dt > min_step_share * state_.elastic_limit)) {  // also if the strain is not finite
       std::ostringstream message;
       message << "the time step fell to " << dt << " s at t = " << time()
               << " s: the snow would strain by " << strain << " in one step (limit " << limit

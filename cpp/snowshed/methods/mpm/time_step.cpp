@@ -13,8 +13,4 @@ double elastic_time_step(double youngs_modulus, double poissons_ratio, double de
   return dx * std::sqrt(2 / (transfer_stability_number(transfer, basis) * stiffness / density));
 }
 
-double next_time_step(double elastic_limit, double speed, double dx, double factor) {
-  return factor / (1 / elastic_limit + 2 * speed / dx);
-}
-
 }  // namespace snowshed::methods::mpm

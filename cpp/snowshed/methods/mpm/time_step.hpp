@@ -2,6 +2,7 @@
 #pragma once
 
 #include "snowshed/methods/mpm/kernel_api.hpp"
+#include "snowshed/methods/mpm/step_length.hpp"
 
 namespace snowshed::methods::mpm {
 
@@ -36,9 +37,5 @@ constexpr double transfer_stability_number(Transfer transfer, Basis basis) {
 /// it does not change the limit.
 double elastic_time_step(double youngs_modulus, double poissons_ratio, double density,
                          int dimension, double dx, Transfer transfer, Basis basis);
-
-/// The time step to take: the elastic limit shortened so that the fastest particle moves no more
-/// than half a cell. `factor` in (0, 1].
-double next_time_step(double elastic_limit, double speed, double dx, double factor);
 
 }  // namespace snowshed::methods::mpm
