@@ -9,7 +9,7 @@ namespace snowshed::methods {
 /// of its steps, so the last one ends up to a step later. Throws as `Method::step`; the steps
 /// before remain taken.
 inline void advance_to(Method& method, double time) {
-  while (method.time() < time) method.step();
+  method.advance(time);
 }
 
 }  // namespace snowshed::methods

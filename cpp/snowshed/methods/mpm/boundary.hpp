@@ -158,6 +158,8 @@ class Contacts {
   std::int32_t only_obstacle(std::size_t block) const { return only_[block]; }
 
   std::size_t size() const { return contacts_.size(); }
+  /// All contacts, block by block.
+  std::vector<Contact<T>>& all() { return contacts_; }
 
   /// Returns whether a block has a contact with an obstacle that moves at present.
   bool moves(std::size_t block) const;

@@ -1,6 +1,8 @@
 // The stable time step of explicit MPM.
 #pragma once
 
+#include <string>
+
 #include "snowshed/methods/mpm/kernel_api.hpp"
 #include "snowshed/methods/mpm/step_length.hpp"
 
@@ -37,5 +39,8 @@ constexpr double transfer_stability_number(Transfer transfer, Basis basis) {
 /// it does not change the limit.
 double elastic_time_step(double youngs_modulus, double poissons_ratio, double density,
                          int dimension, double dx, Transfer transfer, Basis basis);
+
+/// The message for a time step that fell to dt (s) at a time (s), because of a strain.
+std::string describe_stuck(double dt, double time, double strain, double limit);
 
 }  // namespace snowshed::methods::mpm

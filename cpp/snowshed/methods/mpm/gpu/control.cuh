@@ -15,8 +15,6 @@ __device__ inline float from_ordered(std::int32_t bits) {
   return __int_as_float(bits ^ (bits >> 31 & 0x7fffffff));
 }
 
-inline constexpr std::int32_t no_particle = 0x7fffffff;
-
 /// Returns a power of two that is at least x > 0.
 __device__ inline float power_of_two_above(float x) {
   int exponent;

@@ -5,4 +5,5 @@
 #include "snowshed/methods/mpm/gpu/node_step.cuh"
 #include "snowshed/methods/mpm/gpu/particle_step.cuh"
 #include "snowshed/methods/mpm/gpu/probe.cuh"
+#include "snowshed/methods/mpm/gpu/sleep.cuh"
 #include "snowshed/methods/mpm/gpu/sort.cuh"

@@ -109,16 +109,6 @@ __device__ inline void empty_cells(StepMemory& m) {
   if (threadIdx.x == 0) m.cell_count = 0;
 }
 
-/// Arguments of the kernels of particles.
-struct ParticleLaunch {
-  ParticleArrays particles;
-  BlockTable blocks;
-  const std::int32_t* list;  // blocks of particles that take part
-  GridArrays grid;
-  std::int32_t* strays;  // room for all particles
-  unsigned long long* whole;  // sums to which the particles are added
-};
-
 /// Takes the particles of a block through a step. With `moves` false, only adds them to the sums.
 template <bool several, bool moves>
 __device__ inline void step_block(const ParticleLaunch& l, Control* control, const Constants& k,
@@ -244,6 +234,13 @@ __device__ inline void step_strays(const ParticleLaunch& l, std::int32_t block_c
                          snowshed::methods::mpm::on_device::Control* control,                    \
                          snowshed::methods::mpm::on_device::Constants k) {                       \
     snowshed::methods::mpm::on_device::step_strays<several, true>(l, block_count, control, k);   \
+  }                                                                                              \
+  extern "C" __global__ void __launch_bounds__(64)                                               \
+      scatter_strays##suffix(snowshed::methods::mpm::on_device::ParticleLaunch l,                \
+                             std::int32_t block_count,                                           \
+                             snowshed::methods::mpm::on_device::Control* control,                \
+                             snowshed::methods::mpm::on_device::Constants k) {                   \
+    snowshed::methods::mpm::on_device::step_strays<several, false>(l, block_count, control, k);  \
   }
 
 SNOWSHED_PARTICLE_KERNELS(, false)

@@ -56,6 +56,24 @@ struct ContactArrays {
   const float *friction, *friction_shares;  // of each obstacle
 };
 
+/// Arguments of the kernels of particles.
+struct ParticleLaunch {
+  ParticleArrays particles;
+  BlockTable blocks;
+  const std::int32_t* list;  // blocks of particles that take part
+  GridArrays grid;
+  std::int32_t* strays;  // room for all particles
+  unsigned long long* whole;  // sums to which the particles are added
+};
+
+/// Motion of a block of particles, for the decision whether it sleeps: sums over its particles.
+struct BlockMotion {
+  double speed_squared, velocity[3];  // m2/s2, m/s
+  double mass, carried, change[3];    // kg; of the nodes, see SleepingBlockMotion, times the mass
+  float fastest;                      // m2/s2
+  std::int32_t holds_its_snow;
+};
+
 enum class Phase : std::int32_t {
   waiting,    // for the host
   trying,     // the node velocities for a step of `dt` are due
@@ -64,6 +82,8 @@ enum class Phase : std::int32_t {
   stuck,      // the time step fell below every use
   unsound     // a particle is not finite, or is strained beyond the limit
 };
+
+inline constexpr std::int32_t no_particle = 0x7fffffff;
 
 /// The progress of a simulation. A round of kernels takes one step, or finds that it must be
 /// shorter. The host looks on from time to time.

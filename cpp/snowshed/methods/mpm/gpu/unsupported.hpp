@@ -1,0 +1,22 @@
+// What steps on a graphics card do not support yet.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "snowshed/methods/mpm/solver.hpp"
+
+namespace snowshed::methods::mpm {
+
+/// A setting that a graphics card does not support, with its place in the scene and what to do.
+struct Unsupported {
+  std::string path, reason;
+};
+
+/// Returns everything that steps on a graphics card do not support; empty: all is supported.
+std::vector<Unsupported> unsupported_on_gpu(const Options&);
+
+/// Throws InputError, at the first of them with a text on all, if there are any.
+void require_supported_on_gpu(const Options&);
+
+}  // namespace snowshed::methods::mpm
