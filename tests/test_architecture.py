@@ -19,11 +19,12 @@ PARTS_OF_ROOMS = ("kernels", "readers")
 ALLOWED = {
     "core": set(),
     "io": {"core"},
+    "gpu": {"core", "io"},
     "particles": {"core"},
     "geometry": {"core", "particles", "io"},
     "material": {"core"},
     "sampling": {"core", "particles", "geometry"},
-    "methods": {"core", "io", "particles", "geometry", "material", "sampling"},
+    "methods": {"core", "io", "gpu", "particles", "geometry", "material", "sampling"},
     "scene": {"core", "io", "particles", "geometry", "material", "sampling", "methods"},
     "run": {"core", "io", "particles", "geometry", "material", "sampling", "methods", "scene"},
 }

@@ -1,5 +1,6 @@
 #include "gpu/emulated_device.hpp"
 
+#include <setjmp.h>
 #include <ucontext.h>
 
 #include <cstdlib>
@@ -19,13 +20,16 @@ namespace {
 
 constexpr std::size_t stack_bytes = 128 * 1024;
 
+/// A stack of its own on which threads run, one after the other. After its start, jumps lead to and
+/// fro, because a change of context by the system's function costs a call of the kernel.
 struct Fiber {
-  ucontext_t context;
   std::vector<char> stack = std::vector<char>(stack_bytes);
-  bool waits = false, ended = false, flag = false;
+  ucontext_t start;
+  jmp_buf paused;
+  bool started = false, ended = false, flag = false;
 };
 
-ucontext_t scheduler;
+jmp_buf scheduler;
 Fiber* running;
 std::function<void()> body;
 int flags_at_barrier;
@@ -35,19 +39,29 @@ std::vector<std::unique_ptr<Fiber>>& fibers() {
   return all;
 }
 
-void enter() {
-  body();
-  running->ended = true;
-  swapcontext(&running->context, &scheduler);
+void pause() {
+  if (_setjmp(running->paused) == 0) _longjmp(scheduler, 1);
 }
 
-void start(Fiber& fiber) {
-  getcontext(&fiber.context);
-  fiber.context.uc_stack.ss_sp = fiber.stack.data();
-  fiber.context.uc_stack.ss_size = fiber.stack.size();
-  fiber.context.uc_link = nullptr;
-  makecontext(&fiber.context, enter, 0);
-  fiber.waits = fiber.ended = fiber.flag = false;
+void enter() {
+  while (true) {
+    body();
+    running->ended = true;
+    pause();
+  }
+}
+
+void run(Fiber& fiber) {
+  running = &fiber;
+  if (_setjmp(scheduler) != 0) return;
+  if (fiber.started) _longjmp(fiber.paused, 1);
+  fiber.started = true;
+  getcontext(&fiber.start);
+  fiber.start.uc_stack.ss_sp = fiber.stack.data();
+  fiber.start.uc_stack.ss_size = fiber.stack.size();
+  fiber.start.uc_link = nullptr;
+  makecontext(&fiber.start, enter, 0);
+  setcontext(&fiber.start);
 }
 
 /// Runs each thread that has not ended up to its next barrier. Returns whether any waits there.
@@ -58,9 +72,8 @@ bool run_to_barrier(unsigned threads, Turns turns) {
     const unsigned t = turns == Turns::forwards ? k : threads - 1 - k;
     Fiber& fiber = *fibers()[t];
     if (fiber.ended) continue;
-    running = &fiber;
     thread.x = t;
-    swapcontext(&scheduler, &fiber.context);
+    run(fiber);
     if (fiber.ended) continue;
     any = true;
     flags += fiber.flag;
@@ -73,7 +86,7 @@ void set_body(std::function<void()> kernel) { body = std::move(kernel); }
 
 void run_block(unsigned threads, Turns turns) {
   while (fibers().size() < threads) fibers().push_back(std::make_unique<Fiber>());
-  for (unsigned t = 0; t < threads; ++t) start(*fibers()[t]);
+  for (unsigned t = 0; t < threads; ++t) fibers()[t]->ended = false;
   while (run_to_barrier(threads, turns)) {
   }
 }
@@ -82,7 +95,7 @@ void run_block(unsigned threads, Turns turns) {
 
 int wait_for_block(bool flag) {
   running->flag = flag;
-  swapcontext(&running->context, &scheduler);
+  pause();
   return flags_at_barrier;
 }
 

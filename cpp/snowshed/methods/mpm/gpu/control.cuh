@@ -4,7 +4,7 @@
 #include "snowshed/methods/mpm/gpu/views.hpp"
 #include "snowshed/methods/mpm/step_length.hpp"
 
-namespace snowshed::methods::mpm::on_device {
+namespace snowshed::methods::mpm::gpu {
 
 /// A whole number that is in the same order as other numbers' whole numbers.
 __device__ inline std::int32_t ordered(float x) {
@@ -110,19 +110,19 @@ __device__ inline void judge(Control& c, const Constants& k) {
   c.phase = c.dt > min_step_share * k.elastic_limit ? Phase::too_long : Phase::stuck;
 }
 
-}  // namespace snowshed::methods::mpm::on_device
+}  // namespace snowshed::methods::mpm::gpu
 
 /// Ends a step and begins the next.
-extern "C" __global__ void next_step(snowshed::methods::mpm::on_device::Control* control,
-                                     snowshed::methods::mpm::on_device::Constants constants) {
-  using namespace snowshed::methods::mpm::on_device;
+extern "C" __global__ void next_step(snowshed::methods::mpm::gpu::Control* control,
+                                     snowshed::methods::mpm::gpu::Constants constants) {
+  using namespace snowshed::methods::mpm::gpu;
   if (control->phase == Phase::accepted) record_step(*control);
   if (control->phase == Phase::waiting || control->phase == Phase::too_long)
     begin_step(*control, constants);
 }
 
-extern "C" __global__ void judge_step(snowshed::methods::mpm::on_device::Control* control,
-                                      snowshed::methods::mpm::on_device::Constants constants) {
-  using namespace snowshed::methods::mpm::on_device;
+extern "C" __global__ void judge_step(snowshed::methods::mpm::gpu::Control* control,
+                                      snowshed::methods::mpm::gpu::Constants constants) {
+  using namespace snowshed::methods::mpm::gpu;
   if (control->phase == Phase::trying) judge(*control, constants);
 }

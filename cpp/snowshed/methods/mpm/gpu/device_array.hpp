@@ -7,12 +7,12 @@
 
 #include "snowshed/gpu/device.hpp"
 
-namespace snowshed::methods::mpm::on_device {
+namespace snowshed::methods::mpm::gpu {
 
 template <class Value>
 class DeviceArray {
  public:
-  explicit DeviceArray(gpu::Device& device) : device_(&device) {}
+  explicit DeviceArray(snowshed::gpu::Device& device) : device_(&device) {}
   DeviceArray(DeviceArray&& other) noexcept
       : device_(other.device_),
         address_(std::exchange(other.address_, 0)),
@@ -69,18 +69,18 @@ class DeviceArray {
     size_ = capacity_ = 0;
   }
 
-  gpu::Device* device_;
-  gpu::Address address_ = 0;
+  snowshed::gpu::Device* device_;
+  snowshed::gpu::Address address_ = 0;
   std::size_t size_ = 0, capacity_ = 0;
 };
 
 /// Launches a kernel with its arguments.
 template <class... Arguments>
-void launch(gpu::Device& device, const char* kernel, gpu::LaunchShape shape,
+void launch(snowshed::gpu::Device& device, const char* kernel, snowshed::gpu::LaunchShape shape,
             Arguments... arguments) {
   if (shape.blocks == 0) return;
   void* addresses[] = {&arguments...};
   device.launch(kernel, shape, addresses);
 }
 
-}  // namespace snowshed::methods::mpm::on_device
+}  // namespace snowshed::methods::mpm::gpu

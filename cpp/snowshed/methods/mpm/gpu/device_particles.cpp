@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-namespace snowshed::methods::mpm::on_device {
+namespace snowshed::methods::mpm::gpu {
 
 void DeviceParticles::upload(const HostParticles& particles) {
   size_ = particles.size();
@@ -47,7 +47,7 @@ ParticleArrays DeviceParticles::view() const {
 
 void DeviceParticles::permute(const DeviceArray<std::int32_t>& order) {
   constexpr unsigned threads = 256;
-  const gpu::LaunchShape shape{(unsigned(size_) + threads - 1) / threads, threads};
+  const snowshed::gpu::LaunchShape shape{(unsigned(size_) + threads - 1) / threads, threads};
   for (Array& array : arrays_) {
     const char* kernel = array.value_bytes == 4   ? "permute4"
                          : array.value_bytes == 2 ? "permute2"
@@ -59,4 +59,4 @@ void DeviceParticles::permute(const DeviceArray<std::int32_t>& order) {
   }
 }
 
-}  // namespace snowshed::methods::mpm::on_device
+}  // namespace snowshed::methods::mpm::gpu

@@ -5,13 +5,13 @@
 #include "snowshed/methods/mpm/gpu/views.hpp"
 #include "snowshed/methods/mpm/particles.hpp"
 
-namespace snowshed::methods::mpm::on_device {
+namespace snowshed::methods::mpm::gpu {
 
 class DeviceParticles {
  public:
   using HostParticles = Particles<float, 3>;
 
-  explicit DeviceParticles(gpu::Device& device) : device_(device), spare_(device) {}
+  explicit DeviceParticles(snowshed::gpu::Device& device) : device_(device), spare_(device) {}
 
   void upload(const HostParticles&);
   /// Overwrites the values of as many particles in the same order.
@@ -31,11 +31,11 @@ class DeviceParticles {
   };
   void* array(std::size_t& next) const { return arrays_[next++].values.data(); }
 
-  gpu::Device& device_;
+  snowshed::gpu::Device& device_;
   std::vector<Array> arrays_;  // in the order of Particles::for_each_array
   DeviceArray<std::uint8_t> spare_;
   std::size_t size_ = 0;
   bool has_plastic_ = false, has_material_id_ = false;
 };
 
-}  // namespace snowshed::methods::mpm::on_device
+}  // namespace snowshed::methods::mpm::gpu

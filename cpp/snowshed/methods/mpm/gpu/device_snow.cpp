@@ -5,7 +5,7 @@
 
 #include "snowshed/methods/mpm/gpu/device_sort.hpp"
 
-namespace snowshed::methods::mpm::on_device {
+namespace snowshed::methods::mpm::gpu {
 namespace {
 
 /// Thread blocks and threads of the kernel of the strays, of which there are few.
@@ -24,7 +24,7 @@ double largest_stress(const material::Elasticity<double>& e) {
 
 }  // namespace
 
-DeviceSnow::DeviceSnow(gpu::Device& device, const Model<float, 3>& model)
+DeviceSnow::DeviceSnow(snowshed::gpu::Device& device, const Model<float, 3>& model)
     : device_(device),
       model_(model),
       particles_(device),
@@ -258,4 +258,4 @@ std::size_t DeviceSnow::bytes() const {
   return sum;
 }
 
-}  // namespace snowshed::methods::mpm::on_device
+}  // namespace snowshed::methods::mpm::gpu

@@ -6,13 +6,13 @@
 #include "snowshed/methods/mpm/model.hpp"
 #include "snowshed/methods/mpm/state.hpp"
 
-namespace snowshed::methods::mpm::on_device {
+namespace snowshed::methods::mpm::gpu {
 
 class DeviceSnow {
  public:
   using HostState = State<float, 3>;
 
-  DeviceSnow(gpu::Device& device, const Model<float, 3>& model);
+  DeviceSnow(snowshed::gpu::Device& device, const Model<float, 3>& model);
 
   /// Uploads all of a state. `scatter` must follow before a step.
   void upload(const HostState&);
@@ -57,7 +57,7 @@ class DeviceSnow {
   GridArrays grid() const;
   ContactArrays contacts() const;
 
-  gpu::Device& device_;
+  snowshed::gpu::Device& device_;
   const Model<float, 3>& model_;
   DeviceParticles particles_;
   DeviceArray<std::int32_t> first_, around_, order_, strays_;
@@ -75,4 +75,4 @@ class DeviceSnow {
   std::int32_t blocks_ = 0;  // of particles
 };
 
-}  // namespace snowshed::methods::mpm::on_device
+}  // namespace snowshed::methods::mpm::gpu

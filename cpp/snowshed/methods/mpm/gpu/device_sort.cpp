@@ -5,7 +5,7 @@
 
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed::methods::mpm::on_device {
+namespace snowshed::methods::mpm::gpu {
 namespace {
 
 /// The key of the k-th block around another.
@@ -53,11 +53,11 @@ SortPlan plan_sort(const BlockLayout<3>& layout, const std::vector<std::int32_t>
   return plan;
 }
 
-void launch_moves(gpu::Device& device, const ParticleArrays& particles, const BlockTable& blocks,
+void launch_moves(snowshed::gpu::Device& device, const ParticleArrays& particles, const BlockTable& blocks,
                   std::int32_t count, DeviceArray<std::int32_t>& counts) {
   counts.resize(std::size_t(count) * neighbours);
   launch(device, "count_moves", {unsigned(count), particle_threads}, particles, blocks,
          counts.data());
 }
 
-}  // namespace snowshed::methods::mpm::on_device
+}  // namespace snowshed::methods::mpm::gpu

@@ -5,7 +5,7 @@
 #include "snowshed/methods/mpm/gpu/device_array.hpp"
 #include "snowshed/methods/mpm/gpu/views.hpp"
 
-namespace snowshed::methods::mpm::on_device {
+namespace snowshed::methods::mpm::gpu {
 
 struct SortPlan {
   std::vector<BlockKey> blocks;     // with particles, ascending
@@ -20,7 +20,7 @@ struct SortPlan {
 SortPlan plan_sort(const BlockLayout<3>&, const std::vector<std::int32_t>& counts);
 
 /// Counts these numbers.
-void launch_moves(gpu::Device&, const ParticleArrays&, const BlockTable&, std::int32_t blocks,
+void launch_moves(snowshed::gpu::Device&, const ParticleArrays&, const BlockTable&, std::int32_t blocks,
                   DeviceArray<std::int32_t>& counts);
 
-}  // namespace snowshed::methods::mpm::on_device
+}  // namespace snowshed::methods::mpm::gpu

@@ -5,7 +5,7 @@
 #include "snowshed/methods/mpm/contact_rule.hpp"
 #include "snowshed/methods/mpm/gpu/sums.cuh"
 
-namespace snowshed::methods::mpm::on_device {
+namespace snowshed::methods::mpm::gpu {
 
 struct NodeMemory {
   float velocity[3][nodes_of_block], mass[nodes_of_block];
@@ -94,16 +94,16 @@ __device__ inline void record_range(const GridArrays& grid, int block, bool has_
   if (m.high[t] > control->high[t]) atomicMax(&control->high[t], m.high[t]);
 }
 
-}  // namespace snowshed::methods::mpm::on_device
+}  // namespace snowshed::methods::mpm::gpu
 
 /// Finds the new velocities of the listed blocks of nodes.
 extern "C" __global__ void __launch_bounds__(64)
-    node_step(snowshed::methods::mpm::on_device::GridArrays grid, const std::int32_t* list,
-              snowshed::methods::mpm::on_device::ContactArrays contacts,
-              snowshed::methods::mpm::on_device::Control* control,
-              snowshed::methods::mpm::on_device::Constants k) {
+    node_step(snowshed::methods::mpm::gpu::GridArrays grid, const std::int32_t* list,
+              snowshed::methods::mpm::gpu::ContactArrays contacts,
+              snowshed::methods::mpm::gpu::Control* control,
+              snowshed::methods::mpm::gpu::Constants k) {
   using namespace snowshed::methods::mpm;
-  using namespace snowshed::methods::mpm::on_device;
+  using namespace snowshed::methods::mpm::gpu;
   __shared__ NodeMemory m;
   if (control->phase != Phase::trying) return;
   const int t = int(threadIdx.x), block = list[blockIdx.x], n = block * nodes_of_block + t;
@@ -142,11 +142,11 @@ extern "C" __global__ void __launch_bounds__(64)
 /// Finds the share of friction that remains for each obstacle with slip, a thread block to an
 /// obstacle; see Contacts::find_friction_shares.
 extern "C" __global__ void __launch_bounds__(128)
-    find_friction_shares(snowshed::methods::mpm::on_device::ContactArrays contacts,
+    find_friction_shares(snowshed::methods::mpm::gpu::ContactArrays contacts,
                          std::int32_t count, float* shares,
-                         const snowshed::methods::mpm::on_device::Control* control) {
+                         const snowshed::methods::mpm::gpu::Control* control) {
   using namespace snowshed::methods::mpm;
-  using namespace snowshed::methods::mpm::on_device;
+  using namespace snowshed::methods::mpm::gpu;
   constexpr int threads = 128;
   __shared__ float net[threads], pushes[threads];
   if (control->phase != Phase::trying || control->repeated) return;

@@ -4,7 +4,7 @@
 #include "snowshed/methods/mpm/gpu/sums.cuh"
 #include "snowshed/methods/mpm/kernels/stress.hpp"
 
-namespace snowshed::methods::mpm::on_device {
+namespace snowshed::methods::mpm::gpu {
 
 using Strain = material::Sym<float, 3>;
 
@@ -125,4 +125,4 @@ __device__ inline Moved finish_particle(ParticleState& s, const NodeMeans& m,
   return moved;
 }
 
-}  // namespace snowshed::methods::mpm::on_device
+}  // namespace snowshed::methods::mpm::gpu

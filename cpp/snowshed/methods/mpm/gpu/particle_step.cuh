@@ -5,7 +5,7 @@
 
 #include "snowshed/methods/mpm/gpu/particle.cuh"
 
-namespace snowshed::methods::mpm::on_device {
+namespace snowshed::methods::mpm::gpu {
 
 /// Particles that a thread block treats at a time.
 inline constexpr int chunk = 256;
@@ -210,37 +210,37 @@ __device__ inline void step_strays(const ParticleLaunch& l, std::int32_t block_c
   if (moves && fastest > 0) raise(&control->speed_squared, fastest);
 }
 
-}  // namespace snowshed::methods::mpm::on_device
+}  // namespace snowshed::methods::mpm::gpu
 
 // Kernels, each for one snow and for several.
 #define SNOWSHED_PARTICLE_KERNELS(suffix, several)                                               \
   extern "C" __global__ void __launch_bounds__(128)                                              \
-      particle_step##suffix(snowshed::methods::mpm::on_device::ParticleLaunch l,                 \
-                            snowshed::methods::mpm::on_device::Control* control,                 \
-                            snowshed::methods::mpm::on_device::Constants k) {                    \
-    __shared__ snowshed::methods::mpm::on_device::StepMemory memory;                             \
-    snowshed::methods::mpm::on_device::step_block<several, true>(l, control, k, memory);         \
+      particle_step##suffix(snowshed::methods::mpm::gpu::ParticleLaunch l,                 \
+                            snowshed::methods::mpm::gpu::Control* control,                 \
+                            snowshed::methods::mpm::gpu::Constants k) {                    \
+    __shared__ snowshed::methods::mpm::gpu::StepMemory memory;                             \
+    snowshed::methods::mpm::gpu::step_block<several, true>(l, control, k, memory);         \
   }                                                                                              \
   extern "C" __global__ void __launch_bounds__(128)                                              \
-      scatter##suffix(snowshed::methods::mpm::on_device::ParticleLaunch l,                       \
-                      snowshed::methods::mpm::on_device::Control* control,                       \
-                      snowshed::methods::mpm::on_device::Constants k) {                          \
-    __shared__ snowshed::methods::mpm::on_device::StepMemory memory;                             \
-    snowshed::methods::mpm::on_device::step_block<several, false>(l, control, k, memory);        \
+      scatter##suffix(snowshed::methods::mpm::gpu::ParticleLaunch l,                       \
+                      snowshed::methods::mpm::gpu::Control* control,                       \
+                      snowshed::methods::mpm::gpu::Constants k) {                          \
+    __shared__ snowshed::methods::mpm::gpu::StepMemory memory;                             \
+    snowshed::methods::mpm::gpu::step_block<several, false>(l, control, k, memory);        \
   }                                                                                              \
   extern "C" __global__ void __launch_bounds__(64)                                               \
-      stray_step##suffix(snowshed::methods::mpm::on_device::ParticleLaunch l,                    \
+      stray_step##suffix(snowshed::methods::mpm::gpu::ParticleLaunch l,                    \
                          std::int32_t block_count,                                               \
-                         snowshed::methods::mpm::on_device::Control* control,                    \
-                         snowshed::methods::mpm::on_device::Constants k) {                       \
-    snowshed::methods::mpm::on_device::step_strays<several, true>(l, block_count, control, k);   \
+                         snowshed::methods::mpm::gpu::Control* control,                    \
+                         snowshed::methods::mpm::gpu::Constants k) {                       \
+    snowshed::methods::mpm::gpu::step_strays<several, true>(l, block_count, control, k);   \
   }                                                                                              \
   extern "C" __global__ void __launch_bounds__(64)                                               \
-      scatter_strays##suffix(snowshed::methods::mpm::on_device::ParticleLaunch l,                \
+      scatter_strays##suffix(snowshed::methods::mpm::gpu::ParticleLaunch l,                \
                              std::int32_t block_count,                                           \
-                             snowshed::methods::mpm::on_device::Control* control,                \
-                             snowshed::methods::mpm::on_device::Constants k) {                   \
-    snowshed::methods::mpm::on_device::step_strays<several, false>(l, block_count, control, k);  \
+                             snowshed::methods::mpm::gpu::Control* control,                \
+                             snowshed::methods::mpm::gpu::Constants k) {                   \
+    snowshed::methods::mpm::gpu::step_strays<several, false>(l, block_count, control, k);  \
   }
 
 SNOWSHED_PARTICLE_KERNELS(, false)

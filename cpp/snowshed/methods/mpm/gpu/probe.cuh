@@ -5,7 +5,7 @@
 
 #include "snowshed/methods/mpm/gpu/particle_step.cuh"
 
-namespace snowshed::methods::mpm::on_device {
+namespace snowshed::methods::mpm::gpu {
 
 struct ProbeMemory {
   Quad velocity[tile_nodes];
@@ -47,13 +47,13 @@ __device__ inline bool is_harmless(const GridArrays& grid, ProbeMemory& m, const
   return bound_from_range(low, high, k.dx) <= harmless_gradient(k);
 }
 
-}  // namespace snowshed::methods::mpm::on_device
+}  // namespace snowshed::methods::mpm::gpu
 
 extern "C" __global__ void __launch_bounds__(128)
-    probe(snowshed::methods::mpm::on_device::ParticleLaunch l,
-          snowshed::methods::mpm::on_device::Control* control,
-          snowshed::methods::mpm::on_device::Constants k) {
-  using namespace snowshed::methods::mpm::on_device;
+    probe(snowshed::methods::mpm::gpu::ParticleLaunch l,
+          snowshed::methods::mpm::gpu::Control* control,
+          snowshed::methods::mpm::gpu::Constants k) {
+  using namespace snowshed::methods::mpm::gpu;
   __shared__ ProbeMemory m;
   if (control->phase != Phase::trying) return;
   if (bound_of_all(*control, k.dx) <= harmless_gradient(k)) return;

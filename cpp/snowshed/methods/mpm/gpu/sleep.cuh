@@ -3,7 +3,7 @@
 
 #include "snowshed/methods/mpm/gpu/tile.cuh"
 
-namespace snowshed::methods::mpm::on_device {
+namespace snowshed::methods::mpm::gpu {
 
 inline constexpr int motion_threads = 64;
 
@@ -40,12 +40,12 @@ __device__ inline void join(BlockMotion& a, const BlockMotion& b) {
   a.holds_its_snow = a.holds_its_snow && b.holds_its_snow;
 }
 
-}  // namespace snowshed::methods::mpm::on_device
+}  // namespace snowshed::methods::mpm::gpu
 
 extern "C" __global__ void __launch_bounds__(64)
-    measure_motion(snowshed::methods::mpm::on_device::ParticleLaunch l,
-                   snowshed::methods::mpm::on_device::BlockMotion* motions) {
-  using namespace snowshed::methods::mpm::on_device;
+    measure_motion(snowshed::methods::mpm::gpu::ParticleLaunch l,
+                   snowshed::methods::mpm::gpu::BlockMotion* motions) {
+  using namespace snowshed::methods::mpm::gpu;
   __shared__ BlockMotion shared[motion_threads];
   const int t = int(threadIdx.x), b = l.list[blockIdx.x];
   BlockMotion m{};
@@ -75,8 +75,8 @@ extern "C" __global__ void __launch_bounds__(64)
 
 /// Stops the particles of the listed blocks.
 extern "C" __global__ void __launch_bounds__(64)
-    stop_blocks(snowshed::methods::mpm::on_device::ParticleLaunch l) {
-  using namespace snowshed::methods::mpm::on_device;
+    stop_blocks(snowshed::methods::mpm::gpu::ParticleLaunch l) {
+  using namespace snowshed::methods::mpm::gpu;
   const int b = l.list[blockIdx.x];
   for (int i = l.blocks.first[b] + int(threadIdx.x); i < l.blocks.first[b + 1]; i += motion_threads)
     for (int d = 0; d < 3; ++d) l.particles.velocity[d][i] = 0;
@@ -84,8 +84,8 @@ extern "C" __global__ void __launch_bounds__(64)
 
 /// Nodes that only sleeping snow touches are at rest.
 extern "C" __global__ void __launch_bounds__(64)
-    clear_nodes(snowshed::methods::mpm::on_device::GridArrays grid, const std::int32_t* list) {
-  using namespace snowshed::methods::mpm::on_device;
+    clear_nodes(snowshed::methods::mpm::gpu::GridArrays grid, const std::int32_t* list) {
+  using namespace snowshed::methods::mpm::gpu;
   const int block = list[blockIdx.x], t = int(threadIdx.x), n = block * nodes_of_block + t;
   grid.velocity[n] = {0, 0, 0, 0};
   grid.change[n] = {0, 0};

@@ -4,7 +4,7 @@
 
 #include "snowshed/methods/mpm/gpu/tile.cuh"
 
-namespace snowshed::methods::mpm::on_device {
+namespace snowshed::methods::mpm::gpu {
 
 /// Returns the block around its own in which a particle lies.
 __device__ inline int block_of(const ParticleArrays& p, int i) {
@@ -34,13 +34,13 @@ __device__ inline void permute_values(const Value* from, Value* to, const std::i
   if (i < count) to[i] = from[order[i]];
 }
 
-}  // namespace snowshed::methods::mpm::on_device
+}  // namespace snowshed::methods::mpm::gpu
 
 /// Counts the particles of each block by the block around it in which they lie now.
 extern "C" __global__ void __launch_bounds__(128)
-    count_moves(snowshed::methods::mpm::on_device::ParticleArrays particles,
-                snowshed::methods::mpm::on_device::BlockTable blocks, std::int32_t* counts) {
-  using namespace snowshed::methods::mpm::on_device;
+    count_moves(snowshed::methods::mpm::gpu::ParticleArrays particles,
+                snowshed::methods::mpm::gpu::BlockTable blocks, std::int32_t* counts) {
+  using namespace snowshed::methods::mpm::gpu;
   __shared__ std::int32_t count[neighbours];
   const int t = int(threadIdx.x), b = int(blockIdx.x);
   if (t < neighbours) count[t] = 0;
@@ -54,10 +54,10 @@ extern "C" __global__ void __launch_bounds__(128)
 /// Finds the order of the particles after the sort, and refers them to their new blocks. Those of
 /// block b that lie in its neighbour k begin at starts[27 b + k].
 extern "C" __global__ void __launch_bounds__(128)
-    find_order(snowshed::methods::mpm::on_device::ParticleArrays particles,
-               snowshed::methods::mpm::on_device::BlockTable blocks, const std::int32_t* starts,
+    find_order(snowshed::methods::mpm::gpu::ParticleArrays particles,
+               snowshed::methods::mpm::gpu::BlockTable blocks, const std::int32_t* starts,
                std::int32_t* order) {
-  using namespace snowshed::methods::mpm::on_device;
+  using namespace snowshed::methods::mpm::gpu;
   constexpr int threads = 128;
   __shared__ std::int32_t start[neighbours];
   __shared__ std::int8_t neighbour[threads];
@@ -83,13 +83,13 @@ extern "C" __global__ void __launch_bounds__(128)
 
 extern "C" __global__ void permute4(const std::uint32_t* from, std::uint32_t* to,
                                     const std::int32_t* order, std::int32_t count) {
-  snowshed::methods::mpm::on_device::permute_values(from, to, order, count);
+  snowshed::methods::mpm::gpu::permute_values(from, to, order, count);
 }
 extern "C" __global__ void permute2(const std::uint16_t* from, std::uint16_t* to,
                                     const std::int32_t* order, std::int32_t count) {
-  snowshed::methods::mpm::on_device::permute_values(from, to, order, count);
+  snowshed::methods::mpm::gpu::permute_values(from, to, order, count);
 }
 extern "C" __global__ void permute1(const std::uint8_t* from, std::uint8_t* to,
                                     const std::int32_t* order, std::int32_t count) {
-  snowshed::methods::mpm::on_device::permute_values(from, to, order, count);
+  snowshed::methods::mpm::gpu::permute_values(from, to, order, count);
 }

@@ -4,7 +4,7 @@
 
 #include "snowshed/methods/mpm/gpu/tile.cuh"
 
-namespace snowshed::methods::mpm::on_device {
+namespace snowshed::methods::mpm::gpu {
 
 /// Units of mass, momentum and force, and their inverses.
 struct Units {
@@ -115,4 +115,4 @@ __device__ inline void scatter_stray(const Place& place, const Given& given, uns
     }
 }
 
-}  // namespace snowshed::methods::mpm::on_device
+}  // namespace snowshed::methods::mpm::gpu

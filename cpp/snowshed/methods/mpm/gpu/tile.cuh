@@ -5,7 +5,7 @@
 #include "snowshed/methods/mpm/gpu/control.cuh"
 #include "snowshed/methods/mpm/kernels/bspline.hpp"
 
-namespace snowshed::methods::mpm::on_device {
+namespace snowshed::methods::mpm::gpu {
 
 inline constexpr int tile_edge = 8, tile_nodes = tile_edge * tile_edge * tile_edge;
 
@@ -175,4 +175,4 @@ __device__ inline void load_tile(const GridArrays& grid, const std::int32_t* aro
   }
 }
 
-}  // namespace snowshed::methods::mpm::on_device
+}  // namespace snowshed::methods::mpm::gpu

@@ -7,7 +7,7 @@
 #include "snowshed/methods/mpm/contact.hpp"
 #include "snowshed/methods/mpm/snow_constants.hpp"
 
-namespace snowshed::methods::mpm::on_device {
+namespace snowshed::methods::mpm::gpu {
 
 inline constexpr int edge = 4, nodes_of_block = 64, neighbours = 27;
 
@@ -115,4 +115,4 @@ struct Constants {
   const MaterialConstants<float>* snows;    // if there are several
 };
 
-}  // namespace snowshed::methods::mpm::on_device
+}  // namespace snowshed::methods::mpm::gpu

@@ -6,9 +6,9 @@
 
 namespace snowshed::methods::mpm {
 
-const gpu::EmulatedDevice::Kernels& emulated_kernels() {
-  using gpu::unpacked;
-  static const gpu::EmulatedDevice::Kernels kernels{
+const snowshed::gpu::EmulatedDevice::Kernels& emulated_kernels() {
+  using snowshed::gpu::unpacked;
+  static const snowshed::gpu::EmulatedDevice::Kernels kernels{
       {"next_step", unpacked(next_step)},
       {"judge_step", unpacked(judge_step)},
       {"node_step", unpacked(node_step)},

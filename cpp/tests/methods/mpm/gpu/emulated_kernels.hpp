@@ -5,6 +5,6 @@
 
 namespace snowshed::methods::mpm {
 
-const gpu::EmulatedDevice::Kernels& emulated_kernels();
+const snowshed::gpu::EmulatedDevice::Kernels& emulated_kernels();
 
 }  // namespace snowshed::methods::mpm

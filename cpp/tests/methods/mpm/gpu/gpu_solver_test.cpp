@@ -1,4 +1,4 @@
-#include "snowshed/methods/mpm/gpu/gpu_solver.hpp"
+#include "snowshed/methods/mpm/gpu_solver.hpp"
 
 #include <gtest/gtest.h>
 
@@ -59,7 +59,7 @@ TEST(GpuSolver, FallsFreelyAsTheFormulaSays) {
     const double fall = 0.5 * 9.81 * t * t;
     EXPECT_NEAR(moved[0], 3 * t, 2e-6);
     EXPECT_NEAR(moved[1], -t, 2e-6);
-    EXPECT_NEAR(moved[2], 2 * t - fall, 0.5 * 9.81 * t * solver->time_step() * 1.1 + 2e-6);
+    EXPECT_NEAR(moved[2], 2 * t - fall - 0.5 * 9.81 * t * solver->time_step(), 4e-6);
     EXPECT_NEAR(after.velocities[i][2], 2 - 9.81 * t, 2e-5);
     EXPECT_NEAR(after.volume_ratios[i], 1.0, 2e-6);
   }
@@ -120,17 +120,26 @@ TEST(GpuSolver, AgreesWithTheProcessorWithSeveralSnows) {
 TEST(GpuSolver, ShortensStepsAsTheProcessorDoes) {
   Options o = options_on_gpu(dx);
   o.settings.strain_limit = 0.01;
-  Pair pair = make_pair(o, {fixed(ground(), Condition::sticky)});
-  pair.add(block_of_snow(0.005, Vec3(0, 0, -8)));
-  pair.run(30);
+  Pair pair = make_pair(o, {fixed(ground(), Condition::slip, 0.4)});
+  pair.add(block_of_snow(0.005, Vec3(5, 0, -8)));
+  pair.run(40);
   EXPECT_GT(pair.cpu->counters().rejected, 0);
   EXPECT_EQ(pair.cpu->counters().rejected, pair.gpu->counters().rejected);
   expect_close(*pair.cpu, *pair.gpu, 1e-5, 1e-3);
 }
 
+TEST(GpuSolver, DampsByARateAsTheProcessorDoes) {
+  Options o = options_on_gpu(dx);
+  o.settings.damping_rate = 200;
+  Pair pair = make_pair(o, {fixed(ground(), Condition::sticky)});
+  pair.add(block_of_snow(0.01, Vec3(0, 0, -1)));
+  pair.run(60);
+  expect_close(*pair.cpu, *pair.gpu, 1e-6, 1e-4);
+}
+
 TEST(GpuSolver, HasTheSameBitsInWhateverOrderTheThreadsRun) {
   SnowState states[2];
-  for (const gpu::Turns turns : {gpu::Turns::forwards, gpu::Turns::backwards}) {
+  for (const snowshed::gpu::Turns turns : {snowshed::gpu::Turns::forwards, snowshed::gpu::Turns::backwards}) {
     const auto solver = make_emulated(
         options_on_gpu(dx),
         {fixed(ground(), Condition::slip, 0.4),
@@ -138,7 +147,7 @@ TEST(GpuSolver, HasTheSameBitsInWhateverOrderTheThreadsRun) {
         turns);
     solver->add(block_of_snow(0.1, Vec3(4, 1, -6)));
     run_steps(*solver, 70);  // with a sort
-    states[turns == gpu::Turns::backwards] = snow_state(*solver);
+    states[turns == snowshed::gpu::Turns::backwards] = snow_state(*solver);
   }
   expect_same_bits(states[0], states[1]);
 }
@@ -203,10 +212,11 @@ TEST(GpuSolver, ConservesMomentumWithoutForces) {
   for (Vec3& x : right.positions) x[0] += 2.2 * dx;
   solver->add(left);
   solver->add(right);
-  const Vec3 before = momentum(solver->state());
+  const SnowState start = snow_state(*solver);
+  const Vec3 before = momentum(start);
   run_steps(*solver, 80);
   const SnowState after = snow_state(*solver);
-  EXPECT_LT(mean(after.plastic_strains), -1e-4);  // they have collided
+  EXPECT_GT(std::abs(mean(after.plastic_strains) - mean(start.plastic_strains)), 1e-3);  // collided
   EXPECT_NEAR((momentum(after) - before).norm() / total_mass(after), 0, 3e-6);
 }
 
@@ -265,7 +275,7 @@ TEST(GpuSolver, FailsForSnowThatIsTooSoft) {
     solver->step();
     FAIL();
   } catch (const SimulationError& error) {
-    EXPECT_NE(std::string(error.what()).find("elastic strain"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("elastic strain"), std::string::npos) << error.what();
   }
 }
 

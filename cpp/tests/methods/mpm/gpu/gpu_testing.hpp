@@ -6,7 +6,7 @@
 
 #include "methods/mpm/gpu/emulated_kernels.hpp"
 #include "methods/mpm/solver_testing.hpp"
-#include "snowshed/methods/mpm/gpu/gpu_solver.hpp"
+#include "snowshed/methods/mpm/gpu_solver.hpp"
 
 namespace snowshed::methods::mpm {
 
@@ -14,14 +14,14 @@ inline Options options_on_gpu(double dx = 0.05) {
   return options_for({3, Precision::float32}, dx);
 }
 
-inline std::shared_ptr<gpu::EmulatedDevice> emulated_card(
-    gpu::Turns turns = gpu::Turns::forwards) {
-  return std::make_shared<gpu::EmulatedDevice>(emulated_kernels(), turns);
+inline std::shared_ptr<snowshed::gpu::EmulatedDevice> emulated_card(
+    snowshed::gpu::Turns turns = snowshed::gpu::Turns::forwards) {
+  return std::make_shared<snowshed::gpu::EmulatedDevice>(emulated_kernels(), turns);
 }
 
 inline std::unique_ptr<Solver> make_emulated(const Options& options,
                                                std::vector<Obstacle> obstacles,
-                                               gpu::Turns turns = gpu::Turns::forwards) {
+                                               snowshed::gpu::Turns turns = snowshed::gpu::Turns::forwards) {
   Options o = options;
   o.obstacles = std::move(obstacles);
   return make_gpu_solver(std::move(o), emulated_card(turns));

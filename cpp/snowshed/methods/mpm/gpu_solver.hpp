@@ -11,6 +11,6 @@ namespace snowshed::methods::mpm {
 /// Returns a solver that takes its steps on a device. Everything else, such as edits, fields and
 /// checkpoints, is the processor's, which fetches the particles when it needs them. Throws
 /// InputError for what devices do not support (see `unsupported_on_gpu`).
-std::unique_ptr<Solver> make_gpu_solver(Options, std::shared_ptr<gpu::Device>);
+std::unique_ptr<Solver> make_gpu_solver(Options, std::shared_ptr<snowshed::gpu::Device>);
 
 }  // namespace snowshed::methods::mpm

@@ -1,4 +1,4 @@
-#include "snowshed/methods/mpm/gpu/gpu_solver.hpp"
+#include "snowshed/methods/mpm/gpu_solver.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,21 +7,21 @@
 
 #include "snowshed/core/errors.hpp"
 #include "snowshed/methods/mpm/gpu/device_snow.hpp"
-#include "snowshed/methods/mpm/gpu/unsupported.hpp"
+#include "snowshed/methods/mpm/gpu_support.hpp"
 #include "snowshed/methods/mpm/solver_impl.hpp"
 #include "snowshed/methods/mpm/time_step.hpp"
 
 namespace snowshed::methods::mpm {
 namespace {
 
-using on_device::Control;
-using on_device::Phase;
+using gpu::Control;
+using gpu::Phase;
 
 /// `host_` has the state in the form of all other calls; between them and the steps, the particles
 /// go to the device and back.
 class GpuSolver final : public Solver {
  public:
-  GpuSolver(Options options, std::shared_ptr<gpu::Device> device)
+  GpuSolver(Options options, std::shared_ptr<snowshed::gpu::Device> device)
       : device_(std::move(device)),
         host_(std::make_unique<SolverImpl<float, 3>>(std::move(options))),
         snow_(*device_, host_->model()) {}
@@ -91,13 +91,13 @@ class GpuSolver final : public Solver {
   void prepare();
   Control begin_batch(double until, std::int32_t steps);
   void end_batch(const Control& control);
-  [[noreturn]] void fail(const Control& control);
+  [[noreturn]] void fail(Control control);
   void update_sleep();
   std::int32_t steps_to_the_next_check() const;
 
-  std::shared_ptr<gpu::Device> device_;
+  std::shared_ptr<snowshed::gpu::Device> device_;
   std::unique_ptr<SolverImpl<float, 3>> host_;
-  on_device::DeviceSnow snow_;
+  gpu::DeviceSnow snow_;
   Control control_{};
   mutable bool device_is_ahead_ = false;  // whether its particles are newer than the host's
   bool device_has_snow_ = false;          // whether it has the snow of the host's state
@@ -146,7 +146,7 @@ Control GpuSolver::begin_batch(double until, std::int32_t steps) {
   c.rejected = counters().rejected;
   c.steps_left = steps;
   c.must_sort = 0;
-  c.unsound = on_device::no_particle;
+  c.unsound = gpu::no_particle;
   return c;
 }
 
@@ -188,7 +188,7 @@ void GpuSolver::end_batch(const Control& c) {
   update_sleep();
 }
 
-void GpuSolver::fail(const Control& c) {
+void GpuSolver::fail(Control c) {
   SolverImpl<float, 3>& solver = edited();
   control_ = {};
   if (c.phase == Phase::unsound) solver.fail_at(c.unsound);
@@ -201,7 +201,7 @@ void GpuSolver::fail(const Control& c) {
 void GpuSolver::update_sleep() {
   State<float, 3>& state = host_->state_for_device();
   if (!state.sleep.allowed() || counters().steps % steps_between_checks != 0) return;
-  const std::vector<on_device::BlockMotion> motions = snow_.motions(state.sleep);
+  const std::vector<gpu::BlockMotion> motions = snow_.motions(state.sleep);
   const auto count = [&](std::int32_t b) {
     return double(state.layout.first[b + 1] - state.layout.first[b]);
   };
@@ -233,7 +233,7 @@ void GpuSolver::update_sleep() {
 
 }  // namespace
 
-std::unique_ptr<Solver> make_gpu_solver(Options options, std::shared_ptr<gpu::Device> device) {
+std::unique_ptr<Solver> make_gpu_solver(Options options, std::shared_ptr<snowshed::gpu::Device> device) {
   require_supported_on_gpu(options);
   return std::make_unique<GpuSolver>(std::move(options), std::move(device));
 }

@@ -1,6 +1,7 @@
-// What steps on a graphics card do not support yet.
+// Everything that the choice of a device must know about the solver for graphics cards.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,5 +19,8 @@ std::vector<Unsupported> unsupported_on_gpu(const Options&);
 
 /// Throws InputError, at the first of them with a text on all, if there are any.
 void require_supported_on_gpu(const Options&);
+
+/// Memory of a card that this many particles need with their grid, bytes.
+double bytes_on_gpu(double particles);
 
 }  // namespace snowshed::methods::mpm

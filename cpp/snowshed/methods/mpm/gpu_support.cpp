@@ -1,4 +1,4 @@
-#include "snowshed/methods/mpm/gpu/unsupported.hpp"
+#include "snowshed/methods/mpm/gpu_support.hpp"
 
 #include <algorithm>
 
@@ -57,6 +57,14 @@ void require_supported_on_gpu(const Options& options) {
   for (std::size_t i = 1; i < all.size(); ++i)
     reason += ". Also " + all[i].path + " " + all[i].reason;
   throw InputError(all.front().path, reason);
+}
+
+/// The state, the indices of strays and of the order, and a spare array; and the nodes, for blocks
+/// that are not quite full, of a slab that is five cells thick.
+double bytes_on_gpu(double particles) {
+  constexpr double state = 15 * 4 + 4 + 2 + 1, indices = 8, spare = 4;
+  constexpr double node = 2 * 64 + 3 * 16 + 8 + 0.4, nodes_per_particle = 0.8;
+  return particles * (state + indices + spare + node * nodes_per_particle);
 }
 
 }  // namespace snowshed::methods::mpm

@@ -1,4 +1,4 @@
-#include "snowshed/methods/mpm/gpu/unsupported.hpp"
+#include "snowshed/methods/mpm/gpu_support.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,12 +13,12 @@ std::vector<std::string> paths(const Options& options) {
   return all;
 }
 
-TEST(UnsupportedOnGpu, IsNothingByDefault) {
+TEST(GpuSupport, IsNothingByDefault) {
   EXPECT_TRUE(unsupported_on_gpu(Options()).empty());
   EXPECT_NO_THROW(require_supported_on_gpu(Options()));
 }
 
-TEST(UnsupportedOnGpu, NamesEachSetting) {
+TEST(GpuSupport, NamesEachSetting) {
   using Change = void (*)(Options&);
   const std::vector<std::pair<Change, std::string>> changes{
       {[](Options& o) { o.dimension = 2; }, "/dimension"},
@@ -43,7 +43,7 @@ TEST(UnsupportedOnGpu, NamesEachSetting) {
   }
 }
 
-TEST(UnsupportedOnGpu, IsRefusedWithAllReasons) {
+TEST(GpuSupport, IsRefusedWithAllReasons) {
   Options o;
   o.settings.adopt(Scheme::objective);
   try {
