@@ -68,16 +68,14 @@ SNOWSHED_INLINE T sliding_speed(const Contact<T>& c, T normal_speed, const Veloc
 /// `friction_share` is that of the obstacle (Contacts::find_friction_shares), and
 /// coefficient(speed, impulse) Coulomb's coefficient at a sliding speed and a normal impulse.
 template <int D, class T, class Velocity, class Coefficient>
-SNOWSHED_INLINE ContactOutcome<T> push_and_rub(const FrictionRates<T>& rates, Contact<T>& c,
-                                                  T mass, T friction_share,
-                                                  const Coefficient& coefficient,
-                                                  Velocity& node) {
+SNOWSHED_INLINE ContactOutcome<T> push_and_rub(const FrictionRates<T>& rates, Contact<T>& c, T mass,
+                                               T friction_share, const Coefficient& coefficient,
+                                               Velocity& node) {
   ContactOutcome<T> outcome;
   T normal_speed = 0;
   for (int d = 0; d < D; ++d) normal_speed += (node[d] - c.velocity[d]) * c.normal[d];
-  const T decayed =
-      c.normal_impulse *
-      (c.acts ? rates.decay_share(sliding_speed<D>(c, normal_speed, node)) : T(1));
+  const T decayed = c.normal_impulse *
+                    (c.acts ? rates.decay_share(sliding_speed<D>(c, normal_speed, node)) : T(1));
   const T remaining_impulse = c.normal_impulse - decayed;
   const T min_impulse = c.acts ? min_push(c, remaining_impulse) : T(0);
   T push = c.acts ? -mass * normal_speed : T(0);

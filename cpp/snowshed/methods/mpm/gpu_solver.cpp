@@ -10,6 +10,7 @@
 #include "snowshed/methods/mpm/gpu_support.hpp"
 #include "snowshed/methods/mpm/solver_impl.hpp"
 #include "snowshed/methods/mpm/time_step.hpp"
+#include "snowshed/methods/unwatched.hpp"
 
 namespace snowshed::methods::mpm {
 namespace {
@@ -19,7 +20,7 @@ using gpu::Phase;
 
 /// `host_` has the state in the form of all other calls; between them and the steps, the particles
 /// go to the device and back.
-class GpuSolver final : public Solver {
+class GpuSolver final : public Solver, public AdvancesUnwatched {
  public:
   GpuSolver(Options options, std::shared_ptr<snowshed::gpu::Device> device)
       : device_(std::move(device)),
@@ -53,9 +54,7 @@ class GpuSolver final : public Solver {
   particles::FieldView field(const std::string& name) const override {
     return current().field(name);
   }
-  const std::vector<std::uint32_t>& order_by_id() const override {
-    return current().order_by_id();
-  }
+  const std::vector<std::uint32_t>& order_by_id() const override { return current().order_by_id(); }
   MotionSummary motion(double speed) const override { return current().motion(speed); }
   NamedEnergies energies() const override { return current().energies(); }
   const ObstacleForces* forces() const override { return host_->forces(); }
@@ -208,7 +207,9 @@ void GpuSolver::update_sleep() {
   Sleep<3>::BlockProbe probe;
   probe.fastest = [&](std::int32_t b) { return std::sqrt(double(motions[b].fastest)); };
   probe.speed = [&](std::int32_t b) { return std::sqrt(motions[b].speed_squared / count(b)); };
-  probe.velocity = [&](std::int32_t b) { return VecD<3>(VecD<3>::Map(motions[b].velocity) / count(b)); };
+  probe.velocity = [&](std::int32_t b) {
+    return VecD<3>(VecD<3>::Map(motions[b].velocity) / count(b));
+  };
   probe.carried = [&](std::int32_t b) {
     SleepingBlockMotion motion;
     motion.speed_squared = motions[b].carried / motions[b].mass;
@@ -233,7 +234,8 @@ void GpuSolver::update_sleep() {
 
 }  // namespace
 
-std::unique_ptr<Solver> make_gpu_solver(Options options, std::shared_ptr<snowshed::gpu::Device> device) {
+std::unique_ptr<Solver> make_gpu_solver(Options options,
+                                        std::shared_ptr<snowshed::gpu::Device> device) {
   require_supported_on_gpu(options);
   return std::make_unique<GpuSolver>(std::move(options), std::move(device));
 }

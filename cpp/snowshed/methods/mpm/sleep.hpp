@@ -101,7 +101,7 @@ class Sleep {
   std::vector<State> states_;
   // The lists have capacity for all blocks, so that no step needs memory for them.
   std::vector<std::int32_t> awake_, active_, idle_, newly_asleep_;
-  std::vector<bool> touched_;         // whether awake snow touches a grid block
+  std::vector<bool> touched_;  // whether awake snow touches a grid block
   std::vector<std::int32_t> border_;
   std::int64_t awake_particles_ = 0;
 };

@@ -391,9 +391,8 @@ std::string SolverImpl<T, D>::describe_unsound(std::int32_t b, std::size_t i, do
   for (int d = 1; d < D; ++d) message << ", " << x[d];
   message << ") m, t = " << time() << " s: ";
   if (std::isfinite(strain))
-    message << "its elastic strain has reached " << strain
-            << ", more than can be resolved (" << elastic_strain_limit
-            << "); snow.youngs_modulus is too small for such speeds";
+    message << "its elastic strain has reached " << strain << ", more than can be resolved ("
+            << elastic_strain_limit << "); snow.youngs_modulus is too small for such speeds";
   else
     message << "its state is no longer finite; try a smaller numerics.courant_factor or double "
                "precision";

@@ -51,8 +51,7 @@ inline constexpr double contacts_per_particle = 100;
 
 /// Steps between two sorts.
 inline int steps_until_sort(std::size_t particles, std::size_t contacts) {
-  const double share =
-      contacts_per_particle * double(particles) / std::max(double(contacts), 1.0);
+  const double share = contacts_per_particle * double(particles) / std::max(double(contacts), 1.0);
   return int(steps_between_sorts * std::clamp(share, 1.0 / steps_between_sorts, 1.0));
 }
 

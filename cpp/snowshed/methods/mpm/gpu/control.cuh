@@ -27,7 +27,7 @@ __device__ inline float power_of_two_above(float x) {
 inline constexpr int unit_bits = 38;
 
 /// Returns the unit of the momentum of particles that a step moves. A particle's velocity becomes a
-/// mean of node velocities, and of its velocity before plus a mean of the changes of node velocities.
+/// mean of node velocities, and of its velocity before plus a mean of the nodes' changes.
 __device__ inline float momentum_unit(const Control& c, const Constants& k) {
   float fastest = 0;
   for (int d = 0; d < 3; ++d)
@@ -86,8 +86,8 @@ __device__ inline void begin_step(Control& c, const Constants& k) {
   } else {
     if (!(c.time < c.until) || c.steps_left <= 0 || c.must_sort) return;
     c.repeated = 0;
-    c.dt = next_time_step(k.elastic_limit, double(::sqrtf(c.speed_squared)), k.dx,
-                          k.courant_factor);
+    c.dt =
+        next_time_step(k.elastic_limit, double(::sqrtf(c.speed_squared)), k.dx, k.courant_factor);
   }
   clear_range(c);
   c.phase = Phase::trying;

@@ -89,8 +89,8 @@ void DeviceSnow::find_units(const HostState& state) {
   const double largest = double(*std::max_element(mass.begin(), mass.end()));
   double force = 0;
   for (const Material& snow : model_.materials)
-    force = std::max(force, largest / snow.density / model_.options.settings.dx *
-                                largest_stress(snow.elastic));
+    force = std::max(
+        force, largest / snow.density / model_.options.settings.dx * largest_stress(snow.elastic));
   constants_.mass_unit = float(power_of_two_above(largest));
   constants_.force_unit = float(power_of_two_above(force));
   constants_.elastic_limit = state.elastic_limit;
@@ -149,8 +149,8 @@ void DeviceSnow::sort(HostState& state) {
   download_contacts(state);
   launch_moves(device_, particles_.view(), {first_.data(), around_.data()}, blocks_, listed_);
   SortPlan plan = plan_sort(state.layout, listed_.download());
-  BlockLayout<3> next = state.layout.rearranged(std::move(plan.blocks), std::move(plan.first),
-                                                model_.max_threads);
+  BlockLayout<3> next =
+      state.layout.rearranged(std::move(plan.blocks), std::move(plan.first), model_.max_threads);
   state.adopt(model_, std::move(next), model_.max_threads, [&] {
     if (!plan.any_moves) return;
     listed_.upload(plan.starts);
@@ -190,8 +190,7 @@ void DeviceSnow::launch_round() {
            contacts(), std::int32_t(contacts_.size()), friction_shares_.data(),
            static_cast<const Control*>(control_.data()));
   launch(device_, "node_step", {unsigned(active_.size()), node_threads}, grid(),
-         static_cast<const std::int32_t*>(active_.data()), contacts(), control_.data(),
-         constants_);
+         static_cast<const std::int32_t*>(active_.data()), contacts(), control_.data(), constants_);
   launch(device_, "probe", {unsigned(awake_.size()), particle_threads},
          launch_of(awake_, whole_.data()), control_.data(), constants_);
   launch(device_, "judge_step", {1, 1}, control_.data(), constants_);
@@ -234,13 +233,14 @@ std::vector<BlockMotion> DeviceSnow::motions(const Sleep<3>& sleep) {
 
 ParticleLaunch DeviceSnow::launch_of(const DeviceArray<std::int32_t>& list,
                                      unsigned long long* whole) const {
-  return {particles_.view(), {first_.data(), around_.data()}, list.data(), grid(),
-          strays_.data(), whole};
+  return {particles_.view(), {first_.data(), around_.data()},
+          list.data(),       grid(),
+          strays_.data(),    whole};
 }
 
 GridArrays DeviceSnow::grid() const {
-  return {whole_.data(),   asleep_.size() > 0 ? asleep_.data() : nullptr,
-          carried_.data(), force_.data(),
+  return {whole_.data(),    asleep_.size() > 0 ? asleep_.data() : nullptr,
+          carried_.data(),  force_.data(),
           velocity_.data(), change_.data(),
           ranges_.data()};
 }

@@ -53,8 +53,8 @@ SortPlan plan_sort(const BlockLayout<3>& layout, const std::vector<std::int32_t>
   return plan;
 }
 
-void launch_moves(snowshed::gpu::Device& device, const ParticleArrays& particles, const BlockTable& blocks,
-                  std::int32_t count, DeviceArray<std::int32_t>& counts) {
+void launch_moves(snowshed::gpu::Device& device, const ParticleArrays& particles,
+                  const BlockTable& blocks, std::int32_t count, DeviceArray<std::int32_t>& counts) {
   counts.resize(std::size_t(count) * neighbours);
   launch(device, "count_moves", {unsigned(count), particle_threads}, particles, blocks,
          counts.data());

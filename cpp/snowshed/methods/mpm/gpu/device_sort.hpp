@@ -20,7 +20,7 @@ struct SortPlan {
 SortPlan plan_sort(const BlockLayout<3>&, const std::vector<std::int32_t>& counts);
 
 /// Counts these numbers.
-void launch_moves(snowshed::gpu::Device&, const ParticleArrays&, const BlockTable&, std::int32_t blocks,
-                  DeviceArray<std::int32_t>& counts);
+void launch_moves(snowshed::gpu::Device&, const ParticleArrays&, const BlockTable&,
+                  std::int32_t blocks, DeviceArray<std::int32_t>& counts);
 
 }  // namespace snowshed::methods::mpm::gpu

@@ -51,9 +51,8 @@ __device__ inline void hold(const ContactArrays& contacts, Contact<float>& c, fl
   }
   float node[3];
   for (int d = 0; d < 3; ++d) node[d] = m.velocity[d][c.node];
-  push_and_rub<3>(
-      rates, c, mass, contacts.friction_shares[o], [&](float, float) { return contacts.friction[o]; },
-      node);
+  const auto coefficient = [&](float, float) { return contacts.friction[o]; };
+  push_and_rub<3>(rates, c, mass, contacts.friction_shares[o], coefficient, node);
   for (int d = 0; d < 3; ++d) m.velocity[d][c.node] = node[d];
 }
 
@@ -142,9 +141,8 @@ extern "C" __global__ void __launch_bounds__(64)
 /// Finds the share of friction that remains for each obstacle with slip, a thread block to an
 /// obstacle; see Contacts::find_friction_shares.
 extern "C" __global__ void __launch_bounds__(128)
-    find_friction_shares(snowshed::methods::mpm::gpu::ContactArrays contacts,
-                         std::int32_t count, float* shares,
-                         const snowshed::methods::mpm::gpu::Control* control) {
+    find_friction_shares(snowshed::methods::mpm::gpu::ContactArrays contacts, std::int32_t count,
+                         float* shares, const snowshed::methods::mpm::gpu::Control* control) {
   using namespace snowshed::methods::mpm;
   using namespace snowshed::methods::mpm::gpu;
   constexpr int threads = 128;

@@ -49,8 +49,8 @@ __device__ inline void sort_cell(StepMemory& m, int cell) {
 
 __device__ inline void enter_cell(StepMemory& m, int q, const Place& place, const Given& given) {
   m.given.set(q, place.fraction, given);
-  const int cell = (place.lowest[0] * tile_cells_edge + place.lowest[1]) * tile_cells_edge +
-                   place.lowest[2];
+  const int cell =
+      (place.lowest[0] * tile_cells_edge + place.lowest[1]) * tile_cells_edge + place.lowest[2];
   m.next[q] = std::int16_t(atomicExch(&m.first[cell], q));
 }
 
@@ -138,10 +138,10 @@ __device__ inline void step_block(const ParticleLaunch& l, Control* control, con
       NodeMeans means;
       if (moves) {
         const Place from(s.cell);
-        const int lowest = (from.lowest[0] * tile_edge + from.lowest[1]) * tile_edge +
-                           from.lowest[2];
-        interpolate(from.fraction,
-                    TileNodes{m.nodes.velocity + lowest, m.nodes.change + lowest}, means);
+        const int lowest =
+            (from.lowest[0] * tile_edge + from.lowest[1]) * tile_edge + from.lowest[2];
+        interpolate(from.fraction, TileNodes{m.nodes.velocity + lowest, m.nodes.change + lowest},
+                    means);
       }
       s.read_rest(l.particles, i);
       if (moves) {
@@ -150,8 +150,7 @@ __device__ inline void step_block(const ParticleLaunch& l, Control* control, con
           add_stray(l.strays, control, i);
           continue;
         }
-        const Moved moved =
-            finish_particle<several>(s, means, l.particles, i, k, control, fastest);
+        const Moved moved = finish_particle<several>(s, means, l.particles, i, k, control, fastest);
         if (moved.sound) enter_cell(m, q, Place(s.cell), moved.given);
       } else {
         const MaterialConstants<float> snow = snow_of<several>(l.particles, i, k);
@@ -192,7 +191,9 @@ __device__ inline void step_strays(const ParticleLaunch& l, std::int32_t block_c
       const Place from(s.cell);
       NodeMeans means;
       interpolate(from.fraction,
-                  GridNodes{l.grid.velocity, l.grid.change, around,
+                  GridNodes{l.grid.velocity,
+                            l.grid.change,
+                            around,
                             {from.lowest[0], from.lowest[1], from.lowest[2]}},
                   means);
       s.move(means, step);
@@ -203,8 +204,8 @@ __device__ inline void step_strays(const ParticleLaunch& l, std::int32_t block_c
     } else {
       const MaterialConstants<float> snow = snow_of<several>(l.particles, i, k);
       const Strain tau = s.stress(snow, true).tau;
-      scatter_stray(Place(s.cell), s.given(tau, snow.specific_volume, float(k.dx)), l.whole,
-                    around, units);
+      scatter_stray(Place(s.cell), s.given(tau, snow.specific_volume, float(k.dx)), l.whole, around,
+                    units);
     }
   }
   if (moves && fastest > 0) raise(&control->speed_squared, fastest);
@@ -214,33 +215,27 @@ __device__ inline void step_strays(const ParticleLaunch& l, std::int32_t block_c
 
 // Kernels, each for one snow and for several.
 #define SNOWSHED_PARTICLE_KERNELS(suffix, several)                                               \
-  extern "C" __global__ void __launch_bounds__(128)                                              \
-      particle_step##suffix(snowshed::methods::mpm::gpu::ParticleLaunch l,                 \
-                            snowshed::methods::mpm::gpu::Control* control,                 \
-                            snowshed::methods::mpm::gpu::Constants k) {                    \
-    __shared__ snowshed::methods::mpm::gpu::StepMemory memory;                             \
-    snowshed::methods::mpm::gpu::step_block<several, true>(l, control, k, memory);         \
+  extern "C" __global__ void __launch_bounds__(128) particle_step##suffix(                       \
+      snowshed::methods::mpm::gpu::ParticleLaunch l,                                             \
+      snowshed::methods::mpm::gpu::Control* control, snowshed::methods::mpm::gpu::Constants k) { \
+    __shared__ snowshed::methods::mpm::gpu::StepMemory memory;                                   \
+    snowshed::methods::mpm::gpu::step_block<several, true>(l, control, k, memory);               \
   }                                                                                              \
-  extern "C" __global__ void __launch_bounds__(128)                                              \
-      scatter##suffix(snowshed::methods::mpm::gpu::ParticleLaunch l,                       \
-                      snowshed::methods::mpm::gpu::Control* control,                       \
-                      snowshed::methods::mpm::gpu::Constants k) {                          \
-    __shared__ snowshed::methods::mpm::gpu::StepMemory memory;                             \
-    snowshed::methods::mpm::gpu::step_block<several, false>(l, control, k, memory);        \
+  extern "C" __global__ void __launch_bounds__(128) scatter##suffix(                             \
+      snowshed::methods::mpm::gpu::ParticleLaunch l,                                             \
+      snowshed::methods::mpm::gpu::Control* control, snowshed::methods::mpm::gpu::Constants k) { \
+    __shared__ snowshed::methods::mpm::gpu::StepMemory memory;                                   \
+    snowshed::methods::mpm::gpu::step_block<several, false>(l, control, k, memory);              \
   }                                                                                              \
-  extern "C" __global__ void __launch_bounds__(64)                                               \
-      stray_step##suffix(snowshed::methods::mpm::gpu::ParticleLaunch l,                    \
-                         std::int32_t block_count,                                               \
-                         snowshed::methods::mpm::gpu::Control* control,                    \
-                         snowshed::methods::mpm::gpu::Constants k) {                       \
-    snowshed::methods::mpm::gpu::step_strays<several, true>(l, block_count, control, k);   \
+  extern "C" __global__ void __launch_bounds__(64) stray_step##suffix(                           \
+      snowshed::methods::mpm::gpu::ParticleLaunch l, std::int32_t block_count,                   \
+      snowshed::methods::mpm::gpu::Control* control, snowshed::methods::mpm::gpu::Constants k) { \
+    snowshed::methods::mpm::gpu::step_strays<several, true>(l, block_count, control, k);         \
   }                                                                                              \
-  extern "C" __global__ void __launch_bounds__(64)                                               \
-      scatter_strays##suffix(snowshed::methods::mpm::gpu::ParticleLaunch l,                \
-                             std::int32_t block_count,                                           \
-                             snowshed::methods::mpm::gpu::Control* control,                \
-                             snowshed::methods::mpm::gpu::Constants k) {                   \
-    snowshed::methods::mpm::gpu::step_strays<several, false>(l, block_count, control, k);  \
+  extern "C" __global__ void __launch_bounds__(64) scatter_strays##suffix(                       \
+      snowshed::methods::mpm::gpu::ParticleLaunch l, std::int32_t block_count,                   \
+      snowshed::methods::mpm::gpu::Control* control, snowshed::methods::mpm::gpu::Constants k) { \
+    snowshed::methods::mpm::gpu::step_strays<several, false>(l, block_count, control, k);        \
   }
 
 SNOWSHED_PARTICLE_KERNELS(, false)

@@ -51,8 +51,7 @@ __device__ inline bool is_harmless(const GridArrays& grid, ProbeMemory& m, const
 
 extern "C" __global__ void __launch_bounds__(128)
     probe(snowshed::methods::mpm::gpu::ParticleLaunch l,
-          snowshed::methods::mpm::gpu::Control* control,
-          snowshed::methods::mpm::gpu::Constants k) {
+          snowshed::methods::mpm::gpu::Control* control, snowshed::methods::mpm::gpu::Constants k) {
   using namespace snowshed::methods::mpm::gpu;
   __shared__ ProbeMemory m;
   if (control->phase != Phase::trying) return;
@@ -70,12 +69,13 @@ extern "C" __global__ void __launch_bounds__(128)
     const Place from(cell);
     NodeMeans means;
     if (in_tile(cell)) {
-      const int lowest =
-          (from.lowest[0] * tile_edge + from.lowest[1]) * tile_edge + from.lowest[2];
+      const int lowest = (from.lowest[0] * tile_edge + from.lowest[1]) * tile_edge + from.lowest[2];
       interpolate(from.fraction, TileNodes{m.velocity + lowest, m.change + lowest}, means);
     } else {
       interpolate(from.fraction,
-                  GridNodes{l.grid.velocity, l.grid.change, m.around,
+                  GridNodes{l.grid.velocity,
+                            l.grid.change,
+                            m.around,
                             {from.lowest[0], from.lowest[1], from.lowest[2]}},
                   means);
     }

@@ -13,8 +13,8 @@ __device__ inline void add_carried(const float (&cell)[3], const GridArrays& gri
   const Place place(cell);
   float w[3][3], g[3];
   for (int d = 0; d < 3; ++d) BSpline<Basis::quadratic>::evaluate(place.fraction[d], w[d], g);
-  const GridNodes nodes{grid.velocity, grid.change, around,
-                        {place.lowest[0], place.lowest[1], place.lowest[2]}};
+  const GridNodes nodes{
+      grid.velocity, grid.change, around, {place.lowest[0], place.lowest[1], place.lowest[2]}};
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       for (int k = 0; k < 3; ++k) {

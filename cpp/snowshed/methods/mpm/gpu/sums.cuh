@@ -56,7 +56,9 @@ struct NodeSpline {
   float a, b, c, s;
 
   __device__ explicit NodeSpline(int node)
-      : a(node == 0 ? 1.0f : node == 1 ? -0.5f : 0.0f),
+      : a(node == 0   ? 1.0f
+          : node == 1 ? -0.5f
+                      : 0.0f),
         b(node == 0 ? -1.0f : 1.0f),
         c(node == 1 ? 0.75f : 0.0f),
         s(node == 1 ? -1.0f : 0.5f) {}
@@ -97,8 +99,9 @@ struct LineSums {
 };
 
 /// Adds a stray to the nodes of the grid.
-__device__ inline void scatter_stray(const Place& place, const Given& given, unsigned long long* whole,
-                                     const std::int32_t* around, const Units& units) {
+__device__ inline void scatter_stray(const Place& place, const Given& given,
+                                     unsigned long long* whole, const std::int32_t* around,
+                                     const Units& units) {
   GivenArrays<1> single;
   single.set(0, place.fraction, given);
   for (int i = 0; i < 3; ++i)

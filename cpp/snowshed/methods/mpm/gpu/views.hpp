@@ -41,18 +41,18 @@ inline constexpr int node_sums = 7, node_stride = 8;
 
 /// Nodes of the grid.
 struct GridArrays {
-  unsigned long long* whole;    // sums of the awake snow, `node_stride` for each node
+  unsigned long long* whole;         // sums of the awake snow, `node_stride` for each node
   const unsigned long long* asleep;  // sums of the snow that sleeps; null if none may
-  Quad *carried, *force;        // mass and momentum; force
-  Quad* velocity;               // new velocity, and the change of its first component
-  Pair* change;                 // changes of the other two
-  float* ranges;                // for each block, the least new velocity (3) and the largest (3)
+  Quad *carried, *force;             // mass and momentum; force
+  Quad* velocity;                    // new velocity, and the change of its first component
+  Pair* change;                      // changes of the other two
+  float* ranges;  // for each block, the least new velocity (3) and the largest (3)
 };
 
 struct ContactArrays {
-  const std::int32_t* first;  // block g has the contacts [first[g], first[g + 1])
-  Contact<float>* contacts;   // those with one obstacle follow each other
-  const std::int32_t* conditions;  // of each obstacle
+  const std::int32_t* first;                // block g has the contacts [first[g], first[g + 1])
+  Contact<float>* contacts;                 // those with one obstacle follow each other
+  const std::int32_t* conditions;           // of each obstacle
   const float *friction, *friction_shares;  // of each obstacle
 };
 
@@ -62,7 +62,7 @@ struct ParticleLaunch {
   BlockTable blocks;
   const std::int32_t* list;  // blocks of particles that take part
   GridArrays grid;
-  std::int32_t* strays;  // room for all particles
+  std::int32_t* strays;       // room for all particles
   unsigned long long* whole;  // sums to which the particles are added
 };
 
@@ -75,12 +75,12 @@ struct BlockMotion {
 };
 
 enum class Phase : std::int32_t {
-  waiting,    // for the host
-  trying,     // the node velocities for a step of `dt` are due
-  too_long,   // the step would strain a particle beyond the limit: a shorter one is due
-  accepted,   // the particles move
-  stuck,      // the time step fell below every use
-  unsound     // a particle is not finite, or is strained beyond the limit
+  waiting,   // for the host
+  trying,    // the node velocities for a step of `dt` are due
+  too_long,  // the step would strain a particle beyond the limit: a shorter one is due
+  accepted,  // the particles move
+  stuck,     // the time step fell below every use
+  unsound    // a particle is not finite, or is strained beyond the limit
 };
 
 inline constexpr std::int32_t no_particle = 0x7fffffff;
@@ -88,9 +88,9 @@ inline constexpr std::int32_t no_particle = 0x7fffffff;
 /// The progress of a simulation. A round of kernels takes one step, or finds that it must be
 /// shorter. The host looks on from time to time.
 struct Control {
-  double time, dt, last_dt;      // s; of the step being tried, and of the last one
-  double until;                  // s, at which the host wants to look
-  double smallest_dt;            // s
+  double time, dt, last_dt;  // s; of the step being tried, and of the last one
+  double until;              // s, at which the host wants to look
+  double smallest_dt;        // s
   std::int64_t steps, rejected;
   Phase phase;
   std::int32_t repeated;         // whether the step being tried has been shortened
@@ -108,7 +108,7 @@ struct Control {
 /// Constants of a run.
 struct Constants {
   double elastic_limit, courant_factor, strain_limit, dx;
-  double friction_memory, friction_reach;  // s, m
+  double friction_memory, friction_reach;   // s, m
   float gravity, flip_ratio, damping_rate;  // a negative rate: the ratio holds for each step
   float mass_unit, force_unit;              // kg, N
   MaterialConstants<float> snow;            // the only one

@@ -252,8 +252,8 @@ struct NodeKernels {
       return coefficient(step, law, speed, impulse);
     };
     const FrictionRates<T> rates{step.friction_rate, step.friction_rate_per_speed};
-    const auto [lets_go, slip_share] = push_and_rub<D>(
-        rates, c, mass, step.friction_shares[c.obstacle], coefficient_at, node);
+    const auto [lets_go, slip_share] =
+        push_and_rub<D>(rates, c, mass, step.friction_shares[c.obstacle], coefficient_at, node);
     for (int d = 0; d < D; ++d) after[d] = node[d];
     if constexpr (energy) {
       const NormalSplit split_before(before, c.normal), split_free(free, c.normal),

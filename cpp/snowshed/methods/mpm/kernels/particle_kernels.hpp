@@ -170,7 +170,8 @@ struct ParticleKernels {
 
   /// Returns the stress of the present elastic strain. With plastic laws the strain is first
   /// returned to the yield surface, unless this has been done (`committed`).
-  SNOWSHED_INLINE Stress<V, D> stress(State& s, const Snow& snow, int at, int n, bool committed) const {
+  SNOWSHED_INLINE Stress<V, D> stress(State& s, const Snow& snow, int at, int n,
+                                      bool committed) const {
     if constexpr (Snow::plastic)
       if (step.constitutive) {
         const auto user = user_stress(step, p, s.be_minus_identity, s.plastic, at, n, committed);

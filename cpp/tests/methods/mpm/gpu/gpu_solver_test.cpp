@@ -106,8 +106,8 @@ TEST(GpuSolver, AgreesWithTheProcessorWithSeveralSnows) {
   Pair pair = make_pair(o, {fixed(ground(), Condition::separate, 0.2)});
   for (int snow = 0; snow < 3; ++snow) {
     const Vec3 low(0.2 * snow, 0, 0.01);
-    ParticleBatch batch = filled_box(3, low, low + Vec3(0.2, 0.1, 0.1), dx / 2,
-                                     o.snows[std::size_t(snow)].density);
+    ParticleBatch batch =
+        filled_box(3, low, low + Vec3(0.2, 0.1, 0.1), dx / 2, o.snows[std::size_t(snow)].density);
     batch.material_id = snow;
     batch.velocity = Vec3(0, 0, -3);
     pair.add(batch);
@@ -139,7 +139,8 @@ TEST(GpuSolver, DampsByARateAsTheProcessorDoes) {
 
 TEST(GpuSolver, HasTheSameBitsInWhateverOrderTheThreadsRun) {
   SnowState states[2];
-  for (const snowshed::gpu::Turns turns : {snowshed::gpu::Turns::forwards, snowshed::gpu::Turns::backwards}) {
+  using snowshed::gpu::Turns;
+  for (const Turns turns : {Turns::forwards, Turns::backwards}) {
     const auto solver = make_emulated(
         options_on_gpu(dx),
         {fixed(ground(), Condition::slip, 0.4),
@@ -147,7 +148,7 @@ TEST(GpuSolver, HasTheSameBitsInWhateverOrderTheThreadsRun) {
         turns);
     solver->add(block_of_snow(0.1, Vec3(4, 1, -6)));
     run_steps(*solver, 70);  // with a sort
-    states[turns == snowshed::gpu::Turns::backwards] = snow_state(*solver);
+    states[turns == Turns::backwards] = snow_state(*solver);
   }
   expect_same_bits(states[0], states[1]);
 }
@@ -183,9 +184,8 @@ TEST(GpuSolver, SlidesOnAnInclineAsTheFormulaSays) {
   constexpr double friction = 0.3, slope = 35;
   const double angle = radians(slope);
   Options o = options_on_gpu(dx);
-  // The incline lies in the plane z = 0, and gravity is turned by the obstacle's frame instead.
-  const Vec3 normal(-std::sin(angle), 0, std::cos(angle)), down(-std::cos(angle), 0, -std::sin(angle));
-  const Vec3 downhill = Vec3(std::cos(angle), 0, std::sin(angle)) * -1.0;
+  const Vec3 normal(-std::sin(angle), 0, std::cos(angle));
+  const Vec3 downhill(-std::cos(angle), 0, -std::sin(angle));
   const geometry::Shape incline = geometry::make_plane(Vec3::Zero(), normal);
   const auto solver = make_emulated(o, {fixed(incline, Condition::separate, friction)});
   ParticleBatch block = filled_box(3, Vec3(0, 0, 0), Vec3(0.3, 0.2, 0.15), dx / 2);

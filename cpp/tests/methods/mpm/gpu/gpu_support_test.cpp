@@ -32,9 +32,10 @@ TEST(GpuSupport, NamesEachSetting) {
       {[](Options& o) { o.settings.damping_length = 0.01; }, "/numerics/damping_length"},
       {[](Options& o) { o.energy = true; }, "/output/energy"},
       {[](Options& o) { o.forces = true; }, "/output/forces"},
-      {[](Options& o) { o.laws.body_force = [](std::int64_t, const double*, const double*,
-                                               const double*, double, double*, double*,
-                                               double*) {}; },
+      {[](Options& o) {
+         o.laws.body_force = [](std::int64_t, const double*, const double*, const double*, double,
+                                double*, double*, double*) {};
+       },
        "/"}};
   for (const auto& [change, path] : changes) {
     Options o;

@@ -10,18 +10,16 @@
 
 namespace snowshed::methods::mpm {
 
-inline Options options_on_gpu(double dx = 0.05) {
-  return options_for({3, Precision::float32}, dx);
-}
+inline Options options_on_gpu(double dx = 0.05) { return options_for({3, Precision::float32}, dx); }
 
 inline std::shared_ptr<snowshed::gpu::EmulatedDevice> emulated_card(
     snowshed::gpu::Turns turns = snowshed::gpu::Turns::forwards) {
   return std::make_shared<snowshed::gpu::EmulatedDevice>(emulated_kernels(), turns);
 }
 
-inline std::unique_ptr<Solver> make_emulated(const Options& options,
-                                               std::vector<Obstacle> obstacles,
-                                               snowshed::gpu::Turns turns = snowshed::gpu::Turns::forwards) {
+inline std::unique_ptr<Solver> make_emulated(
+    const Options& options, std::vector<Obstacle> obstacles,
+    snowshed::gpu::Turns turns = snowshed::gpu::Turns::forwards) {
   Options o = options;
   o.obstacles = std::move(obstacles);
   return make_gpu_solver(std::move(o), emulated_card(turns));
