@@ -1,6 +1,6 @@
-// What kernels use of CUDA, on a processor. A fiber plays a thread; the threads of a block run one
-// after the other from barrier to barrier, so that shared memory needs no lock. Include this before
-// the kernels.
+// The parts of CUDA that kernels use, on a processor. A fiber plays a thread; the threads of a
+// block run one after the other from barrier to barrier, so that shared memory needs no lock.
+// Include this before the kernels.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace snowshed::gpu::emulation {
 struct Index {
   unsigned x;
 };
-/// Of the thread that runs.
+/// The indices of the thread that runs, and the size of its launch.
 extern Index thread, block, threads_of_block, blocks_of_grid;
 
 /// Lets the other threads of the block run up to here. Returns the number of those whose `flag` is

@@ -37,7 +37,7 @@ DeviceSnow::DeviceSnow(snowshed::gpu::Device& device, const Model<float, 3>& mod
       active_(device),
       idle_(device),
       listed_(device),
-      whole_(device),
+      integers_(device),
       asleep_(device),
       carried_(device),
       force_(device),
@@ -103,7 +103,7 @@ void DeviceSnow::upload_layout(const HostState& state) {
   first_.upload(layout.first);
   around_.upload(layout.around_particles.front().data(), std::size_t(blocks_) * neighbours);
   const std::size_t grid_blocks = layout.grid_blocks.size(), nodes = grid_blocks * nodes_of_block;
-  whole_.resize(nodes * node_stride);
+  integers_.resize(nodes * node_stride);
   if (state.sleep.allowed()) asleep_.resize(nodes * node_stride);
   for (DeviceArray<Quad>* values : {&carried_, &force_, &velocity_}) values->resize(nodes);
   change_.resize(nodes);
@@ -168,9 +168,9 @@ void DeviceSnow::scatter(Control& control) {
   control.momentum_unit = constants_.mass_unit * float(power_of_two_above(bound));
   control.strays = 0;
   control_.upload(&control, 1);
-  whole_.clear();
-  launch_particles("scatter", awake_, whole_.data());
-  launch_strays("scatter_strays", whole_.data());
+  integers_.clear();
+  launch_particles("scatter", awake_, integers_.data());
+  launch_strays("scatter_strays", integers_.data());
   if (asleep_.size() == 0) return;
   asleep_.clear();
   launch_particles("scatter", asleep_blocks_, asleep_.data());
@@ -192,10 +192,10 @@ void DeviceSnow::launch_round() {
   launch(device_, "node_step", {unsigned(active_.size()), node_threads}, grid(),
          static_cast<const std::int32_t*>(active_.data()), contacts(), control_.data(), constants_);
   launch(device_, "probe", {unsigned(awake_.size()), particle_threads},
-         launch_of(awake_, whole_.data()), control_.data(), constants_);
+         launch_of(awake_, integers_.data()), control_.data(), constants_);
   launch(device_, "judge_step", {1, 1}, control_.data(), constants_);
-  launch_particles("particle_step", awake_, whole_.data());
-  launch_strays("stray_step", whole_.data());
+  launch_particles("particle_step", awake_, integers_.data());
+  launch_strays("stray_step", integers_.data());
   launch(device_, "next_step", {1, 1}, control_.data(), constants_);
 }
 
@@ -204,22 +204,22 @@ std::string DeviceSnow::named(const char* kernel) const {
 }
 
 void DeviceSnow::launch_particles(const char* kernel, const DeviceArray<std::int32_t>& list,
-                                  unsigned long long* whole) {
+                                  unsigned long long* integers) {
   launch(device_, named(kernel).c_str(), {unsigned(list.size()), particle_threads},
-         launch_of(list, whole), control_.data(), constants_);
+         launch_of(list, integers), control_.data(), constants_);
 }
 
-void DeviceSnow::launch_strays(const char* kernel, unsigned long long* whole) {
+void DeviceSnow::launch_strays(const char* kernel, unsigned long long* integers) {
   const unsigned blocks =
       std::min(max_stray_blocks, unsigned(particles_.size() / (stray_threads * 64)) + 1);
-  launch(device_, named(kernel).c_str(), {blocks, stray_threads}, launch_of(awake_, whole), blocks_,
-         control_.data(), constants_);
+  launch(device_, named(kernel).c_str(), {blocks, stray_threads}, launch_of(awake_, integers),
+         blocks_, control_.data(), constants_);
 }
 
 void DeviceSnow::stop(const std::vector<std::int32_t>& blocks) {
   listed_.upload(blocks);
   launch(device_, "stop_blocks", {unsigned(blocks.size()), node_threads},
-         launch_of(listed_, whole_.data()));
+         launch_of(listed_, integers_.data()));
 }
 
 std::vector<BlockMotion> DeviceSnow::motions(const Sleep<3>& sleep) {
@@ -227,19 +227,18 @@ std::vector<BlockMotion> DeviceSnow::motions(const Sleep<3>& sleep) {
   blocks.insert(blocks.end(), sleep.border().begin(), sleep.border().end());
   listed_.upload(blocks);
   launch(device_, "measure_motion", {unsigned(blocks.size()), node_threads},
-         launch_of(listed_, whole_.data()), motions_.data());
+         launch_of(listed_, integers_.data()), motions_.data());
   return motions_.download();
 }
 
 ParticleLaunch DeviceSnow::launch_of(const DeviceArray<std::int32_t>& list,
-                                     unsigned long long* whole) const {
-  return {particles_.view(), {first_.data(), around_.data()},
-          list.data(),       grid(),
-          strays_.data(),    whole};
+                                     unsigned long long* integers) const {
+  return {particles_.view(), {first_.data(), around_.data()}, list.data(), grid(), strays_.data(),
+          integers};
 }
 
 GridArrays DeviceSnow::grid() const {
-  return {whole_.data(),    asleep_.size() > 0 ? asleep_.data() : nullptr,
+  return {integers_.data(), asleep_.size() > 0 ? asleep_.data() : nullptr,
           carried_.data(),  force_.data(),
           velocity_.data(), change_.data(),
           ranges_.data()};
@@ -253,7 +252,7 @@ ContactArrays DeviceSnow::contacts() const {
 std::size_t DeviceSnow::bytes() const {
   std::size_t sum = particles_.bytes();
   const auto add = [&](const auto&... arrays) { sum += (std::size_t(0) + ... + arrays.bytes()); };
-  add(first_, around_, order_, strays_, awake_, asleep_blocks_, active_, idle_, listed_, whole_,
+  add(first_, around_, order_, strays_, awake_, asleep_blocks_, active_, idle_, listed_, integers_,
       asleep_, carried_, force_, velocity_, change_, ranges_, first_contact_, contacts_, motions_);
   return sum;
 }

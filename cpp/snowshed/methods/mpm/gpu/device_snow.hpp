@@ -50,10 +50,11 @@ class DeviceSnow {
   void find_units(const HostState&);
   void launch_round();
   void launch_particles(const char* kernel, const DeviceArray<std::int32_t>& list,
-                        unsigned long long* whole);
-  void launch_strays(const char* kernel, unsigned long long* whole);
+                        unsigned long long* integers);
+  void launch_strays(const char* kernel, unsigned long long* integers);
   std::string named(const char* kernel) const;
-  ParticleLaunch launch_of(const DeviceArray<std::int32_t>& list, unsigned long long* whole) const;
+  ParticleLaunch launch_of(const DeviceArray<std::int32_t>& list,
+                           unsigned long long* integers) const;
   GridArrays grid() const;
   ContactArrays contacts() const;
 
@@ -62,7 +63,7 @@ class DeviceSnow {
   DeviceParticles particles_;
   DeviceArray<std::int32_t> first_, around_, order_, strays_;
   DeviceArray<std::int32_t> awake_, asleep_blocks_, active_, idle_, listed_;
-  DeviceArray<unsigned long long> whole_, asleep_;
+  DeviceArray<unsigned long long> integers_, asleep_;
   DeviceArray<Quad> carried_, force_, velocity_;
   DeviceArray<Pair> change_;
   DeviceArray<float> ranges_, friction_, friction_shares_;
@@ -72,7 +73,7 @@ class DeviceSnow {
   DeviceArray<BlockMotion> motions_;
   DeviceArray<Control> control_;
   Constants constants_{};
-  std::int32_t blocks_ = 0;  // of particles
+  std::int32_t blocks_ = 0;  // number of particle blocks
 };
 
 }  // namespace snowshed::methods::mpm::gpu

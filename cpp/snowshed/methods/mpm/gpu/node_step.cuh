@@ -21,13 +21,13 @@ __device__ inline void read_sums(const GridArrays& grid, int n, bool first_try, 
     force = grid.force[n];
     return;
   }
-  unsigned long long* whole = grid.whole + n * node_stride;
+  unsigned long long* integers = grid.integers + n * node_stride;
   const unsigned long long* asleep = grid.asleep ? grid.asleep + n * node_stride : nullptr;
   float sums[node_sums];
 #pragma unroll
   for (int v = 0; v < node_sums; ++v) {
-    long long sum = (long long)(whole[v]);
-    whole[v] = 0;
+    long long sum = (long long)(integers[v]);
+    integers[v] = 0;
     if (asleep) sum += (long long)(asleep[v]);
     sums[v] = float(sum) * units.of[Units::kind(v)];
   }

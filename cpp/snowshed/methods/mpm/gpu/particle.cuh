@@ -102,7 +102,7 @@ __device__ inline void add_stray(std::int32_t* strays, Control* control, int i) 
   strays[atomicAdd(&control->strays, 1)] = i;
 }
 
-/// What a particle is after a step, for its nodes; `sound` if its values may go on.
+/// A particle after a step. Its nodes take it only if it is sound.
 struct Moved {
   Given given;
   bool sound;

@@ -24,7 +24,7 @@ struct StepMemory {
   GivenArrays<chunk> given;
   std::int32_t around[neighbours];
   std::int32_t first[tile_cells];  // the first particle of each cell, or -1
-  std::int16_t next[chunk];        // of the same cell, or -1
+  std::int16_t next[chunk];        // the next particle of the cell, or -1
   std::int16_t cells[tile_cells];  // those with particles
   std::int32_t cell_count, fastest;
 };
@@ -77,19 +77,19 @@ __device__ inline void sum_cells(StepMemory& m, const Units& units) {
 }
 
 /// Adds the tile to the grid.
-__device__ inline void add_tile(const StepMemory& m, unsigned long long* whole) {
+__device__ inline void add_tile(const StepMemory& m, unsigned long long* integers) {
   for (int t = int(threadIdx.x); t < tile_nodes; t += int(blockDim.x)) {
     const int at = (t >> 6) * sum_stride + (t & 63);
     if ((m.sums[0][0][at] | m.sums[0][1][at]) == 0) continue;  // no mass
     const int n = grid_node(t, m.around);
     for (int v = 0; v < node_sums; ++v)
-      add_whole(whole + n * node_stride + v,
-                (long long)(m.sums[v][0][at]) * 65536 + m.sums[v][1][at]);
+      add_integer(integers + n * node_stride + v,
+                  (long long)(m.sums[v][0][at]) * 65536 + m.sums[v][1][at]);
   }
 }
 
 /// Gives the particles of a chunk to the nodes, after `enter_cell`.
-__device__ inline void give_chunk(StepMemory& m, const Units& units, unsigned long long* whole) {
+__device__ inline void give_chunk(StepMemory& m, const Units& units, unsigned long long* integers) {
   const int t = int(threadIdx.x), threads = int(blockDim.x);
   for (int i = t; i < node_sums * 2 * sum_size; i += threads) (&m.sums[0][0][0])[i] = 0;
   for (int c = t; c < tile_cells; c += threads) {
@@ -100,7 +100,7 @@ __device__ inline void give_chunk(StepMemory& m, const Units& units, unsigned lo
   __syncthreads();
   sum_cells(m, units);
   __syncthreads();
-  add_tile(m, whole);
+  add_tile(m, integers);
   __syncthreads();
 }
 
@@ -159,7 +159,7 @@ __device__ inline void step_block(const ParticleLaunch& l, Control* control, con
       }
     }
     __syncthreads();
-    give_chunk(m, units, l.whole);
+    give_chunk(m, units, l.integers);
   }
   if (!moves) return;
   raise(reinterpret_cast<float*>(&m.fastest), fastest);
@@ -200,12 +200,12 @@ __device__ inline void step_strays(const ParticleLaunch& l, std::int32_t block_c
       const Moved moved = finish_particle<several>(s, means, l.particles, i, k, control, fastest);
       if (!moved.sound) continue;
       if (!may_move_on(s.cell)) control->must_sort = 1;
-      scatter_stray(Place(s.cell), moved.given, l.whole, around, units);
+      scatter_stray(Place(s.cell), moved.given, l.integers, around, units);
     } else {
       const MaterialConstants<float> snow = snow_of<several>(l.particles, i, k);
       const Strain tau = s.stress(snow, true).tau;
-      scatter_stray(Place(s.cell), s.given(tau, snow.specific_volume, float(k.dx)), l.whole, around,
-                    units);
+      scatter_stray(Place(s.cell), s.given(tau, snow.specific_volume, float(k.dx)), l.integers,
+                    around, units);
     }
   }
   if (moves && fastest > 0) raise(&control->speed_squared, fastest);

@@ -19,7 +19,7 @@ struct Units {
   static __device__ constexpr int kind(int sum) { return sum == 0 ? 0 : sum < 4 ? 1 : 2; }
 };
 
-__device__ inline void add_whole(unsigned long long* sum, long long amount) {
+__device__ inline void add_integer(unsigned long long* sum, long long amount) {
   atomicAdd(sum, (unsigned long long)(amount));
 }
 
@@ -100,7 +100,7 @@ struct LineSums {
 
 /// Adds a stray to the nodes of the grid.
 __device__ inline void scatter_stray(const Place& place, const Given& given,
-                                     unsigned long long* whole, const std::int32_t* around,
+                                     unsigned long long* integers, const std::int32_t* around,
                                      const Units& units) {
   GivenArrays<1> single;
   single.set(0, place.fraction, given);
@@ -112,8 +112,8 @@ __device__ inline void scatter_stray(const Place& place, const Given& given,
         const int n =
             grid_node(place.lowest[0] + i, place.lowest[1] + j, place.lowest[2] + k, around);
         for (int v = 0; v < node_sums; ++v)
-          add_whole(whole + n * node_stride + v,
-                    ::llrintf(line.node[k][v] * units.per[Units::kind(v)]));
+          add_integer(integers + n * node_stride + v,
+                      ::llrintf(line.node[k][v] * units.per[Units::kind(v)]));
       }
     }
 }

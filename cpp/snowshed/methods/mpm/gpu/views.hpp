@@ -41,7 +41,7 @@ inline constexpr int node_sums = 7, node_stride = 8;
 
 /// Nodes of the grid.
 struct GridArrays {
-  unsigned long long* whole;         // sums of the awake snow, `node_stride` for each node
+  unsigned long long* integers;      // sums of the awake snow, `node_stride` for each node
   const unsigned long long* asleep;  // sums of the snow that sleeps; null if none may
   Quad *carried, *force;             // mass and momentum; force
   Quad* velocity;                    // new velocity, and the change of its first component
@@ -52,8 +52,8 @@ struct GridArrays {
 struct ContactArrays {
   const std::int32_t* first;                // block g has the contacts [first[g], first[g + 1])
   Contact<float>* contacts;                 // those with one obstacle follow each other
-  const std::int32_t* conditions;           // of each obstacle
-  const float *friction, *friction_shares;  // of each obstacle
+  const std::int32_t* conditions;           // one for each obstacle
+  const float *friction, *friction_shares;  // one for each obstacle
 };
 
 /// Arguments of the kernels of particles.
@@ -62,8 +62,8 @@ struct ParticleLaunch {
   BlockTable blocks;
   const std::int32_t* list;  // blocks of particles that take part
   GridArrays grid;
-  std::int32_t* strays;       // room for all particles
-  unsigned long long* whole;  // sums to which the particles are added
+  std::int32_t* strays;          // room for all particles
+  unsigned long long* integers;  // sums to which the particles are added
 };
 
 /// Motion of a block of particles, for the decision whether it sleeps: sums over its particles.
@@ -99,7 +99,7 @@ struct Control {
   std::int32_t low[3], high[3];  // range of the node velocities, see `ordered`
   float strain;                  // s^-1, largest velocity gradient that the particles would see
   float speed_squared;           // m2/s2, of the fastest snow in the last step
-  float strain_of_step;          // of the step that failed
+  float strain_of_step;          // strain in the step that failed
   std::int32_t unsound;          // the first particle that is not sound
   std::int32_t strays;           // particles whose nodes do not lie in the tile of their block
   float momentum_unit;           // kg m/s, of the sums of the last step

@@ -43,7 +43,7 @@ TEST(GpuSleep, SnowFallsAsleepAndWakesWhenItIsHit) {
   solver->advance(0.32);
   EXPECT_GT(solver->counters().particle_updates - before, 0);
   const ParticleState after = solver->state();
-  double moved = 0;  // of the old snow
+  double moved = 0;  // by the old snow, m
   for (std::size_t i = 0; i < asleep.positions.size(); ++i)
     moved = std::max(moved, (after.positions[i] - asleep.positions[i]).norm());
   EXPECT_GT(moved, 1e-4);
@@ -75,8 +75,8 @@ TEST(GpuSleep, DecidesAsTheProcessor) {
               0.1 * double(cpu->slept_updates()));
 }
 
-/// A checkpoint of one device goes on on the other.
-TEST(GpuCheckpoint, GoesOnOnTheOtherDevice) {
+/// A checkpoint of one device continues on the other.
+TEST(GpuCheckpoint, ContinuesOnTheOtherDevice) {
   const Options o = options_on_gpu(dx);
   const auto obstacles = sticky_ground();
   const auto gpu = make_emulated(o, obstacles);
