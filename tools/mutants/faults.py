@@ -57,7 +57,7 @@ class Fault:
     @property
     def is_cpp(self) -> bool:
         """Whether the fault is in C++."""
-        return self.file.endswith((".cpp", ".hpp"))
+        return self.file.endswith((".cpp", ".hpp", ".cuh"))
 
     def place(self, text: str) -> tuple[int, int]:
         """Return the start and the end of the old text in the source.

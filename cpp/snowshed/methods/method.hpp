@@ -94,6 +94,13 @@ class Method {
   /// the method has then failed (see the top).
   virtual void step() = 0;
 
+  /// Takes steps until a time (s) is reached, or none if it has passed. The method chooses the
+  /// length of its steps, so the last one ends up to a step later. Throws as `step`; the steps
+  /// before remain taken.
+  virtual void advance(double until) {
+    while (time() < until) step();
+  }
+
   /// Whether `save` writes all data on which later steps depend, so that a checkpoint taken now
   /// resumes to the same bits. A checkpoint taken at another time is valid, too, but resumes to
   /// results that differ in the last bits. A method is at a safe point again after a bounded number

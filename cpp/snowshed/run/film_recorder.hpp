@@ -35,6 +35,8 @@ class FilmRecorder {
 
   /// Whether the first frame of an event is missing, or the next one's time has come.
   bool due(const RunPosition&) const;
+  /// The time (s) of the next frame of an event that has a first one.
+  double next_time() const;
   void record(const methods::Method&, int event);
   /// Records the last frame of an event, unless it has been recorded.
   void record_end(const methods::Method&, int event);
@@ -44,7 +46,6 @@ class FilmRecorder {
 
  private:
   bool begun(int event) const;
-  double next_time() const;
 
   io::FilmWriter film_;
 };

@@ -16,6 +16,9 @@ class RestDetector {
   /// Returns whether the detector needs the speed again.
   bool due(double time) const { return time >= next_; }
 
+  /// The time (s) at which it needs the speed again.
+  double next() const { return next_; }
+
   /// Records the speed (m/s) at a time (s); returns whether the snow rests.
   bool at_rest(double time, double speed);
 

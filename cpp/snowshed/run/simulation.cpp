@@ -10,6 +10,7 @@
 #include "snowshed/core/parallel.hpp"
 #include "snowshed/core/stopwatch.hpp"
 #include "snowshed/methods/capabilities.hpp"
+#include "snowshed/methods/unwatched.hpp"
 #include "snowshed/run/apply_laws.hpp"
 #include "snowshed/run/energy_history.hpp"
 #include "snowshed/run/film_recorder.hpp"
@@ -24,6 +25,9 @@
 
 namespace snowshed::run {
 namespace {
+
+/// Share of a step by which rounding may shorten an event.
+constexpr double rounding_of_step = 1e-6;
 
 /// The mean distance of particles as they are seeded, m.
 double particle_distance(const scene::Scene& scene) {
@@ -160,14 +164,30 @@ std::vector<Vec3> Simulation::positions() const {
   return positions;
 }
 
-/// Takes a step of the present event.
-void Simulation::advance() {
+/// Takes a step of the present event; unwatched, steps up to the next time at which an output, the
+/// rest or the end of the event is due.
+void Simulation::advance(bool unwatched) {
   const double before = method_->time();
-  method_->step();
+  // These histories look at every step.
+  unwatched = unwatched && methods::capability<methods::AdvancesUnwatched>(*method_) && !curve_ &&
+              !energies_ && !forces_;
+  if (unwatched)
+    method_->advance(next_look());
+  else
+    method_->step();
   if (!(method_->time() > before))
     throw SimulationError("the time stays at " + show(before) + " s: a step of " +
                           show(method_->time_step()) + " s is too short to add to it");
   if (curve_) curve_->record(*method_);
+}
+
+/// The time (s) of the next output or decision. At least one step is left until then.
+double Simulation::next_look() const {
+  double next = event_start_ + scene_.events.max_time - rounding_of_step * method_->time_step();
+  next = std::min(next, rest_.next());
+  if (snapshots_) next = std::min(next, snapshots_->next());
+  if (film_) next = std::min(next, film_->next_time());
+  return std::max(next, std::nextafter(method_->time(), std::numeric_limits<double>::infinity()));
 }
 
 /// Makes the only change to the particles at the beginning of an event, all or nothing.
@@ -254,7 +274,7 @@ RunEnd Simulation::run(const std::function<bool(const RunReport&)>& observer, do
       running_ = false;
       return *end;
     }
-    advance();
+    advance(!pausing);
     if (!pausing && clock.seconds() >= interval) {
       clock.restart();
       RunReport r = report(rest_.speed());
@@ -277,11 +297,10 @@ void Simulation::record() {
 /// so it may end beyond the time limit. A step that ends before the limit by rounding alone has
 /// reached it.
 std::optional<RunEnd> Simulation::event_end() {
-  constexpr double rounding = 1e-6;  // share of a step
   const bool rests = at_rest();
   if (event_time() <= 0) return std::nullopt;  // snow cannot have been at rest for zero seconds
   if (rests) return RunEnd::rest;
-  if (event_time() >= scene_.events.max_time - rounding * method_->time_step())
+  if (event_time() >= scene_.events.max_time - rounding_of_step * method_->time_step())
     return RunEnd::time_limit;
   return std::nullopt;
 }
@@ -325,7 +344,7 @@ void Simulation::step(int count) {
   if (!running_) throw SimulationError("no event is running; begin_event first");
   for (int i = 0; i < count; ++i) {
     at_rest();  // rest is a matter of time, so that each step counts
-    advance();
+    advance(false);
   }
 }
 

@@ -194,7 +194,8 @@ class Simulation {
   void check_cost() const;
   void change_snow(const std::optional<Reseeding>&, std::vector<methods::ParticleBatch> added,
                    const StopRequest& stop);
-  void advance();
+  void advance(bool unwatched);
+  double next_look() const;
   void record();
   bool detect_rest();
   std::optional<RunEnd> event_end();

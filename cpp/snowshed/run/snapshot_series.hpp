@@ -17,6 +17,7 @@ class SnapshotSeries {
   SnapshotSeries(std::filesystem::path folder, double interval, double time);
 
   bool due(double time) const { return time >= next_; }
+  double next() const { return next_; }  ///< time (s) of the next snapshot
   void write(const methods::Method&);
 
  private:

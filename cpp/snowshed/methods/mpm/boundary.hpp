@@ -1,7 +1,7 @@
 // Collision objects on the grid: which nodes an obstacle constrains, and how.
 //
 // The conditions are the thesis's (section 1.2.3; see Condition). Two things are ours:
-// - Friction acts on the running mean of the net normal impulse (see NodeKernels::apply), so the
+// - Friction acts on the running mean of the net normal impulse (see push_and_rub), so the
 //   contacts have a memory that outlives a step.
 // - Where gravity presses snow onto an obstacle, `separate` releases the snow only when pulls have
 //   used up the stored push. A vibrating slab thus stays on its panel. Elsewhere `separate`
@@ -158,6 +158,8 @@ class Contacts {
   std::int32_t only_obstacle(std::size_t block) const { return only_[block]; }
 
   std::size_t size() const { return contacts_.size(); }
+  /// All contacts, block by block.
+  std::vector<Contact<T>>& all() { return contacts_; }
 
   /// Returns whether a block has a contact with an obstacle that moves at present.
   bool moves(std::size_t block) const;

@@ -14,7 +14,7 @@ std::string gigabytes(double bytes) { return show_briefly(bytes / 1e9) + " GB"; 
 std::shared_ptr<gpu::Device> open_card(const Options& options, double particles) {
   const gpu::Card card = gpu::find_card();
   require_supported_on_gpu(options);
-  std::shared_ptr<gpu::Device> device = gpu::open_device(card, gpu_kernels(options));
+  std::shared_ptr<gpu::Device> device = gpu::open_device(card, gpu_kernels());
   require_memory(*device, particles);
   return device;
 }

@@ -4,7 +4,7 @@
 // other nodes they do not act on each other.
 //
 // The normal impulse and the friction follow the rules for contact with obstacles
-// (NodeKernels::apply): pushes add to a stored normal impulse, pulls subtract from it, and it
+// (push_and_rub): pushes add to a stored normal impulse, pulls subtract from it, and it
 // decays. The part that has decayed gives the friction. Each impulse acts on the two fields of a
 // pair with opposite signs. Three or more fields interact in pairs.
 #pragma once

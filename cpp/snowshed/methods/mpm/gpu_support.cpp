@@ -1,38 +1,74 @@
 #include "snowshed/methods/mpm/gpu_support.hpp"
 
-#include <stdexcept>
-#include <string>
-#include <vector>
+#include <algorithm>
 
 #include "snowshed/core/errors.hpp"
-#include "snowshed/gpu/device.hpp"
+#include "snowshed/methods/mpm/describe.hpp"
 
 namespace snowshed::methods::mpm {
+namespace {
 
-void require_supported_on_gpu(const Options& o) {
-  std::vector<std::string> parts;
-  if (o.dimension == 2) parts.push_back("two dimensions (the blocks of its threads are cubes)");
-  if (o.settings.precision == Precision::float64)
-    parts.push_back("double precision (cards for graphics compute it 32 to 64 times slower)");
-  if (o.laws.any()) parts.push_back("laws of the user (they are code for a processor)");
-  // Until this version has kernels, no scene gets past here.
-  parts.push_back("the steps of this method (this version has no kernels for cards yet)");
-  std::string list;
-  for (const std::string& part : parts) list += (list.empty() ? "" : "; ") + part;
-  throw InputError("", "not supported on a graphics card: " + list);
+const char* const on_the_processor = "or run on the processor (numerics.device \"cpu\")";
+
+}  // namespace
+
+std::vector<Unsupported> unsupported_on_gpu(const Options& o) {
+  std::vector<Unsupported> all;
+  const Settings& n = o.settings;
+  const auto refuse = [&](bool used, const char* path, const std::string& is,
+                          const std::string& instead) {
+    if (used) all.push_back({path, is + ", which a graphics card does not support; " + instead});
+  };
+  const std::string processor = std::string(on_the_processor).substr(3);
+  refuse(o.dimension != 3, "/dimension", "is 2", "use 3, " + std::string(on_the_processor));
+  refuse(n.precision != Precision::float32, "/numerics/precision", "is \"double\"",
+         std::string("use \"float\", ") + on_the_processor);
+  refuse(n.scheme != Scheme::thesis, "/numerics/scheme", "is \"objective\"",
+         std::string("use \"thesis\", ") + on_the_processor);
+  refuse(n.transfer != Transfer::flip, "/numerics/transfer",
+         "is \"" + std::string(name_of(n.transfer)) + "\"",
+         std::string("use \"flip\", ") + on_the_processor);
+  refuse(n.basis != Basis::quadratic, "/numerics/basis", "is \"cubic\"",
+         std::string("use \"quadratic\", ") + on_the_processor);
+  refuse(n.contact != ContactRule::kernel, "/numerics/contact", "is \"touch\"",
+         std::string("use \"kernel\", ") + on_the_processor);
+  refuse(n.fields != Fields::one, "/numerics/fields", "is \"events\"",
+         std::string("use \"one\", ") + on_the_processor);
+  refuse(n.damps_over_length(), "/numerics/damping_length", "is a length",
+         std::string("use 0, ") + on_the_processor);
+  refuse(n.crack_band_length > 0, "/numerics/crack_band_length", "is a length",
+         std::string("use 0, ") + on_the_processor);
+  refuse(n.relaxation_time > 0, "/numerics/relaxation_time", "is a time",
+         std::string("use 0, ") + on_the_processor);
+  refuse(o.energy, "/output/energy", "is true", std::string("use false, ") + on_the_processor);
+  refuse(o.forces, "/output/forces", "is true", std::string("use false, ") + on_the_processor);
+  const bool own_friction =
+      std::any_of(o.obstacles.begin(), o.obstacles.end(),
+                  [](const Obstacle& obstacle) { return obstacle.law.coefficient != nullptr; });
+  refuse(o.laws.material || o.laws.constitutive || o.laws.body_force || own_friction, "/",
+         "has laws of the user", processor);
+  return all;
 }
 
+void require_supported_on_gpu(const Options& options) {
+  const std::vector<Unsupported> all = unsupported_on_gpu(options);
+  if (all.empty()) return;
+  std::string reason = all.front().reason;
+  for (std::size_t i = 1; i < all.size(); ++i)
+    reason += ". Also " + all[i].path + " " + all[i].reason;
+  throw InputError(all.front().path, reason);
+}
+
+/// The state, the indices of strays and of the order, and a spare array; and the nodes, for blocks
+/// that are not quite full, of a slab that is five cells thick.
 double bytes_on_gpu(double particles) {
-  constexpr double state_and_id = 60, sort = 88, grid = 88;  // grid: 21 to 88
-  return particles * (state_and_id + sort + grid);
+  constexpr double state = 15 * 4 + 4 + 2 + 1, indices = 8, spare = 4;
+  constexpr double node = 2 * 64 + 3 * 16 + 8 + 0.4, nodes_per_particle = 0.8;
+  return particles * (state + indices + spare + node * nodes_per_particle);
 }
 
-gpu::KernelProgram gpu_kernels(const Options&) {
-  throw std::logic_error("no kernels for graphics cards");
-}
-
-std::unique_ptr<Solver> make_gpu_solver(Options, std::shared_ptr<gpu::Device>) {
-  throw std::logic_error("no solver for graphics cards");
+gpu::KernelProgram gpu_kernels() {
+  return {"kernels of mpm", "#include \"snowshed/methods/mpm/gpu/kernels.cuh\"\n"};
 }
 
 }  // namespace snowshed::methods::mpm

@@ -1,27 +1,29 @@
 // Everything that the choice of a device must know about the solver for graphics cards.
 #pragma once
 
-#include <memory>
+#include <string>
+#include <vector>
 
 #include "snowshed/gpu/kernel_program.hpp"
 #include "snowshed/methods/mpm/solver.hpp"
 
-namespace snowshed::gpu {
-class Device;
-}
-
 namespace snowshed::methods::mpm {
 
-/// Throws InputError, with all reasons, if a card cannot compute the simulation.
+/// A setting that a graphics card does not support, with its place in the scene and what to do.
+struct Unsupported {
+  std::string path, reason;
+};
+
+/// Returns everything that steps on a graphics card do not support; empty: all is supported.
+std::vector<Unsupported> unsupported_on_gpu(const Options&);
+
+/// Throws InputError, at the first of them with a text on all, if there are any.
 void require_supported_on_gpu(const Options&);
 
 /// Memory of a card that this many particles need with their grid, bytes.
 double bytes_on_gpu(double particles);
 
 /// The kernels of a simulation.
-gpu::KernelProgram gpu_kernels(const Options&);
-
-/// Makes a solver on a card that was opened with its kernels. The settings must be supported.
-std::unique_ptr<Solver> make_gpu_solver(Options, std::shared_ptr<gpu::Device>);
+gpu::KernelProgram gpu_kernels();
 
 }  // namespace snowshed::methods::mpm

@@ -9,7 +9,10 @@
 #include "snowshed/core/variant.hpp"
 #include "snowshed/material/snow.hpp"
 #include "snowshed/methods/contact_law.hpp"
+#include "snowshed/methods/mpm/basis.hpp"
+#include "snowshed/methods/mpm/contact_rule.hpp"
 #include "snowshed/methods/mpm/settings.hpp"
+#include "snowshed/methods/mpm/snow_constants.hpp"
 
 namespace snowshed::methods::mpm {
 
@@ -25,17 +28,6 @@ inline constexpr int block_nodes = block_edge<D> * block_edge<D> * (D == 3 ? blo
 /// Velocities: new velocity (3), unused, then the change of velocity over the step
 ///             (FLIP, affine FLIP) or the new velocity again (APIC).
 inline constexpr int node_values = 8;
-
-/// Smallest mass of a node with snow, kg. The inverse of a smaller mass may overflow.
-template <class T>
-inline constexpr T min_node_mass = T(1e-30);
-
-/// Nodes that a particle touches along one direction.
-constexpr int support(Basis basis) { return basis == Basis::quadratic ? 3 : 4; }
-
-/// The smallest distance (in cells) from a particle's lowest node to the particle. The fraction of
-/// the particle's `cell` is added to it.
-constexpr double base_offset(Basis basis) { return basis == Basis::quadratic ? 0.5 : 1.0; }
 
 /// Inverse of APIC's inertia D = sum_i w_i (x_i - x)^2, per cell squared.
 constexpr double apic_inverse_inertia(Basis basis) { return basis == Basis::quadratic ? 4.0 : 3.0; }
@@ -85,20 +77,10 @@ struct AverageTile {
   T share;      // share of the difference from the average that a particle loses
 };
 
-/// Constants of a snow for the kernels. C is a scalar, or a SIMD pack: one value for each particle
-/// of a chunk.
-template <class C>
-struct MaterialConstants {
-  C lambda, mu, bulk;         // Pa, see Elasticity
-  C m2, beta, xi, hardening;  // see CamClay
-  C specific_volume;          // m3/kg, before any deformation
-  C softening, band_begin;    // crack band, see CamClayLaw
-};
-
 template <class T>
 struct StepParameters {
   T dt, dx, gravity, flip_ratio;
-  T friction_rate;            // dt over the friction memory, see NodeKernels::apply
+  T friction_rate;            // dt over the friction memory, see push_and_rub
   T friction_rate_per_speed;  // s/m, the same per m/s of sliding speed
   T overstress;  // share of the stress beyond the yield surface that a step leaves, see CamClayLaw
   const MaterialConstants<T>* snows;  // indexed by material_id
@@ -112,17 +94,11 @@ struct StepParameters {
 };
 
 /// Returns the share of its stored normal impulse for which a contact exerts friction in a step.
-/// `speed` is the sliding speed (m/s); see NodeKernels::apply.
+/// `speed` is the sliding speed, m/s.
 template <class T>
 SNOWSHED_INLINE T decay_share(const StepParameters<T>& step, T speed) {
-  const T rate = step.friction_rate_per_speed * speed;
-  return rate < step.friction_rate ? step.friction_rate : rate < T(1) ? rate : T(1);
+  return FrictionRates<T>{step.friction_rate, step.friction_rate_per_speed}.decay_share(speed);
 }
-
-/// Largest norm of the elastic Hencky strain that single precision still resolves: compression to a
-/// twentieth of the length, or stretching to twenty times the length. Snow yields long before. Only
-/// bodies that are much too soft for their speed reach this strain.
-inline constexpr double elastic_strain_limit = 3.0;
 
 /// Bits of `BlockStats::reach`: nodes below a block, or above it, along a direction.
 constexpr int below(int direction) { return 1 << (2 * direction); }
@@ -177,39 +153,6 @@ struct NodeStats {
 struct SleepingBlockMotion {
   double speed_squared = 0;            // m2/s2
   double change[3] = {0.0, 0.0, 0.0};  // change of its velocity in the step by all forces, m/s
-};
-
-/// Rule by which a contact releases snow that is pulled off the obstacle.
-enum class Release : std::uint8_t {
-  never,  // slip
-  // separate, on faces onto which gravity presses snow: once pulls exceed the stored impulse
-  after_push,
-  at_once  // separate elsewhere
-};
-
-/// A node that an obstacle constrains.
-template <class T>
-struct Contact {
-  std::int32_t node;
-  std::int32_t obstacle;
-  T normal[3];            // normal of the face that snow touches; `outward` if it touches none
-  T outward[3];           // normal of the obstacle at the node
-  T velocity[3];          // velocity of the obstacle at the node
-  T normal_impulse;       // stored normal impulse, N s, for which friction is still due;
-                          // with slip, which holds against any pull, it may be negative
-  T next_normal_impulse;  // the same after the step that is being tried
-  Release release;
-  bool acts = true;  // whether snow has come close enough
-};
-
-/// The force at a contact, where forces are recorded. The kernels write the impulse only.
-template <class T>
-struct ContactForce {
-  T impulse[4];             // N s, on the snow in the step being tried, or just taken
-  T sum[4];                 // N s, on the snow in the steps before, since the last collection
-  T mean[3];                // N, running mean of the force on the snow
-  T age;                    // s, time over which it is a mean
-  std::int32_t patch = -1;  // index into the pressure map
 };
 
 /// Whether a contact has no impulse since the last collection.

@@ -6,7 +6,7 @@
 #include "snowshed/methods/mpm/cost.hpp"
 #include "snowshed/methods/mpm/describe.hpp"
 #include "snowshed/methods/mpm/device_choice.hpp"
-#include "snowshed/methods/mpm/gpu_support.hpp"
+#include "snowshed/methods/mpm/gpu_solver.hpp"
 #include "snowshed/methods/mpm/solver.hpp"
 
 namespace snowshed::methods::mpm {

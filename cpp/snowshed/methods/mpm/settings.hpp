@@ -5,11 +5,12 @@
 #include <cstdint>
 #include <optional>
 
+#include "snowshed/methods/mpm/basis.hpp"
+
 namespace snowshed::methods::mpm {
 
 enum class Precision { float32, float64 };
 enum class Transfer { flip, apic, affine_flip };
-enum class Basis { quadratic, cubic };
 enum class ContactRule { kernel, touch };
 enum class Scheme { thesis, objective };
 enum class Fields { one, events };

@@ -30,10 +30,6 @@ std::vector<std::int32_t> particle_counts(const BlockLayout<D>& layout) {
   return counts;
 }
 
-/// Number of steps between the checks whether snow falls asleep or wakes. A wave crosses less than
-/// a block in this time.
-constexpr int steps_between_checks = 8;
-
 }  // namespace
 
 template <int D>

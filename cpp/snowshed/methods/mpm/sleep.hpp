@@ -26,6 +26,10 @@
 
 namespace snowshed::methods::mpm {
 
+/// Number of steps between the checks whether snow falls asleep or wakes. A wave crosses less than
+/// a block in this time.
+inline constexpr int steps_between_checks = 8;
+
 template <int D>
 class Sleep {
  public:
@@ -65,6 +69,8 @@ class Sleep {
   bool is_active(std::int32_t grid_block) const { return touched_[grid_block]; }
   /// Grid blocks that only sleeping snow touches.
   const std::vector<std::int32_t>& idle() const { return idle_; }
+  /// Sleeping blocks that share nodes with awake snow.
+  const std::vector<std::int32_t>& border() const { return border_; }
   std::int64_t awake_particles() const { return awake_particles_; }
 
   /// State of one block of particles.
@@ -95,8 +101,8 @@ class Sleep {
   std::vector<State> states_;
   // The lists have capacity for all blocks, so that no step needs memory for them.
   std::vector<std::int32_t> awake_, active_, idle_, newly_asleep_;
-  std::vector<bool> touched_;         // whether awake snow touches a grid block
-  std::vector<std::int32_t> border_;  // sleeping blocks that share nodes with awake snow
+  std::vector<bool> touched_;  // whether awake snow touches a grid block
+  std::vector<std::int32_t> border_;
   std::int64_t awake_particles_ = 0;
 };
 

@@ -11,17 +11,6 @@
 #include "snowshed/methods/mpm/time_step.hpp"
 
 namespace snowshed::methods::mpm {
-namespace {
-
-/// Memory of the contact friction for fast snow, as a sliding distance in cells. A stored impulse
-/// stays at its node; the part that has not acted as friction when the snow leaves is lost. With
-/// half a cell, chunks of two or more cells at 5 to 15 m/s lose at most 2 % of the friction; with a
-/// whole cell, 11 %. With less than half a cell, pushes of a vibrating chunk act before its pulls
-/// have reduced them.
-constexpr double friction_reach = 0.5;
-
-}  // namespace
-
 template <class T, int D>
 SolverImpl<T, D>::SolverImpl(Options options)
     : model_(std::move(options)),
@@ -113,10 +102,7 @@ template <class T, int D>
 void SolverImpl<T, D>::sort() {
   state_.arrange(model_, blocks_of_particles(state_.layout));
   workspace_.since_sort = 0;
-  const double share =
-      contacts_per_particle * double(size()) / std::max(double(state_.contacts.size()), 1.0);
-  workspace_.until_sort =
-      int(steps_between_sorts * std::clamp(share, 1.0 / steps_between_sorts, 1.0));
+  workspace_.until_sort = steps_until_sort(size(), state_.contacts.size());
   ++state_.totals.sorts;
 }
 
@@ -276,14 +262,9 @@ double SolverImpl<T, D>::shorten_to_limits(double dt) {
     const double strain = largest_strain() * dt;
     if (strain <= limit) return dt;
     ++state_.totals.counters.rejected;
-    dt *= std::min(0.5, 0.8 * limit / strain);
-    if (!(dt > 1e-7 * state_.elastic_limit)) {  // also if the strain is not finite
-      std::ostringstream message;
-      message << "the time step fell to " << dt << " s at t = " << time()
-              << " s: the snow would strain by " << strain << " in one step (limit " << limit
-              << "); try a smaller numerics.courant_factor";
-      throw SimulationError(message.str());
-    }
+    dt = shortened_time_step(dt, strain, limit);
+    if (!(dt > min_step_share * state_.elastic_limit))  // also if the strain is not finite
+      throw SimulationError(describe_stuck(dt, time(), strain, limit));
     update(dt);
   }
 }
@@ -385,25 +366,33 @@ void SolverImpl<T, D>::check_particles() {
   for (std::int32_t b : state_.sleep.awake()) {
     if (workspace_.grid.block_stats[b].unsound < 0) continue;
     soundness_.lose();  // also if the memory for the message is missing
-    soundness_.fail(describe_unsound(b));
+    const BlockStats& s = workspace_.grid.block_stats[b];
+    soundness_.fail(describe_unsound(b, std::size_t(s.unsound), s.elastic_strain));
   }
 }
 
 template <class T, int D>
-std::string SolverImpl<T, D>::describe_unsound(std::int32_t b) const {
-  const BlockStats& s = workspace_.grid.block_stats[b];
+void SolverImpl<T, D>::fail_at(std::int32_t particle) {
+  soundness_.lose();
+  const std::vector<std::int32_t>& first = state_.layout.first;
+  const auto next = std::upper_bound(first.begin(), first.end(), particle);
+  const std::size_t i = std::size_t(particle);
+  soundness_.fail(describe_unsound(std::int32_t(next - first.begin()) - 1, i,
+                                   std::sqrt(material::norm_squared(elastic_strain(i)))));
+}
+
+template <class T, int D>
+std::string SolverImpl<T, D>::describe_unsound(std::int32_t b, std::size_t i, double strain) const {
   const Settings& n = model_.options.settings;
-  const std::size_t i = std::size_t(s.unsound);
   const VecD<D> x =
       position_of(state_.particles, i, state_.layout.particle_blocks[b], n.dx, n.basis);
   std::ostringstream message;
   message << "particle " << state_.particles.id[i] << " at (" << x[0];
   for (int d = 1; d < D; ++d) message << ", " << x[d];
   message << ") m, t = " << time() << " s: ";
-  if (std::isfinite(s.elastic_strain))
-    message << "its elastic strain has reached " << s.elastic_strain
-            << ", more than can be resolved (" << elastic_strain_limit
-            << "); snow.youngs_modulus is too small for such speeds";
+  if (std::isfinite(strain))
+    message << "its elastic strain has reached " << strain << ", more than can be resolved ("
+            << elastic_strain_limit << "); snow.youngs_modulus is too small for such speeds";
   else
     message << "its state is no longer finite; try a smaller numerics.courant_factor or double "
                "precision";

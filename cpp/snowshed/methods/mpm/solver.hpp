@@ -1,6 +1,7 @@
 // The material point method: one explicit step at a time.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -47,6 +48,12 @@ inline constexpr int steps_between_sorts = 64;
 /// thousands of overlapping obstacles steps take long, and a run can stop only at the safe point
 /// before a sort.
 inline constexpr double contacts_per_particle = 100;
+
+/// Steps between two sorts.
+inline int steps_until_sort(std::size_t particles, std::size_t contacts) {
+  const double share = contacts_per_particle * double(particles) / std::max(double(contacts), 1.0);
+  return int(steps_between_sorts * std::clamp(share, 1.0 / steps_between_sorts, 1.0));
+}
 
 std::unique_ptr<Solver> make_solver(Options);
 

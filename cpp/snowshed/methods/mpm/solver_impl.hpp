@@ -74,6 +74,19 @@ class SolverImpl final : public Solver {
   void load(const io::BinaryReader&) override;
   void check(const io::BinaryReader&) const override;
 
+  // --- for a device that takes the steps in place of this solver ---------------------------------
+
+  const Model<T, D>& model() const { return model_; }
+  /// The state, which the device may change as steps do. The grid of this solver is then obsolete.
+  State<T, D>& state_for_device() {
+    workspace_.tiles_valid = false;
+    return state_;
+  }
+  const State<T, D>& state_of_device() const { return state_; }
+  void require_sound() const { soundness_.require(); }
+  /// Makes the solver fail because of a particle that is not sound.
+  [[noreturn]] void fail_at(std::int32_t particle);
+
  private:
   State<T, D> read_state(const io::BinaryReader&) const;
   void read_forces(const io::BinaryReader&, State<T, D>& next) const;
@@ -114,7 +127,7 @@ class SolverImpl final : public Solver {
   int threads() const { return model_.threads(state_.sleep.awake_particles()); }
   void velocities_around(std::int32_t block, const T* (&velocities)[neighbour_count<D>]);
   void check_particles();  ///< throws SimulationError
-  std::string describe_unsound(std::int32_t block) const;
+  std::string describe_unsound(std::int32_t block, std::size_t particle, double strain) const;
   void update_energy_balance() noexcept;
   void accept(State<T, D> next) noexcept;
   material::Sym<double, D> elastic_strain(std::size_t particle) const;  ///< Hencky's

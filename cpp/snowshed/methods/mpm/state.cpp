@@ -129,21 +129,27 @@ template <class T, int D>
 void State<T, D>::arrange(const Model<T, D>& model, std::vector<BlockKey> blocks) {
   const int threads = model.threads(sleep.awake_particles());
   ParticleSort<T, D> sort(particles, std::move(blocks), layout, threads);
+  BlockLayout<D> next = std::move(sort.layout);
+  adopt(model, std::move(next), threads, [&] { sort.apply(particles); });
+}
+
+template <class T, int D>
+void State<T, D>::adopt(const Model<T, D>& model, BlockLayout<D> next, int threads,
+                        const std::function<void()>& sort) {
   std::optional<Contacts<T, D>> relocated;
   if (forces) {
     if (sleep.idle().empty())
-      collect_vanishing_forces(model, sort.layout.grid_blocks);
+      collect_vanishing_forces(model, next.grid_blocks);
     else
       collect_forces(model);  // snow may wake
   }
-  if (sort.layout.grid_blocks != layout.grid_blocks) {
-    relocated = contacts.relocated(model.boundary, sort.layout.grid_blocks, totals.time, threads);
+  if (next.grid_blocks != layout.grid_blocks) {
+    relocated = contacts.relocated(model.boundary, next.grid_blocks, totals.time, threads);
     if (forces) relocated->find_patches(model.boundary, totals.time, forces->forces.pressures());
   }
-  Sleep<D> sleep_after = sleep.relocated(sort.layout, totals.time);
-  // All memory is reserved: nothing fails from here on.
-  sort.apply(particles);
-  layout = std::move(sort.layout);
+  Sleep<D> sleep_after = sleep.relocated(next, totals.time);
+  sort();  // all memory is reserved: nothing fails from here on
+  layout = std::move(next);
   if (relocated) contacts = std::move(*relocated);
   sleep = std::move(sleep_after);
 }

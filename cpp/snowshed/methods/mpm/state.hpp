@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <vector>
@@ -74,6 +75,11 @@ struct State {
   /// Sorts the particles, which lie in `blocks`, and updates the layout, the contacts and the
   /// sleep. If this throws, nothing has changed.
   void arrange(const Model<T, D>& model, std::vector<BlockKey> blocks);
+
+  /// Adopts the layout of particles that `sort` brings into its order, with its contacts and sleep.
+  /// If this throws before it calls `sort`, nothing has changed.
+  void adopt(const Model<T, D>& model, BlockLayout<D> next, int threads,
+             const std::function<void()>& sort);
 
   void find_elastic_limits(const Model<T, D>& model);
 

@@ -1,6 +1,7 @@
 #include "snowshed/methods/mpm/time_step.hpp"
 
 #include <cmath>
+#include <sstream>
 
 #include "snowshed/material/elasticity.hpp"
 
@@ -13,8 +14,12 @@ double elastic_time_step(double youngs_modulus, double poissons_ratio, double de
   return dx * std::sqrt(2 / (transfer_stability_number(transfer, basis) * stiffness / density));
 }
 
-double next_time_step(double elastic_limit, double speed, double dx, double factor) {
-  return factor / (1 / elastic_limit + 2 * speed / dx);
+std::string describe_stuck(double dt, double time, double strain, double limit) {
+  std::ostringstream message;
+  message << "the time step fell to " << dt << " s at t = " << time
+          << " s: the snow would strain by " << strain << " in one step (limit " << limit
+          << "); try a smaller numerics.courant_factor";
+  return message.str();
 }
 
 }  // namespace snowshed::methods::mpm

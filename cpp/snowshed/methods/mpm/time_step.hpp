@@ -1,7 +1,10 @@
 // The stable time step of explicit MPM.
 #pragma once
 
+#include <string>
+
 #include "snowshed/methods/mpm/kernel_api.hpp"
+#include "snowshed/methods/mpm/step_length.hpp"
 
 namespace snowshed::methods::mpm {
 
@@ -37,8 +40,7 @@ constexpr double transfer_stability_number(Transfer transfer, Basis basis) {
 double elastic_time_step(double youngs_modulus, double poissons_ratio, double density,
                          int dimension, double dx, Transfer transfer, Basis basis);
 
-/// The time step to take: the elastic limit shortened so that the fastest particle moves no more
-/// than half a cell. `factor` in (0, 1].
-double next_time_step(double elastic_limit, double speed, double dx, double factor);
+/// The message for a time step that fell to dt (s) at a time (s), because of a strain.
+std::string describe_stuck(double dt, double time, double strain, double limit);
 
 }  // namespace snowshed::methods::mpm

@@ -319,7 +319,7 @@ void SolverImpl::step() {
   if (keeps_energy) recorder.after_ground(model_, state_, workspace_, state_.energy);
   apply_neighbours(model_, state_, workspace_);
   if (!model_.dams.empty()) keep_positions();
-  advance(model_, state_, workspace_);
+  slide::advance(model_, state_, workspace_);
   if (keeps_energy) recorder.after_motion(model_, state_, workspace_, state_.energy);
   mark_detrained(state_, workspace_);
   if (!model_.dams.empty()) apply_dams(model_, state_, workspace_);

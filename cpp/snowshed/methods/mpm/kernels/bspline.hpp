@@ -2,7 +2,7 @@
 #pragma once
 
 #include "snowshed/core/simd_pack.hpp"
-#include "snowshed/methods/mpm/settings.hpp"
+#include "snowshed/methods/mpm/basis.hpp"
 
 SNOWSHED_MODULE_VARIANT_BEGIN(methods::mpm)
 

@@ -21,8 +21,7 @@ SNOWSHED_INLINE ChunkMaterial<material::Elastic, C> elastic_snow(const MaterialC
 }
 template <template <class> class Law, class C>
 SNOWSHED_INLINE ChunkMaterial<Law, C> cam_clay_snow(const MaterialConstants<C>& k) {
-  return {{{k.lambda, k.mu, k.bulk}, k.m2, k.beta, k.xi, k.hardening, k.softening, k.band_begin},
-          k.specific_volume};
+  return {cam_clay_law<Law>(k), k.specific_volume};
 }
 
 /// The only snow of a scene.

@@ -221,22 +221,6 @@ struct NodeKernels {
     }
   };
 
-  /// Returns the speed at which snow slides along a contact.
-  static T sliding_speed(const Contact<T>& c, T normal_speed, const T (&free)[D]) {
-    T squared = 0;
-    for (int d = 0; d < D; ++d) {
-      const T sliding = free[d] - c.velocity[d] - normal_speed * c.normal[d];
-      squared += sliding * sliding;
-    }
-    return std::sqrt(squared);
-  }
-
-  /// Returns the share of its stored impulse that a contact exerts as friction in a step. It is 1
-  /// after the snow has left.
-  static T decayed_share(const StepParameters<T>& step, const Contact<T>& c, T sliding_speed) {
-    return c.acts ? decay_share(step, sliding_speed) : T(1);
-  }
-
   /// Returns the coefficient of friction at a sliding speed and a normal impulse of the step.
   static T coefficient(const StepParameters<T>& step, const ContactLaw& law, T speed, T impulse) {
     if (!law.coefficient) return T(law.friction);
@@ -247,37 +231,14 @@ struct NodeKernels {
     return given >= 0 ? T(given) : std::numeric_limits<T>::quiet_NaN();
   }
 
-  /// Returns the largest pull that a contact can cancel in a step, as a negative push (N s). A
-  /// larger pull releases the snow. `stored` is what remains of earlier pushes.
-  static T min_push(const Contact<T>& c, T stored) {
-    if (c.release == Release::never) return std::numeric_limits<T>::lowest();
-    return c.release == Release::after_push ? -stored : T(0);
-  }
-
-  /// Sticky, slip, separate (thesis, section 1.2.3), with Coulomb friction on the running mean of
-  /// the net normal impulse. Each contact stores a normal impulse: pushes on the obstacle add to
-  /// it, pulls subtract from it, and it decays at the rate 1/(friction memory). The friction of a
-  /// step follows from the part that decays in it, so that every newton-second of net push counts
-  /// once. The usual rule applies the friction of each step's push at once. It overestimates the
-  /// friction of a slab that vibrates on its panel, because slip cancels the pulls but forgets
-  /// them. The slab may even be held where it should slide.
-  ///
-  /// Slip cancels any pull, so its stored impulse may become negative. It then causes no friction
-  /// until later pushes have made it positive. Separate releases snow when the pull exceeds the
-  /// stored impulse.
-  ///
-  /// The stored impulse stays at the node while the snow moves on, so friction must act on fast
-  /// snow before it has left. The impulse therefore decays within the time in which the snow slides
-  /// over a given part of a cell, or sooner. It decays at once if the snow separates.
+  /// Applies the condition of an obstacle (sticky, slip or separate) to a node.
   static void apply(const StepParameters<T>& step, Contact<T>& c, const ContactLaw& law,
                     const T* sum, Half& node, NodeStats& stats) {
     const T mass = sum[0];
-    T before[D], free[D], pushed[D], after[D];
-    T normal_speed = 0;
+    T before[D], free[D], after[D];
     for (int d = 0; d < D; ++d) {
       before[d] = sum[1 + d] / mass;
       free[d] = node[d];
-      normal_speed += (free[d] - c.velocity[d]) * c.normal[d];
     }
     if (law.condition == Condition::sticky) {
       for (int d = 0; d < D; ++d) node[d] = after[d] = c.velocity[d];
@@ -287,29 +248,13 @@ struct NodeKernels {
       }
       return;
     }
-    const T decayed =
-        c.normal_impulse * decayed_share(step, c, sliding_speed(c, normal_speed, free));
-    const T remaining_impulse = c.normal_impulse - decayed;
-    const T min_impulse = c.acts ? min_push(c, remaining_impulse) : T(0);
-    T push = c.acts ? -mass * normal_speed : T(0);
-    const bool lets_go = !c.acts || push < min_impulse;
-    if (lets_go) push = min_impulse;
-    c.next_normal_impulse = remaining_impulse + push;
-
-    T slip[D], slip_squared = 0;
-    const T along = normal_speed + push / mass;  // normal speed that remains
-    for (int d = 0; d < D; ++d) {
-      pushed[d] = free[d] + push / mass * c.normal[d];
-      slip[d] = pushed[d] - c.velocity[d] - along * c.normal[d];
-      slip_squared += slip[d] * slip[d];
-    }
-    const T slip_impulse = mass * std::sqrt(slip_squared);
-    const T due = decayed > T(0) ? decayed : T(0);
-    const T friction = coefficient(step, law, std::sqrt(slip_squared), due) *
-                       step.friction_shares[c.obstacle] * due;
-    const T slip_share =
-        slip_impulse > friction ? friction / slip_impulse : (friction >= T(0) ? T(1) : friction);
-    for (int d = 0; d < D; ++d) node[d] = after[d] = pushed[d] - slip_share * slip[d];
+    const auto coefficient_at = [&](T speed, T impulse) {
+      return coefficient(step, law, speed, impulse);
+    };
+    const FrictionRates<T> rates{step.friction_rate, step.friction_rate_per_speed};
+    const auto [lets_go, slip_share] =
+        push_and_rub<D>(rates, c, mass, step.friction_shares[c.obstacle], coefficient_at, node);
+    for (int d = 0; d < D; ++d) after[d] = node[d];
     if constexpr (energy) {
       const NormalSplit split_before(before, c.normal), split_free(free, c.normal),
           split_after(after, c.normal);

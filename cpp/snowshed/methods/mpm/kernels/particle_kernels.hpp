@@ -5,9 +5,9 @@
 // the particle's state is read and written only once.
 #pragma once
 
-#include "snowshed/material/sym_tensor.hpp"
 #include "snowshed/methods/mpm/kernels/average_stencil.hpp"
 #include "snowshed/methods/mpm/kernels/material_lookup.hpp"
+#include "snowshed/methods/mpm/kernels/stress.hpp"
 #include "snowshed/methods/mpm/kernels/tile.hpp"
 #include "snowshed/methods/mpm/kernels/transfer_rules.hpp"
 #include "snowshed/methods/mpm/kernels/user_return.hpp"
@@ -168,32 +168,10 @@ struct ParticleKernels {
     }
   }
 
-  /// b <- (I + G) b (I + G)^T with G = dt grad v (1.2.14), on b - I: with H = G b,
-  /// a <- a + H + H^T + H G^T.
-  SNOWSHED_INLINE void update_left_cauchy_green(State& s, const Motion& m) const {
-    V h[D][D];
-    for (int i = 0; i < D; ++i)
-      for (int j = 0; j < D; ++j) {
-        V sum = m.gradient[i][j];
-        for (int k = 0; k < D; ++k) sum += m.gradient[i][k] * s.be_minus_identity(k, j);
-        h[i][j] = sum;
-      }
-    for (int i = 0; i < D; ++i)
-      for (int j = i; j < D; ++j) {
-        V sum = h[i][j] + h[j][i];
-        for (int k = 0; k < D; ++k) sum += h[i][k] * m.gradient[j][k];
-        s.be_minus_identity(i, j) += sum;
-      }
-  }
-
-  struct Stress {
-    Tensor tau;        // Kirchhoff stress
-    V strain_squared;  // |e|^2 of the Hencky strain at this stress
-  };
-
   /// Returns the stress of the present elastic strain. With plastic laws the strain is first
   /// returned to the yield surface, unless this has been done (`committed`).
-  SNOWSHED_INLINE Stress stress(State& s, const Snow& snow, int at, int n, bool committed) const {
+  SNOWSHED_INLINE Stress<V, D> stress(State& s, const Snow& snow, int at, int n,
+                                      bool committed) const {
     if constexpr (Snow::plastic)
       if (step.constitutive) {
         const auto user = user_stress(step, p, s.be_minus_identity, s.plastic, at, n, committed);
@@ -201,37 +179,16 @@ struct ParticleKernels {
         s.plastic = user.plastic;
         return {user.tau, user.strain_squared};
       }
-    const auto& el = snow.law.elastic;
-    Tensor e = material::hencky_strain(s.be_minus_identity);
-    const V volumetric = material::trace(e);
-    V third = volumetric * (T(1) / T(D));
-    Tensor dev = e;
-    for (int k = 0; k < D; ++k) dev.c[k] -= third;
-    const V dev_squared = material::norm_squared(dev);
-    V shear_ratio = broadcast<V>(T(1)), p_now = -el.bulk * volumetric;
-    if constexpr (Snow::plastic) {
-      const V q_trial = sqrt(V(T(6) * dev_squared)) * el.mu;  // q = sqrt(3/2 s:s)
-      material::PQ<V> pq{p_now, q_trial};
-      if (!committed && return_to_yield(pq, s, snow, at, n)) {
-        const auto sheared = q_trial > T(0);
-        shear_ratio = select(sheared, V(pq.q / select(sheared, q_trial, shear_ratio)), shear_ratio);
-        third = pq.p * (T(-1) / (el.bulk * T(D)));
-        for (int k = 0; k < Tensor::size; ++k) e.c[k] = shear_ratio * dev.c[k];
-        for (int k = 0; k < D; ++k) e.c[k] += third;
-        const Tensor returned = material::cauchy_green_minus_identity(e);
-        const auto changed = (pq.p != p_now) | (pq.q != q_trial);
-        for (int k = 0; k < Tensor::size; ++k)
-          s.be_minus_identity.c[k] = select(changed, returned.c[k], s.be_minus_identity.c[k]);
-      }
-      if constexpr (energy) record_energy(material::PQ<V>{p_now, q_trial}, pq, s.mass, snow, n);
-      p_now = pq.p;
-    }
-    Stress r;
-    const V shear_scale = T(2) * el.mu * shear_ratio;
-    for (int k = 0; k < Tensor::size; ++k) r.tau.c[k] = shear_scale * dev.c[k];
-    for (int k = 0; k < D; ++k) r.tau.c[k] -= p_now;
-    r.strain_squared = shear_ratio * shear_ratio * dev_squared + T(D) * third * third;
-    return r;
+    return stress_of(s.be_minus_identity, snow.law.elastic,
+                     [&](material::PQ<V>& pq) SNOWSHED_INLINE_LAMBDA {
+                       bool changed = false;
+                       if constexpr (Snow::plastic) {
+                         const material::PQ<V> trial = pq;
+                         changed = !committed && return_to_yield(pq, s, snow, at, n);
+                         if constexpr (energy) record_energy(trial, pq, s.mass, snow, n);
+                       }
+                       return changed;
+                     });
   }
 
   /// Returns the trial of a chunk to the yield surface, by the law of the snow or of the user;
@@ -367,7 +324,7 @@ struct ParticleKernels {
       move(s, m);
       if constexpr (Rule::averages)
         if (average) add_velocity(s, velocity_change, n);
-      update_left_cauchy_green(s, m);
+      update_left_cauchy_green(s.be_minus_identity, m.gradient);
       const Snow& snow = snows.of(p, at, n);
       const auto [tau, strain_squared] = stress(s, snow, at, n, false);
       write(s, at, n);

@@ -1,0 +1,79 @@
+// The snow and the grid in the memory of a device, and the kernels on them. The layout of the
+// blocks, the contacts of new blocks and the decision which blocks sleep are the host's.
+#pragma once
+
+#include "snowshed/methods/mpm/gpu/device_particles.hpp"
+#include "snowshed/methods/mpm/model.hpp"
+#include "snowshed/methods/mpm/state.hpp"
+
+namespace snowshed::methods::mpm::gpu {
+
+class DeviceSnow {
+ public:
+  using HostState = State<float, 3>;
+
+  DeviceSnow(snowshed::gpu::Device& device, const Model<float, 3>& model);
+
+  /// Uploads all of a state. `scatter` must follow before a step.
+  void upload(const HostState&);
+  /// Brings the particles and the contacts of the host up to date.
+  void download(HostState&) const;
+  /// Brings only the impulses of the contacts up to date.
+  void download_contacts(HostState&) const;
+  /// Uploads contacts that the host has changed.
+  void upload_contacts(const HostState&);
+  /// Uploads which blocks sleep.
+  void upload_sleep(const HostState&);
+
+  /// Sorts the particles by blocks, which changes the layout, the contacts and the sleep of the
+  /// host's state, too. `scatter` must follow.
+  void sort(HostState&);
+  /// Computes the sums of the grid from the particles, of which control.speed_squared is the
+  /// largest square of a speed.
+  void scatter(Control& control);
+
+  /// Takes up to `rounds` steps, until control.until or control.steps_left or an event for the
+  /// host. Waits for their end.
+  void run(Control&, int rounds);
+
+  /// Stops the particles of some blocks.
+  void stop(const std::vector<std::int32_t>& blocks);
+  /// Returns the motion of the particle blocks that are awake or beside awake snow; the other
+  /// entries are undefined.
+  std::vector<BlockMotion> motions(const Sleep<3>&);
+
+  /// Memory on the device.
+  std::size_t bytes() const;
+
+ private:
+  void upload_layout(const HostState&);
+  void find_units(const HostState&);
+  void launch_round();
+  void launch_particles(const char* kernel, const DeviceArray<std::int32_t>& list,
+                        unsigned long long* integers);
+  void launch_strays(const char* kernel, unsigned long long* integers);
+  std::string named(const char* kernel) const;
+  ParticleLaunch launch_of(const DeviceArray<std::int32_t>& list,
+                           unsigned long long* integers) const;
+  GridArrays grid() const;
+  ContactArrays contacts() const;
+
+  snowshed::gpu::Device& device_;
+  const Model<float, 3>& model_;
+  DeviceParticles particles_;
+  DeviceArray<std::int32_t> first_, around_, order_, strays_;
+  DeviceArray<std::int32_t> awake_, asleep_blocks_, active_, idle_, listed_;
+  DeviceArray<unsigned long long> integers_, asleep_;
+  DeviceArray<Quad> carried_, force_, velocity_;
+  DeviceArray<Pair> change_;
+  DeviceArray<float> ranges_, friction_, friction_shares_;
+  DeviceArray<std::int32_t> first_contact_, conditions_;
+  DeviceArray<Contact<float>> contacts_;
+  DeviceArray<MaterialConstants<float>> snows_;
+  DeviceArray<BlockMotion> motions_;
+  DeviceArray<Control> control_;
+  Constants constants_{};
+  std::int32_t blocks_ = 0;  // number of particle blocks
+};
+
+}  // namespace snowshed::methods::mpm::gpu

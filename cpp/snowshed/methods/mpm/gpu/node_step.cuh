@@ -1,0 +1,168 @@
+// The grid side of a step: a thread block to a block of nodes. Velocities from the sums (thesis
+// 1.2.9), then the contacts, those with one obstacle at a time.
+#pragma once
+
+#include "snowshed/methods/mpm/contact_rule.hpp"
+#include "snowshed/methods/mpm/gpu/sums.cuh"
+
+namespace snowshed::methods::mpm::gpu {
+
+struct NodeMemory {
+  float velocity[3][nodes_of_block], mass[nodes_of_block];
+  std::int32_t low[3], high[3];
+};
+
+/// Reads the sums of a node. The first try of a step takes them from the whole numbers, and clears
+/// those of the awake snow for the next step.
+__device__ inline void read_sums(const GridArrays& grid, int n, bool first_try, const Units& units,
+                                 Quad& carried, Quad& force) {
+  if (!first_try) {
+    carried = grid.carried[n];
+    force = grid.force[n];
+    return;
+  }
+  unsigned long long* integers = grid.integers + n * node_stride;
+  const unsigned long long* asleep = grid.asleep ? grid.asleep + n * node_stride : nullptr;
+  float sums[node_sums];
+#pragma unroll
+  for (int v = 0; v < node_sums; ++v) {
+    long long sum = (long long)(integers[v]);
+    integers[v] = 0;
+    if (asleep) sum += (long long)(asleep[v]);
+    sums[v] = float(sum) * units.of[Units::kind(v)];
+  }
+  carried = {sums[0], sums[1], sums[2], sums[3]};
+  force = {sums[4], sums[5], sums[6], 0};
+  grid.carried[n] = carried;
+  grid.force[n] = force;
+}
+
+/// Applies a contact to the velocity of its node.
+__device__ inline void hold(const ContactArrays& contacts, Contact<float>& c, float mass,
+                            const FrictionRates<float>& rates, NodeMemory& m) {
+  if (!(mass > min_node_mass<float> && (c.acts || c.normal_impulse > 0))) {
+    c.next_normal_impulse = 0;
+    return;
+  }
+  const int o = c.obstacle;
+  if (Condition(contacts.conditions[o]) == Condition::sticky) {
+    for (int d = 0; d < 3; ++d) m.velocity[d][c.node] = c.velocity[d];
+    return;
+  }
+  float node[3];
+  for (int d = 0; d < 3; ++d) node[d] = m.velocity[d][c.node];
+  const auto coefficient = [&](float, float) { return contacts.friction[o]; };
+  push_and_rub<3>(rates, c, mass, contacts.friction_shares[o], coefficient, node);
+  for (int d = 0; d < 3; ++d) m.velocity[d][c.node] = node[d];
+}
+
+/// Applies the contacts of a block.
+__device__ inline void hold_block(const ContactArrays& contacts, int block, bool first_try,
+                                  const FrictionRates<float>& rates, NodeMemory& m) {
+  const int end = contacts.first[block + 1];
+  for (int begin = contacts.first[block]; begin < end;) {
+    const int own = begin + int(threadIdx.x);
+    const bool same_obstacle =
+        own < end && contacts.contacts[own].obstacle == contacts.contacts[begin].obstacle;
+    if (same_obstacle) {
+      Contact<float> c = contacts.contacts[own];
+      if (first_try) c.normal_impulse = c.next_normal_impulse;  // the last step was taken
+      hold(contacts, c, m.mass[c.node], rates, m);
+      contacts.contacts[own].normal_impulse = c.normal_impulse;
+      contacts.contacts[own].next_normal_impulse = c.next_normal_impulse;
+    }
+    begin += __syncthreads_count(same_obstacle);
+  }
+}
+
+/// Records the range of the velocities of a block.
+__device__ inline void record_range(const GridArrays& grid, int block, bool has_snow,
+                                    const float (&velocity)[3], NodeMemory& m, Control* control) {
+  const int t = int(threadIdx.x);
+  if (has_snow)
+    for (int d = 0; d < 3; ++d) {
+      atomicMin(&m.low[d], ordered(velocity[d]));
+      atomicMax(&m.high[d], ordered(velocity[d]));
+    }
+  __syncthreads();
+  if (t >= 3) return;
+  grid.ranges[block * 6 + t] = from_ordered(m.low[t]);
+  grid.ranges[block * 6 + 3 + t] = from_ordered(m.high[t]);
+  // Most blocks are within the range that is known already, and need no atomic operation.
+  if (m.low[t] < control->low[t]) atomicMin(&control->low[t], m.low[t]);
+  if (m.high[t] > control->high[t]) atomicMax(&control->high[t], m.high[t]);
+}
+
+}  // namespace snowshed::methods::mpm::gpu
+
+/// Finds the new velocities of the listed blocks of nodes.
+extern "C" __global__ void __launch_bounds__(64)
+    node_step(snowshed::methods::mpm::gpu::GridArrays grid, const std::int32_t* list,
+              snowshed::methods::mpm::gpu::ContactArrays contacts,
+              snowshed::methods::mpm::gpu::Control* control,
+              snowshed::methods::mpm::gpu::Constants k) {
+  using namespace snowshed::methods::mpm;
+  using namespace snowshed::methods::mpm::gpu;
+  __shared__ NodeMemory m;
+  if (control->phase != Phase::trying) return;
+  const int t = int(threadIdx.x), block = list[blockIdx.x], n = block * nodes_of_block + t;
+  if (t < 3) {
+    m.low[t] = ordered(3e38f);
+    m.high[t] = ordered(-3e38f);
+  }
+  const bool first_try = !control->repeated;
+  const float dt = float(control->dt);
+  Quad carried, force;
+  read_sums(grid, n, first_try, Units(k, control->momentum_unit), carried, force);
+  const bool has_snow = carried.x > min_node_mass<float>;
+  float old[3] = {}, now[3] = {};
+  if (has_snow) {
+    const float momentum[3] = {carried.y, carried.z, carried.w};
+    const float pull[3] = {force.x, force.y, force.z}, per_mass = dt / carried.x;
+    for (int d = 0; d < 3; ++d) {
+      old[d] = momentum[d] / carried.x;
+      now[d] = old[d] + pull[d] * per_mass;
+    }
+    now[2] -= dt * k.gravity;
+  }
+  for (int d = 0; d < 3; ++d) m.velocity[d][t] = now[d];
+  m.mass[t] = carried.x;
+  __syncthreads();
+  const FrictionRates<float> rates{float(::fmin(1.0, control->dt / k.friction_memory)),
+                                   float(control->dt / k.friction_reach)};
+  hold_block(contacts, block, first_try, rates, m);
+  if (has_snow)
+    for (int d = 0; d < 3; ++d) now[d] = m.velocity[d][t];
+  grid.velocity[n] = {now[0], now[1], now[2], now[0] - old[0]};
+  grid.change[n] = {now[1] - old[1], now[2] - old[2]};
+  record_range(grid, block, has_snow, now, m, control);
+}
+
+/// Finds the share of friction that remains for each obstacle with slip, a thread block to an
+/// obstacle; see Contacts::find_friction_shares.
+extern "C" __global__ void __launch_bounds__(128)
+    find_friction_shares(snowshed::methods::mpm::gpu::ContactArrays contacts, std::int32_t count,
+                         float* shares, const snowshed::methods::mpm::gpu::Control* control) {
+  using namespace snowshed::methods::mpm;
+  using namespace snowshed::methods::mpm::gpu;
+  constexpr int threads = 128;
+  __shared__ float net[threads], pushes[threads];
+  if (control->phase != Phase::trying || control->repeated) return;
+  const int t = int(threadIdx.x), obstacle = int(blockIdx.x);
+  float own_net = 0, own_pushes = 0;
+  for (int i = t; i < count; i += threads) {
+    const Contact<float>& c = contacts.contacts[i];
+    if (c.obstacle != obstacle || c.release != Release::never) continue;
+    own_net += c.next_normal_impulse;
+    own_pushes += ::fmaxf(c.next_normal_impulse, 0.0f);
+  }
+  net[t] = own_net;
+  pushes[t] = own_pushes;
+  for (int half = threads / 2; half > 0; half /= 2) {
+    __syncthreads();
+    if (t >= half) continue;
+    net[t] += net[t + half];
+    pushes[t] += pushes[t + half];
+  }
+  if (t == 0) shares[obstacle] = pushes[0] > 0 ? ::fmaxf(net[0], 0.0f) / pushes[0] : 1.0f;
+}

@@ -1,0 +1,243 @@
+// The particle side of a step: a thread block to a block of particles. A thread takes a particle
+// from the nodes through the law; then nine lanes sum the particles of one cell, each over a line
+// of three nodes, in registers. Only these sums go to the tile, and those of the tile to the grid.
+#pragma once
+
+#include "snowshed/methods/mpm/gpu/particle.cuh"
+
+namespace snowshed::methods::mpm::gpu {
+
+/// Particles that a thread block treats at a time.
+inline constexpr int chunk = 256;
+
+/// Numbers along x in a tile of sums. The odd stride avoids conflicts in shared memory.
+inline constexpr int sum_stride = tile_edge * tile_edge + 3, sum_size = tile_edge * sum_stride;
+
+struct StepMemory {
+  union {
+    struct {
+      Quad velocity[tile_nodes];
+      Pair change[tile_nodes];
+    } nodes;
+    int sums[node_sums][2][sum_size];  // high and low parts
+  };
+  GivenArrays<chunk> given;
+  std::int32_t around[neighbours];
+  std::int32_t first[tile_cells];  // the first particle of each cell, or -1
+  std::int16_t next[chunk];        // the next particle of the cell, or -1
+  std::int16_t cells[tile_cells];  // those with particles
+  std::int32_t cell_count, fastest;
+};
+
+/// Puts the particles of a cell in ascending order, whatever the order in which threads came.
+__device__ inline void sort_cell(StepMemory& m, int cell) {
+  int sorted = -1;
+  for (int q = m.first[cell], next; q >= 0; q = next) {
+    next = m.next[q];
+    if (sorted < 0 || q < sorted) {
+      m.next[q] = std::int16_t(sorted);
+      sorted = q;
+      continue;
+    }
+    int before = sorted;
+    while (m.next[before] >= 0 && m.next[before] < q) before = m.next[before];
+    m.next[q] = m.next[before];
+    m.next[before] = std::int16_t(q);
+  }
+  m.first[cell] = sorted;
+}
+
+__device__ inline void enter_cell(StepMemory& m, int q, const Place& place, const Given& given) {
+  m.given.set(q, place.fraction, given);
+  const int cell =
+      (place.lowest[0] * tile_cells_edge + place.lowest[1]) * tile_cells_edge + place.lowest[2];
+  m.next[q] = std::int16_t(atomicExch(&m.first[cell], q));
+}
+
+/// Sums the cells of a chunk into the tile, three cells to a warp.
+__device__ inline void sum_cells(StepMemory& m, const Units& units) {
+  const int warp = int(threadIdx.x) / 32, lane = int(threadIdx.x) % 32;
+  const int cell_of_warp = lane / 9, line = lane % 9;
+  if (cell_of_warp == 3) return;
+  const NodeSpline of_x(line / 3), of_y(line % 3);
+  for (int n = warp * 3 + cell_of_warp; n < m.cell_count; n += int(blockDim.x) / 32 * 3) {
+    const int cell = m.cells[n];
+    LineSums sums;
+    for (int q = m.first[cell]; q >= 0; q = m.next[q]) sums.add(m.given, q, of_x, of_y);
+    const int x = cell / (tile_cells_edge * tile_cells_edge) + line / 3;
+    const int y = cell / tile_cells_edge % tile_cells_edge + line % 3, z = cell % tile_cells_edge;
+    const int t = x * sum_stride + y * tile_edge + z;
+#pragma unroll
+    for (int k = 0; k < 3; ++k)
+#pragma unroll
+      for (int v = 0; v < node_sums; ++v)
+        add_parts(&m.sums[v][0][t + k], &m.sums[v][1][t + k],
+                  sums.node[k][v] * units.per[Units::kind(v)]);
+  }
+}
+
+/// Adds the tile to the grid.
+__device__ inline void add_tile(const StepMemory& m, unsigned long long* integers) {
+  for (int t = int(threadIdx.x); t < tile_nodes; t += int(blockDim.x)) {
+    const int at = (t >> 6) * sum_stride + (t & 63);
+    if ((m.sums[0][0][at] | m.sums[0][1][at]) == 0) continue;  // no mass
+    const int n = grid_node(t, m.around);
+    for (int v = 0; v < node_sums; ++v)
+      add_integer(integers + n * node_stride + v,
+                  (long long)(m.sums[v][0][at]) * 65536 + m.sums[v][1][at]);
+  }
+}
+
+/// Gives the particles of a chunk to the nodes, after `enter_cell`.
+__device__ inline void give_chunk(StepMemory& m, const Units& units, unsigned long long* integers) {
+  const int t = int(threadIdx.x), threads = int(blockDim.x);
+  for (int i = t; i < node_sums * 2 * sum_size; i += threads) (&m.sums[0][0][0])[i] = 0;
+  for (int c = t; c < tile_cells; c += threads) {
+    if (m.first[c] < 0) continue;
+    m.cells[atomicAdd(&m.cell_count, 1)] = std::int16_t(c);
+    sort_cell(m, c);
+  }
+  __syncthreads();
+  sum_cells(m, units);
+  __syncthreads();
+  add_tile(m, integers);
+  __syncthreads();
+}
+
+__device__ inline void empty_cells(StepMemory& m) {
+  for (int c = int(threadIdx.x); c < tile_cells; c += int(blockDim.x)) m.first[c] = -1;
+  if (threadIdx.x == 0) m.cell_count = 0;
+}
+
+/// Takes the particles of a block through a step. With `moves` false, only adds them to the sums.
+template <bool several, bool moves>
+__device__ inline void step_block(const ParticleLaunch& l, Control* control, const Constants& k,
+                                  StepMemory& m) {
+  if (moves && control->phase != Phase::accepted) return;
+  const int t = int(threadIdx.x), threads = int(blockDim.x), b = l.list[blockIdx.x];
+  const int first = l.blocks.first[b], end = l.blocks.first[b + 1];
+  if (t < neighbours) m.around[t] = l.blocks.around[b * neighbours + t];
+  if (t == 0) m.fastest = 0;
+  const StepShares step(*control, k);
+  const Units units(k, control->momentum_unit);
+  float fastest = 0;
+  __syncthreads();
+  for (int begin = first; begin < end; begin += chunk) {
+    if (moves) load_tile(l.grid, m.around, m.nodes.velocity, m.nodes.change);
+    empty_cells(m);
+    __syncthreads();
+    const int count = end - begin < chunk ? end - begin : chunk;
+    for (int q = t; q < count; q += threads) {
+      const int i = begin + q;
+      ParticleState s;
+      s.read_cell(l.particles, i);
+      if (!in_tile(s.cell)) {
+        add_stray(l.strays, control, i);
+        continue;
+      }
+      NodeMeans means;
+      if (moves) {
+        const Place from(s.cell);
+        const int lowest =
+            (from.lowest[0] * tile_edge + from.lowest[1]) * tile_edge + from.lowest[2];
+        interpolate(from.fraction, TileNodes{m.nodes.velocity + lowest, m.nodes.change + lowest},
+                    means);
+      }
+      s.read_rest(l.particles, i);
+      if (moves) {
+        s.move(means, step);
+        if (!in_tile(s.cell)) {
+          add_stray(l.strays, control, i);
+          continue;
+        }
+        const Moved moved = finish_particle<several>(s, means, l.particles, i, k, control, fastest);
+        if (moved.sound) enter_cell(m, q, Place(s.cell), moved.given);
+      } else {
+        const MaterialConstants<float> snow = snow_of<several>(l.particles, i, k);
+        const Strain tau = s.stress(snow, true).tau;
+        enter_cell(m, q, Place(s.cell), s.given(tau, snow.specific_volume, float(k.dx)));
+      }
+    }
+    __syncthreads();
+    give_chunk(m, units, l.integers);
+  }
+  if (!moves) return;
+  raise(reinterpret_cast<float*>(&m.fastest), fastest);
+  __syncthreads();
+  if (t == 0) atomicMax(reinterpret_cast<int*>(&control->speed_squared), m.fastest);
+}
+
+/// Takes the strays through a step, a thread to a particle.
+template <bool several, bool moves>
+__device__ inline void step_strays(const ParticleLaunch& l, std::int32_t block_count,
+                                   Control* control, const Constants& k) {
+  if (moves && control->phase != Phase::accepted) return;
+  const StepShares step(*control, k);
+  const Units units(k, control->momentum_unit);
+  const int threads = int(gridDim.x * blockDim.x);
+  float fastest = 0;
+  for (int n = int(blockIdx.x * blockDim.x + threadIdx.x); n < control->strays; n += threads) {
+    const int i = l.strays[n];
+    int low = 0, high = block_count;  // the block is in [low, high)
+    while (high - low > 1) {
+      const int middle = (low + high) / 2;
+      (l.blocks.first[middle] <= i ? low : high) = middle;
+    }
+    const std::int32_t* around = l.blocks.around + low * neighbours;
+    ParticleState s;
+    s.read_cell(l.particles, i);
+    s.read_rest(l.particles, i);
+    if (moves) {
+      const Place from(s.cell);
+      NodeMeans means;
+      interpolate(from.fraction,
+                  GridNodes{l.grid.velocity,
+                            l.grid.change,
+                            around,
+                            {from.lowest[0], from.lowest[1], from.lowest[2]}},
+                  means);
+      s.move(means, step);
+      const Moved moved = finish_particle<several>(s, means, l.particles, i, k, control, fastest);
+      if (!moved.sound) continue;
+      if (!may_move_on(s.cell)) control->must_sort = 1;
+      scatter_stray(Place(s.cell), moved.given, l.integers, around, units);
+    } else {
+      const MaterialConstants<float> snow = snow_of<several>(l.particles, i, k);
+      const Strain tau = s.stress(snow, true).tau;
+      scatter_stray(Place(s.cell), s.given(tau, snow.specific_volume, float(k.dx)), l.integers,
+                    around, units);
+    }
+  }
+  if (moves && fastest > 0) raise(&control->speed_squared, fastest);
+}
+
+}  // namespace snowshed::methods::mpm::gpu
+
+// Kernels, each for one snow and for several.
+#define SNOWSHED_PARTICLE_KERNELS(suffix, several)                                               \
+  extern "C" __global__ void __launch_bounds__(128) particle_step##suffix(                       \
+      snowshed::methods::mpm::gpu::ParticleLaunch l,                                             \
+      snowshed::methods::mpm::gpu::Control* control, snowshed::methods::mpm::gpu::Constants k) { \
+    __shared__ snowshed::methods::mpm::gpu::StepMemory memory;                                   \
+    snowshed::methods::mpm::gpu::step_block<several, true>(l, control, k, memory);               \
+  }                                                                                              \
+  extern "C" __global__ void __launch_bounds__(128) scatter##suffix(                             \
+      snowshed::methods::mpm::gpu::ParticleLaunch l,                                             \
+      snowshed::methods::mpm::gpu::Control* control, snowshed::methods::mpm::gpu::Constants k) { \
+    __shared__ snowshed::methods::mpm::gpu::StepMemory memory;                                   \
+    snowshed::methods::mpm::gpu::step_block<several, false>(l, control, k, memory);              \
+  }                                                                                              \
+  extern "C" __global__ void __launch_bounds__(64) stray_step##suffix(                           \
+      snowshed::methods::mpm::gpu::ParticleLaunch l, std::int32_t block_count,                   \
+      snowshed::methods::mpm::gpu::Control* control, snowshed::methods::mpm::gpu::Constants k) { \
+    snowshed::methods::mpm::gpu::step_strays<several, true>(l, block_count, control, k);         \
+  }                                                                                              \
+  extern "C" __global__ void __launch_bounds__(64) scatter_strays##suffix(                       \
+      snowshed::methods::mpm::gpu::ParticleLaunch l, std::int32_t block_count,                   \
+      snowshed::methods::mpm::gpu::Control* control, snowshed::methods::mpm::gpu::Constants k) { \
+    snowshed::methods::mpm::gpu::step_strays<several, false>(l, block_count, control, k);        \
+  }
+
+SNOWSHED_PARTICLE_KERNELS(, false)
+SNOWSHED_PARTICLE_KERNELS(_several, true)
+#undef SNOWSHED_PARTICLE_KERNELS

@@ -1,0 +1,36 @@
+#include "methods/mpm/gpu/emulated_kernels.hpp"
+
+#include "gpu/cuda_on_host.hpp"
+//
+#include "snowshed/methods/mpm/gpu/kernels.cuh"
+
+namespace snowshed::methods::mpm {
+
+const snowshed::gpu::EmulatedDevice::Kernels& emulated_kernels() {
+  using snowshed::gpu::unpacked;
+  static const snowshed::gpu::EmulatedDevice::Kernels kernels{
+      {"next_step", unpacked(next_step)},
+      {"judge_step", unpacked(judge_step)},
+      {"node_step", unpacked(node_step)},
+      {"find_friction_shares", unpacked(find_friction_shares)},
+      {"probe", unpacked(probe)},
+      {"particle_step", unpacked(particle_step)},
+      {"particle_step_several", unpacked(particle_step_several)},
+      {"stray_step", unpacked(stray_step)},
+      {"stray_step_several", unpacked(stray_step_several)},
+      {"scatter", unpacked(scatter)},
+      {"scatter_several", unpacked(scatter_several)},
+      {"scatter_strays", unpacked(scatter_strays)},
+      {"scatter_strays_several", unpacked(scatter_strays_several)},
+      {"count_moves", unpacked(count_moves)},
+      {"find_order", unpacked(find_order)},
+      {"permute4", unpacked(permute4)},
+      {"permute2", unpacked(permute2)},
+      {"permute1", unpacked(permute1)},
+      {"measure_motion", unpacked(measure_motion)},
+      {"stop_blocks", unpacked(stop_blocks)},
+      {"clear_nodes", unpacked(clear_nodes)}};
+  return kernels;
+}
+
+}  // namespace snowshed::methods::mpm
