@@ -103,7 +103,7 @@ release: $(VENV)/.build-tools
 	  --config-settings=build.targets="_core;snowshed-vdb" \
 	  --wheel-dir $(RELEASE)/linked .
 	$(BIN)/python tools/release/portable.py $(RELEASE)/linked/snowshed-*.whl $(RELEASE)/portable
-	LD_LIBRARY_PATH=$(CURDIR)/$(RELEASE)/portable/lib $(BIN)/auditwheel repair --plat manylinux_2_28_x86_64 \
+	$(BIN)/auditwheel repair --plat manylinux_2_28_x86_64 \
 	  --wheel-dir $(RELEASE) $(RELEASE)/portable/snowshed-*.whl
 	$(BIN)/auditwheel show $(RELEASE)/snowshed-*manylinux*.whl
 	tools/release/check_wheel.sh $(PYTHON) $(RELEASE)/snowshed-*manylinux*.whl
@@ -138,9 +138,6 @@ enable = cmake -S . -B $(TREE) -D$(1)=ON > build/configure.log \
   || { cat build/configure.log; cmake -S . -B $(TREE) -D$(1)=OFF > /dev/null; exit 1; }
 
 test: lint test-cpp test-py
-
-# Several tests run at a time. Those with a solver use all cores, so their threads must not spin.
-test-cpp test-py sanitize-address sanitize-thread: export OMP_WAIT_POLICY := passive
 
 test-cpp: build
 	@$(provide_gtest)

@@ -18,8 +18,7 @@ if(SNOWSHED_SANITIZE)
     $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)  # has false positives with sanitizers
   add_link_options(${snowshed_sanitizers_${SNOWSHED_SANITIZE}})
   add_compile_definitions(_GLIBCXX_ASSERTIONS)
-  # ThreadSanitizer understands std::thread, but not the barriers of GCC's OpenMP runtime.
   if(SNOWSHED_SANITIZE STREQUAL "thread")
-    add_compile_definitions(SNOWSHED_STD_THREADS)
+    add_compile_definitions(SNOWSHED_IN_TURN)  # neighbouring iterations on different threads
   endif()
 endif()

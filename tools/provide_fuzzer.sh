@@ -1,20 +1,19 @@
 #!/bin/sh
-# Prints the name of a clang with libFuzzer and OpenMP, which fuzz targets need:  provide_fuzzer.sh
+# Prints the name of a clang with libFuzzer, which fuzz targets need:  provide_fuzzer.sh
 # Installs the system's packages if they are missing and can be installed.
 set -eu
 here=$(dirname "$0")
 probe=$(mktemp -d)
 trap 'rm -r "$probe"' EXIT
 cat > "$probe/target.cpp" << 'END'
-#include <omp.h>
 #include <cstddef>
 extern "C" int LLVMFuzzerTestOneInput(const unsigned char*, std::size_t) {
-  return omp_get_num_procs() < 1;
+  return 0;
 }
 END
 
 usable() {
-  "$1" -fopenmp -fsanitize=fuzzer,address "$probe/target.cpp" -o "$probe/target" > /dev/null 2>&1
+  "$1" -fsanitize=fuzzer,address "$probe/target.cpp" -o "$probe/target" > /dev/null 2>&1
 }
 find_one() {
   for compiler in clang++ $(seq -f clang++-%.0f 25 -1 14); do
@@ -24,9 +23,9 @@ find_one() {
 }
 
 find_one
-for package in clang libclang-rt-dev libomp-dev; do
+for package in clang libclang-rt-dev; do
   sh "$here/install_package.sh" "$package" >&2 || break
   find_one
 done
-echo "No clang with libFuzzer and OpenMP: install clang, libclang-rt-dev and libomp-dev." >&2
+echo "No clang with libFuzzer: install clang and libclang-rt-dev." >&2
 exit 1

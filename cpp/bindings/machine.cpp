@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bindings.hpp"
+#include "snowshed/core/available_cores.hpp"
 #include "snowshed/core/kernel_variant.hpp"
 #include "snowshed/core/memory.hpp"
 #include "snowshed/gpu/runtime_compiler.hpp"
@@ -25,6 +26,8 @@ gpu::Folders compiler_folders() {
 
 void bind_machine(pybind11::module_& m) {
   gpu::set_compiler_folders(&compiler_folders);
+  m.def("available_cores", &available_cores,
+        "The number of cores that this process may use, by its affinity and its container's quota.");
   m.def("available_memory_bytes", &available_memory_bytes,
         "Memory that is available now without swapping.");
   m.def("slow_kernels_note", &slow_kernels_note,

@@ -103,7 +103,7 @@ class Workshop:
 
     def _try(self, words: Sequence[object], number: int) -> tuple[int | None, str]:
         """Return the exit code (None after the time limit) and the output of a command."""
-        environment = {**os.environ, "SNOWSHED_FAULT": str(number), "OMP_WAIT_POLICY": "passive"}
+        environment = {**os.environ, "SNOWSHED_FAULT": str(number)}
         environment.update(PYTHONDONTWRITEBYTECODE="1", GTEST_BRIEF="1")
         environment["PATH"] = f"{self.venv / 'bin'}{os.pathsep}{os.environ['PATH']}"
         options = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}

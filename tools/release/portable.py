@@ -1,11 +1,10 @@
-"""Make an extension load on systems with an older glibc, and give it a libgomp that does.
+"""Make an extension load on systems with an older glibc.
 
 Usage: python portable.py WHEEL FOLDER
 
 The extension must be linked with SNOWSHED_OLD_GLIBC. Functions of glibc in a version after 2.28 are
 taken in their first version, which every later glibc has, too: they differ in rare errors only. The
-wheel is written to FOLDER, and FOLDER/lib gets a libgomp of a manylinux wheel, which ``auditwheel
-repair`` takes.
+wheel is written to FOLDER.
 """
 
 from __future__ import annotations
@@ -15,7 +14,6 @@ import struct
 import subprocess
 import sys
 import tempfile
-import zipfile
 from pathlib import Path
 
 from elftools.elf.elffile import ELFFile
@@ -25,8 +23,6 @@ BASE = "GLIBC_2.2.5"  # the first version on x86-64, which every function of the
 VERSION = re.compile(r"GLIBC_(\d+)\.(\d+)")
 #: Libraries that held functions of libc before glibc 2.34.
 FORMER_LIBRARIES = ("libpthread.so.0", "libdl.so.2")
-#: A package whose wheels contain a libgomp for old systems.
-GOMP_FROM = "scikit-learn"
 
 
 def make_portable(library: Path) -> None:
@@ -59,24 +55,9 @@ def make_portable(library: Path) -> None:
         stream.write(content)
 
 
-def fetch_gomp(folder: Path) -> None:
-    """Write a libgomp.so.1 for old systems into a folder."""
-    folder.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory() as temporary:
-        pip = [sys.executable, "-m", "pip", "--quiet", "download", "--no-deps"]
-        wheels_only = ["--only-binary=:all:", "--dest", temporary]
-        subprocess.run([*pip, *wheels_only, GOMP_FROM], check=True)
-        (wheel,) = Path(temporary).glob("*.whl")
-        with zipfile.ZipFile(wheel) as archive:
-            (name,) = [n for n in archive.namelist() if re.search(r"libgomp[^/]*\.so", n)]
-            (folder / "libgomp.so.1").write_bytes(archive.read(name))
-    library = folder / "libgomp.so.1"
-    subprocess.run(["patchelf", "--set-soname", library.name, library], check=True)
-
-
 def main(wheel: Path, folder: Path) -> None:
-    """Write the portable wheel and libgomp."""
-    fetch_gomp(folder / "lib")
+    """Write the portable wheel."""
+    folder.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as temporary:
         tool = [sys.executable, "-m", "wheel"]
         subprocess.run([*tool, "unpack", "-d", temporary, wheel], check=True)

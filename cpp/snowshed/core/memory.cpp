@@ -10,6 +10,8 @@
 #include <optional>
 #include <string>
 
+#include "snowshed/core/control_group.hpp"
+
 namespace snowshed {
 namespace {
 
@@ -52,38 +54,21 @@ void restrict_to(Allowance& allowance, Bytes limit, Bytes used, Bytes file_cache
   allowance.left = std::min(allowance.left, *limit - std::min(*limit, in_use));
 }
 
-/// One of the two forms in which Linux limits the memory of groups of processes.
-struct Hierarchy {
-  std::filesystem::path root;
-  std::string prefix;  // start of the line in /proc/self/cgroup, after its number
-  const char *limit, *used, *file_cache;
-};
-
-/// Path of this process in the hierarchy of groups, from its root.
-std::string control_group(const Hierarchy& hierarchy) {
-  std::ifstream lines("/proc/self/cgroup");
-  for (std::string line; std::getline(lines, line);) {
-    const std::size_t colon = line.find(':');
-    if (colon != std::string::npos &&
-        line.compare(colon, hierarchy.prefix.size(), hierarchy.prefix) == 0)
-      return line.substr(colon + hierarchy.prefix.size());
-  }
-  return {};
-}
-
 /// The tightest limit among the process's control group and those above it.
 Allowance container_allowance() {
-  const Hierarchy hierarchies[] = {
-      {"/sys/fs/cgroup", "::/", "memory.max", "memory.current", "inactive_file"},
-      {"/sys/fs/cgroup/memory", ":memory:/", "memory.limit_in_bytes", "memory.usage_in_bytes",
+  struct Files {
+    ControlGroups version;
+    const char *limit, *used, *file_cache;
+  };
+  const Files of_version[] = {
+      {ControlGroups::version2, "memory.max", "memory.current", "inactive_file"},
+      {ControlGroups::version1, "memory.limit_in_bytes", "memory.usage_in_bytes",
        "total_inactive_file"}};
   Allowance allowance;
-  for (const Hierarchy& h : hierarchies)
-    for (auto group = h.root / control_group(h);; group = group.parent_path()) {
-      restrict_to(allowance, read_number(group / h.limit), read_number(group / h.used),
-                  read_field(group / "memory.stat", h.file_cache));
-      if (group == h.root || !group.has_relative_path()) break;
-    }
+  for (const Files& files : of_version)
+    for (const auto& group : control_group_folders(files.version, "memory"))
+      restrict_to(allowance, read_number(group / files.limit), read_number(group / files.used),
+                  read_field(group / "memory.stat", files.file_cache));
   return allowance;
 }
 

@@ -3,22 +3,15 @@
 // exception of the first of them (by index); later iterations may have run before.
 #pragma once
 
-#include <omp.h>
-
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
 #include <exception>
 #include <limits>
 #include <mutex>
-#include <thread>
-#include <vector>
+
+#include "snowshed/core/thread_team.hpp"
 
 namespace snowshed {
-
-/// The number of threads for a run: the given number, or with 0 as many as OpenMP would start,
-/// which is OMP_NUM_THREADS or else all cores.
-inline int threads_to_use(int wanted) { return wanted > 0 ? wanted : omp_get_max_threads(); }
 
 /// The number of threads for a step: at most `max_threads`, and fewer if each would get fewer than
 /// `share` items.
@@ -26,8 +19,7 @@ inline int threads_for(std::size_t items, std::size_t share, int max_threads) {
   return int(std::clamp<std::size_t>(items / share, 1, std::size_t(max_threads)));
 }
 
-/// Keeps the exception of the first iteration (by index) that threw on any thread. An exception
-/// that left a parallel region would end the process.
+/// Keeps the exception of the first iteration (by index) that threw on any thread.
 class FirstException {
  public:
   void keep(std::ptrdiff_t iteration) noexcept {
@@ -46,114 +38,41 @@ class FirstException {
   std::exception_ptr exception_;
 };
 
-/// Calls f(i) for i in [begin, end), a part of a loop that other threads share; ends at the first
-/// call that throws.
+/// Calls f(i) for i in [0, n) on at most `threads` threads, which take `grain` iterations at a time.
+/// If memory is short, throws before the first iteration.
 template <class F>
-void run_piece(std::ptrdiff_t begin, std::ptrdiff_t end, std::ptrdiff_t stride, F& f,
-               FirstException& thrown) noexcept {
-  std::ptrdiff_t i = begin;
-  try {
-    for (; i < end; i += stride) f(i);
-  } catch (...) {
-    thrown.keep(i);
-  }
-}
-
-#ifdef SNOWSHED_STD_THREADS
-/// Replaces OpenMP under ThreadSanitizer, which only understands std::thread. Iterations go to the
-/// threads in turn, however short the loop, so that any two neighbours that touch the same memory
-/// are on different threads.
-template <class F>
-void run_in_turn(std::ptrdiff_t n, int threads, F& f) {
-  FirstException thrown;
-  const auto share = [&](std::ptrdiff_t thread) { run_piece(thread, n, threads, f, thrown); };
-  std::vector<std::thread> others;
-  others.reserve(threads);
-  for (int thread = 1; thread < threads; ++thread) others.emplace_back(share, thread);
-  share(0);
-  for (std::thread& other : others) other.join();
-  thrown.rethrow();
-}
-#endif
-
-#ifndef SNOWSHED_STD_THREADS
-/// The part of a loop that belongs to one thread, on a cache line of its own.
-struct alignas(64) LoopShare {
-  std::atomic<std::ptrdiff_t> next{0};
-  std::ptrdiff_t end = 0;
-};
-
-inline std::vector<LoopShare> equal_shares(std::ptrdiff_t n, int threads) {
-  std::vector<LoopShare> shares(threads);
-  for (int t = 0; t < threads; ++t) {
-    shares[t].next = n * t / threads;
-    shares[t].end = n * (t + 1) / threads;
-  }
-  return shares;
-}
-#endif
-
-/// Calls f(i) for i in [0, n); threads take `grain` iterations at a time. Each thread begins with
-/// its own share of the range, whose data the last loop left in its cache, and then helps with the
-/// shares of the others. If memory for the shares is short, throws before the first iteration.
-template <class F>
-void parallel_for_dynamic(std::ptrdiff_t n, int threads, [[maybe_unused]] int grain, F f) {
-#ifdef SNOWSHED_STD_THREADS
-  run_in_turn(n, threads, f);
-#else
-  if (threads == 1 || n <= grain) {
+void parallel_for_dynamic(std::ptrdiff_t n, int threads, std::ptrdiff_t grain, F f) {
+  if (threads == 1 || n <= grain || is_in_shared_loop()) {
     for (std::ptrdiff_t i = 0; i < n; ++i) f(i);
     return;
   }
-  std::vector<LoopShare> shares = equal_shares(n, threads);
-  FirstException thrown;
-#pragma omp parallel num_threads(threads)
-  for (int k = 0; k < threads; ++k) {
-    LoopShare& share = shares[(omp_get_thread_num() + k) % threads];
-    std::ptrdiff_t i;
-    while ((i = share.next.fetch_add(grain, std::memory_order_relaxed)) < share.end)
-      run_piece(i, std::min(i + grain, share.end), 1, f, thrown);
-  }
-  thrown.rethrow();
-#endif
+  struct Loop {
+    F& f;
+    FirstException thrown;
+  } loop{f, {}};
+  const auto piece = [](void* of, std::ptrdiff_t i, std::ptrdiff_t end) {
+    Loop& l = *static_cast<Loop*>(of);
+    try {
+      for (; i < end; ++i) l.f(i);
+    } catch (...) {
+      l.thrown.keep(i);
+    }
+  };
+  const std::ptrdiff_t pieces = (n + grain - 1) / grain;
+  const int members = int(std::min<std::ptrdiff_t>(threads, pieces));
+  share_loop(n, grain, members, piece, &loop);
+  loop.thrown.rethrow();
 }
 
-/// The same in one equal piece per thread: for many cheap iterations. Allocates nothing.
+/// The same for many cheap iterations.
 template <class F>
 void parallel_for_static(std::ptrdiff_t n, int threads, F f) {
-#ifdef SNOWSHED_STD_THREADS
-  run_in_turn(n, threads, f);
-#else
-  if (threads == 1 || n < 4096) {
-    for (std::ptrdiff_t i = 0; i < n; ++i) f(i);
-    return;
-  }
-  FirstException thrown;
-#pragma omp parallel for schedule(static) num_threads(threads)
-  for (int t = 0; t < threads; ++t) run_piece(n * t / threads, n * (t + 1) / threads, 1, f, thrown);
-  thrown.rethrow();
-#endif
+  constexpr std::ptrdiff_t least_shared = 4096, grain = 1024;
+  parallel_for_dynamic(n, n < least_shared ? 1 : threads, grain, f);
 }
 
-/// Calls f(begin, end) for pieces of at most `piece` iterations each. The pieces do not depend on
-/// the number of threads. f must not throw. Allocates nothing.
-template <class F>
-void parallel_pieces(std::ptrdiff_t n, int threads, std::ptrdiff_t piece, F f) {
-  const std::ptrdiff_t pieces = (n + piece - 1) / piece;
-  const auto run = [&](std::ptrdiff_t p) { f(p * piece, std::min(n, (p + 1) * piece)); };
-#ifdef SNOWSHED_STD_THREADS
-  run_in_turn(pieces, threads, run);
-#else
-  if (threads == 1 || pieces <= 1) {
-    for (std::ptrdiff_t p = 0; p < pieces; ++p) run(p);
-    return;
-  }
-#pragma omp parallel for schedule(static) num_threads(threads)
-  for (std::ptrdiff_t p = 0; p < pieces; ++p) run(p);
-#endif
-}
-
-/// A loop in pieces, see `parallel_pieces`.
+/// A loop in pieces of at most `piece` iterations each: calls f(begin, end). The pieces do not
+/// depend on the number of threads.
 template <class F>
 struct PieceLoop {
   std::ptrdiff_t n, piece;
@@ -165,27 +84,20 @@ struct PieceLoop {
 template <class F>
 PieceLoop(std::ptrdiff_t, std::ptrdiff_t, F) -> PieceLoop<F>;
 
+/// Runs the pieces of a loop, see `PieceLoop`.
+template <class F>
+void parallel_pieces(std::ptrdiff_t n, int threads, std::ptrdiff_t piece, F f) {
+  PieceLoop<F&> loop{n, piece, f};
+  parallel_for_dynamic(loop.pieces(), threads, 1, [&](std::ptrdiff_t p) { loop.run(p); });
+}
+
 /// The pieces of two loops that do not depend on each other: no thread waits between them.
 template <class F, class G>
 void parallel_pieces(int threads, PieceLoop<F> first, PieceLoop<G> second) {
-  const std::ptrdiff_t m = first.pieces(), n = second.pieces();
-#ifdef SNOWSHED_STD_THREADS
-  const auto run = [&](std::ptrdiff_t p) { p < m ? first.run(p) : second.run(p - m); };
-  run_in_turn(m + n, threads, run);
-#else
-  if (threads == 1 || m + n <= 1) {
-    for (std::ptrdiff_t p = 0; p < m; ++p) first.run(p);
-    for (std::ptrdiff_t p = 0; p < n; ++p) second.run(p);
-    return;
-  }
-#pragma omp parallel num_threads(threads)
-  {
-#pragma omp for schedule(static) nowait
-    for (std::ptrdiff_t p = 0; p < m; ++p) first.run(p);
-#pragma omp for schedule(static)
-    for (std::ptrdiff_t p = 0; p < n; ++p) second.run(p);
-  }
-#endif
+  const std::ptrdiff_t m = first.pieces();
+  parallel_for_dynamic(m + second.pieces(), threads, 1, [&](std::ptrdiff_t p) {
+    p < m ? first.run(p) : second.run(p - m);
+  });
 }
 
 }  // namespace snowshed

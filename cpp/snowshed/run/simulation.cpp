@@ -5,9 +5,9 @@
 #include <limits>
 #include <utility>
 
+#include "snowshed/core/available_cores.hpp"
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/message_format.hpp"
-#include "snowshed/core/parallel.hpp"
 #include "snowshed/core/stopwatch.hpp"
 #include "snowshed/methods/capabilities.hpp"
 #include "snowshed/methods/unwatched.hpp"

@@ -47,15 +47,7 @@ TEST(Parallel, ThrowsTheErrorOfTheFirstFailingIteration) {
     }
 }
 
-TEST(Parallel, UsesTheThreadsOfOpenMpUnlessANumberIsGiven) {
-  const int before = omp_get_max_threads();
-  omp_set_num_threads(3);  // as OMP_NUM_THREADS would
-  EXPECT_EQ(threads_to_use(0), 3);
-  EXPECT_EQ(threads_to_use(7), 7);
-  omp_set_num_threads(before);
-}
-
-#ifdef SNOWSHED_STD_THREADS
+#ifdef SNOWSHED_IN_TURN
 /// Iteration i writes element i and the element before, which is not its own.
 void race() {
   std::vector<int> written(100, 0);

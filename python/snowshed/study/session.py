@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Optional
 
 import snowshed._core as _core
-from snowshed._core import InputError
+from snowshed._core import InputError, available_cores
 from snowshed.base.arguments import checked
 from snowshed.base.build import build_id
 from snowshed.base.callers import STUDY_RUN, argument, either
@@ -24,7 +24,6 @@ from snowshed.base.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.base.log import LOGGER
 from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
-from snowshed.base.pool.pool import available_cores
 from snowshed.base.progress import Progress, Reporter
 from snowshed.io.locks import is_held
 from snowshed.study import cost_estimate

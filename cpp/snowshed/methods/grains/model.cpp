@@ -2,6 +2,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "snowshed/core/available_cores.hpp"
 #include "snowshed/core/parallel.hpp"
 #include "snowshed/methods/grains/state.hpp"
 

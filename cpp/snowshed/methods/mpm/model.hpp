@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "snowshed/core/available_cores.hpp"
 #include "snowshed/core/parallel.hpp"
 #include "snowshed/methods/mpm/boundary.hpp"
 #include "snowshed/methods/mpm/material_constants.hpp"

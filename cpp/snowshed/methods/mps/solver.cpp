@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "snowshed/core/available_cores.hpp"
 #include "snowshed/core/errors.hpp"
 #include "snowshed/core/message_format.hpp"
 #include "snowshed/methods/mps/anderson.hpp"

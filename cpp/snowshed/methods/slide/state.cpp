@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "snowshed/core/available_cores.hpp"
+
 namespace snowshed::methods::slide {
 namespace {
 

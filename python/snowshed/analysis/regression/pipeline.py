@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
-from snowshed._core import InputError
+from snowshed._core import InputError, available_cores
 from snowshed.analysis.regression import summary
 from snowshed.analysis.regression.ensemble import Ensemble
 from snowshed.analysis.regression.fold_result import FoldResult
@@ -21,7 +21,6 @@ from snowshed.analysis.regression.threads import one_thread
 from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
 from snowshed.base.paths import PathLike
-from snowshed.base.pool.pool import available_cores
 from snowshed.base.progress import Reporter
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv

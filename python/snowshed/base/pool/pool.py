@@ -32,13 +32,6 @@ Result = TypeVar("Result")
 Compute = Callable[[Task, Callable[[float], None]], Result]
 
 
-def available_cores() -> int:
-    """Return the number of cores this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
-
-
 @dataclass(frozen=True)
 class Isolation:
     """Isolates the tasks of a `Pool` from each other, and ends those that hang.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Callable
 from dataclasses import fields
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Optional, TypeVar
 
 import click
 
-from snowshed._core import InputError
+from snowshed._core import InputError, available_cores
 from snowshed.analysis.tomography.segmentation import SegmentationSettings
 from snowshed.base.formatting import number, percent
 from snowshed.base.messages import quoted
@@ -216,7 +215,7 @@ def segment_command(
     check_new(folder)
     names = {field.name for field in fields(SegmentationSettings)}
     settings = SegmentationSettings(
-        threads=threads or os.cpu_count() or 1,
+        threads=threads or available_cores(),
         **{name: value for name, value in options.items() if name in names},
     )
     sample = find_sample(image, SNOW)
