@@ -301,6 +301,7 @@ AREAS = {
     *("material", "transfer", "contact", "time step", "sleep", "seeding", "events"),
     *("measures", "post-processing", "scheme", "clearance", "plants", "forces"),
     "laws of one's own",
+    "graphics card",
 }
 
 

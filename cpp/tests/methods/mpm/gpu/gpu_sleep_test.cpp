@@ -4,10 +4,8 @@
 #include "methods/mpm/gpu/gpu_testing.hpp"
 #include "snowshed/io/binary_archive.hpp"
 
-namespace snowshed::methods::mpm {
+namespace snowshed::methods::mpm::gpu {
 namespace {
-
-constexpr double dx = 0.05;
 
 std::vector<Obstacle> sticky_ground() {
   return {fixed(geometry::make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky)};
@@ -134,4 +132,4 @@ TEST(GpuObstacle, MovesTheSnowAsTheProcessorDoes) {
 }
 
 }  // namespace
-}  // namespace snowshed::methods::mpm
+}  // namespace snowshed::methods::mpm::gpu

@@ -5,12 +5,10 @@
 #include "methods/mpm/gpu/gpu_testing.hpp"
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed::methods::mpm {
+namespace snowshed::methods::mpm::gpu {
 namespace {
 
-constexpr double dx = 0.05;
-
-geometry::Shape ground() { return geometry::make_plane(Vec3::Zero(), Vec3::UnitZ()); }
+geometry::Shape level_ground() { return geometry::make_plane(Vec3::Zero(), Vec3::UnitZ()); }
 
 /// A block of snow whose lower corner is at a height, m, in no special place on the grid.
 ParticleBatch block_of_snow(double height, const Vec3& velocity = Vec3::Zero(), int cells = 4) {
@@ -20,7 +18,7 @@ ParticleBatch block_of_snow(double height, const Vec3& velocity = Vec3::Zero(), 
   return batch;
 }
 
-struct Pair {
+struct BothSolvers {
   std::unique_ptr<Solver> cpu, gpu;
   void add(const ParticleBatch& batch) {
     cpu->add(batch);
@@ -32,7 +30,7 @@ struct Pair {
   }
 };
 
-Pair make_pair(const Options& o, const std::vector<Obstacle>& obstacles = {}) {
+BothSolvers make_both(const Options& o, const std::vector<Obstacle>& obstacles = {}) {
   return {make_solver(o, obstacles), make_emulated(o, obstacles)};
 }
 
@@ -66,19 +64,19 @@ TEST(GpuSolver, FallsFreelyAsTheFormulaSays) {
 }
 
 TEST(GpuSolver, AgreesWithTheProcessorAtRest) {
-  Pair pair = make_pair(options_on_gpu(dx), {fixed(ground(), Condition::sticky)});
-  pair.add(block_of_snow(0.01));
-  pair.run(100);
-  expect_close(*pair.cpu, *pair.gpu, 2e-7, 1e-5);
-  EXPECT_EQ(pair.cpu->counters().particle_updates, pair.gpu->counters().particle_updates);
+  BothSolvers both = make_both(options_on_gpu(dx), {fixed(level_ground(), Condition::sticky)});
+  both.add(block_of_snow(0.01));
+  both.run(100);
+  expect_close(*both.cpu, *both.gpu, 2e-7, 1e-5);
+  EXPECT_EQ(both.cpu->counters().particle_updates, both.gpu->counters().particle_updates);
 }
 
 TEST(GpuSolver, AgreesWithTheProcessorInPlasticFlow) {
-  Pair pair = make_pair(options_on_gpu(dx), {fixed(ground(), Condition::sticky)});
-  pair.add(block_of_snow(0.02, Vec3(5, 0, -5)));
-  pair.run(100);
-  EXPECT_LT(mean(snow_state(*pair.cpu).plastic_strains), -1e-3);  // it flows
-  expect_close(*pair.cpu, *pair.gpu, 1e-5, 1e-4);
+  BothSolvers both = make_both(options_on_gpu(dx), {fixed(level_ground(), Condition::sticky)});
+  both.add(block_of_snow(0.02, Vec3(5, 0, -5)));
+  both.run(100);
+  EXPECT_LT(mean(snow_state(*both.cpu).plastic_strains), -1e-3);  // it flows
+  expect_close(*both.cpu, *both.gpu, 1e-5, 1e-4);
 }
 
 TEST(GpuSolver, AgreesWithTheProcessorOnEachKindOfObstacle) {
@@ -87,11 +85,11 @@ TEST(GpuSolver, AgreesWithTheProcessorOnEachKindOfObstacle) {
     const geometry::Shape slope =
         geometry::make_plane(Vec3::Zero(), Vec3(-0.5, 0.1, 1.0).normalized());
     const geometry::Shape ball = geometry::make_sphere(Vec3(0.25, 0.1, 0.0), 0.15);
-    Pair pair =
-        make_pair(options_on_gpu(dx), {fixed(slope, condition, 0.3), fixed(ball, condition, 0.5)});
-    pair.add(block_of_snow(0.12, Vec3(1, 0, -2)));
-    pair.run(80);
-    expect_close(*pair.cpu, *pair.gpu, 1e-5, 1e-3);
+    BothSolvers both =
+        make_both(options_on_gpu(dx), {fixed(slope, condition, 0.3), fixed(ball, condition, 0.5)});
+    both.add(block_of_snow(0.12, Vec3(1, 0, -2)));
+    both.run(80);
+    expect_close(*both.cpu, *both.gpu, 1e-5, 1e-3);
   }
 }
 
@@ -103,38 +101,38 @@ TEST(GpuSolver, AgreesWithTheProcessorWithSeveralSnows) {
   material::Snow elastic;
   elastic.model = material::SnowModel::elastic;
   o.snows = {material::Snow(), stiff, elastic};
-  Pair pair = make_pair(o, {fixed(ground(), Condition::separate, 0.2)});
+  BothSolvers both = make_both(o, {fixed(level_ground(), Condition::separate, 0.2)});
   for (int snow = 0; snow < 3; ++snow) {
     const Vec3 low(0.2 * snow, 0, 0.01);
     ParticleBatch batch =
         filled_box(3, low, low + Vec3(0.2, 0.1, 0.1), dx / 2, o.snows[std::size_t(snow)].density);
     batch.material_id = snow;
     batch.velocity = Vec3(0, 0, -3);
-    pair.add(batch);
+    both.add(batch);
   }
-  pair.run(80);
-  expect_close(*pair.cpu, *pair.gpu, 1e-5, 1e-3);
+  both.run(80);
+  expect_close(*both.cpu, *both.gpu, 1e-5, 1e-3);
 }
 
 /// Snow that fast movement strains beyond the limit needs repeated node steps.
 TEST(GpuSolver, ShortensStepsAsTheProcessorDoes) {
   Options o = options_on_gpu(dx);
   o.settings.strain_limit = 0.01;
-  Pair pair = make_pair(o, {fixed(ground(), Condition::slip, 0.4)});
-  pair.add(block_of_snow(0.005, Vec3(5, 0, -8)));
-  pair.run(40);
-  EXPECT_GT(pair.cpu->counters().rejected, 0);
-  EXPECT_EQ(pair.cpu->counters().rejected, pair.gpu->counters().rejected);
-  expect_close(*pair.cpu, *pair.gpu, 1e-5, 1e-3);
+  BothSolvers both = make_both(o, {fixed(level_ground(), Condition::slip, 0.4)});
+  both.add(block_of_snow(0.005, Vec3(5, 0, -8)));
+  both.run(40);
+  EXPECT_GT(both.cpu->counters().rejected, 0);
+  EXPECT_EQ(both.cpu->counters().rejected, both.gpu->counters().rejected);
+  expect_close(*both.cpu, *both.gpu, 1e-5, 1e-3);
 }
 
 TEST(GpuSolver, DampsByARateAsTheProcessorDoes) {
   Options o = options_on_gpu(dx);
   o.settings.damping_rate = 200;
-  Pair pair = make_pair(o, {fixed(ground(), Condition::sticky)});
-  pair.add(block_of_snow(0.01, Vec3(0, 0, -1)));
-  pair.run(60);
-  expect_close(*pair.cpu, *pair.gpu, 1e-6, 1e-4);
+  BothSolvers both = make_both(o, {fixed(level_ground(), Condition::sticky)});
+  both.add(block_of_snow(0.01, Vec3(0, 0, -1)));
+  both.run(60);
+  expect_close(*both.cpu, *both.gpu, 1e-6, 1e-4);
 }
 
 TEST(GpuSolver, HasTheSameBitsInWhateverOrderTheThreadsRun) {
@@ -143,7 +141,7 @@ TEST(GpuSolver, HasTheSameBitsInWhateverOrderTheThreadsRun) {
   for (const Turns turns : {Turns::forwards, Turns::backwards}) {
     const auto solver = make_emulated(
         options_on_gpu(dx),
-        {fixed(ground(), Condition::slip, 0.4),
+        {fixed(level_ground(), Condition::slip, 0.4),
          fixed(geometry::make_sphere(Vec3(0.1, 0.1, 0.0), 0.12), Condition::separate, 0.2)},
         turns);
     solver->add(block_of_snow(0.1, Vec3(4, 1, -6)));
@@ -232,26 +230,26 @@ TEST(GpuSolver, AdvancesToATimeInManySteps) {
 }
 
 TEST(GpuSolver, SnowMayBeEditedBetweenSteps) {
-  Pair pair = make_pair(options_on_gpu(dx), {fixed(ground(), Condition::sticky)});
-  pair.add(block_of_snow(0.01));
-  pair.run(20);
-  pair.add(block_of_snow(0.26, Vec3(0, 0, -2)));
-  pair.run(20);
-  const std::vector<Vec3> push(pair.cpu->size(), Vec3(1, 0, 0));
-  pair.cpu->add_velocity(push);
-  pair.gpu->add_velocity(push);
-  pair.run(20);
-  const std::vector<double> drops(pair.cpu->size(), 0.001), plastic(pair.cpu->size(), -0.01);
-  pair.cpu->settle(drops, plastic);
-  pair.gpu->settle(drops, plastic);
-  pair.run(20);
-  expect_close(*pair.cpu, *pair.gpu, 1e-5, 1e-3);
+  BothSolvers both = make_both(options_on_gpu(dx), {fixed(level_ground(), Condition::sticky)});
+  both.add(block_of_snow(0.01));
+  both.run(20);
+  both.add(block_of_snow(0.26, Vec3(0, 0, -2)));
+  both.run(20);
+  const std::vector<Vec3> push(both.cpu->size(), Vec3(1, 0, 0));
+  both.cpu->add_velocity(push);
+  both.gpu->add_velocity(push);
+  both.run(20);
+  const std::vector<double> drops(both.cpu->size(), 0.001), plastic(both.cpu->size(), -0.01);
+  both.cpu->settle(drops, plastic);
+  both.gpu->settle(drops, plastic);
+  both.run(20);
+  expect_close(*both.cpu, *both.gpu, 1e-5, 1e-3);
 }
 
 TEST(GpuSolver, SaysThatATimeStepFellToZero) {
   Options o = options_on_gpu(dx);
   o.settings.strain_limit = 1e-12;
-  const auto solver = make_emulated(o, {fixed(ground(), Condition::sticky)});
+  const auto solver = make_emulated(o, {fixed(level_ground(), Condition::sticky)});
   solver->add(block_of_snow(0.005, Vec3(0, 0, -8)));
   const ParticleState before = solver->state();
   try {
@@ -268,7 +266,7 @@ TEST(GpuSolver, FailsForSnowThatIsTooSoft) {
   Options o = options_on_gpu(dx);
   o.snows.front().youngs_modulus = 10;
   o.snows.front().model = material::SnowModel::elastic;
-  const auto solver = make_emulated(o, {fixed(ground(), Condition::sticky)});
+  const auto solver = make_emulated(o, {fixed(level_ground(), Condition::sticky)});
   solver->add(block_of_snow(0.005, Vec3(0, 0, -30)));
   EXPECT_THROW(run_steps(*solver, 3000), SimulationError);
   try {
@@ -292,4 +290,4 @@ TEST(GpuSolver, GivesItsMemoryBack) {
 }
 
 }  // namespace
-}  // namespace snowshed::methods::mpm
+}  // namespace snowshed::methods::mpm::gpu

@@ -4,7 +4,7 @@
 
 #include "snowshed/core/errors.hpp"
 
-namespace snowshed::methods::mpm {
+namespace snowshed::methods::mpm::gpu {
 namespace {
 
 std::vector<std::string> paths(const Options& options) {
@@ -59,4 +59,4 @@ TEST(GpuSupport, IsRefusedWithAllReasons) {
 }
 
 }  // namespace
-}  // namespace snowshed::methods::mpm
+}  // namespace snowshed::methods::mpm::gpu

@@ -8,9 +8,14 @@
 #include "methods/mpm/solver_testing.hpp"
 #include "snowshed/methods/mpm/gpu_solver.hpp"
 
-namespace snowshed::methods::mpm {
+namespace snowshed::methods::mpm::gpu {
 
-inline Options options_on_gpu(double dx = 0.05) { return options_for({3, Precision::float32}, dx); }
+/// Size of the cells, m.
+inline constexpr double dx = 0.05;
+
+inline Options options_on_gpu(double cell = dx) {
+  return options_for({3, Precision::float32}, cell);
+}
 
 inline std::shared_ptr<snowshed::gpu::EmulatedDevice> emulated_card(
     snowshed::gpu::Turns turns = snowshed::gpu::Turns::forwards) {
@@ -39,4 +44,4 @@ inline double mean(const std::vector<double>& values) {
   return sum / double(values.size());
 }
 
-}  // namespace snowshed::methods::mpm
+}  // namespace snowshed::methods::mpm::gpu
