@@ -11,10 +11,10 @@ namespace {
 
 std::string gigabytes(double bytes) { return show_briefly(bytes / 1e9) + " GB"; }
 
-std::shared_ptr<gpu::Device> open_card(const Options& options, double particles) {
-  const gpu::Card card = gpu::find_card();
+std::shared_ptr<snowshed::gpu::Device> open_card(const Options& options, double particles) {
+  const snowshed::gpu::Card card = snowshed::gpu::find_card();
   require_supported_on_gpu(options);
-  std::shared_ptr<gpu::Device> device = gpu::open_device(card, gpu_kernels());
+  std::shared_ptr<snowshed::gpu::Device> device = snowshed::gpu::open_device(card, gpu_kernels());
   require_memory(*device, particles);
   return device;
 }
@@ -25,12 +25,13 @@ DeviceChoice fall_back(const std::string& reason) {
 
 }  // namespace
 
-void require_memory(const gpu::Device& card, double particles) {
+void require_memory(const snowshed::gpu::Device& card, double particles) {
   const double needed = bytes_on_gpu(particles), free = double(card.free_bytes());
   if (needed > free)
-    throw gpu::Unavailable(show_rounded(particles) + " particles need " + gigabytes(needed) +
-                           " on the card; free on the " + card.name() + " are " + gigabytes(free) +
-                           "; give fewer particles or a larger dx");
+    throw snowshed::gpu::Unavailable(show_rounded(particles) + " particles need " +
+                                     gigabytes(needed) + " on the card; free on the " +
+                                     card.name() + " are " + gigabytes(free) +
+                                     "; give fewer particles or a larger dx");
 }
 
 DeviceChoice choose_device(const Options& options, double particles) {

@@ -12,7 +12,8 @@ namespace snowshed::methods::mpm {
 /// choice is the processor in these cases, with the reason as a note.
 DeviceChoice choose_device(const Options&, double particles);
 
-/// Throws gpu::Unavailable, which names both numbers, if a card has too little memory left.
-void require_memory(const gpu::Device& card, double particles);
+/// Throws snowshed::gpu::Unavailable, which names both numbers, if a card has too little memory
+/// left.
+void require_memory(const snowshed::gpu::Device& card, double particles);
 
 }  // namespace snowshed::methods::mpm

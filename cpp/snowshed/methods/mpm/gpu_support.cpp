@@ -67,7 +67,7 @@ double bytes_on_gpu(double particles) {
   return particles * (state + indices + spare + node * nodes_per_particle);
 }
 
-gpu::KernelProgram gpu_kernels() {
+snowshed::gpu::KernelProgram gpu_kernels() {
   return {"kernels of mpm", "#include \"snowshed/methods/mpm/gpu/kernels.cuh\"\n"};
 }
 

@@ -24,6 +24,6 @@ void require_supported_on_gpu(const Options&);
 double bytes_on_gpu(double particles);
 
 /// The kernels of a simulation.
-gpu::KernelProgram gpu_kernels();
+snowshed::gpu::KernelProgram gpu_kernels();
 
 }  // namespace snowshed::methods::mpm

@@ -105,7 +105,7 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
   }
   std::unique_ptr<Method> build(const SceneView& scene,
                                 const Surroundings& surroundings) const override {
-    const std::shared_ptr<gpu::Device>& card = surroundings.device.card;
+    const std::shared_ptr<snowshed::gpu::Device>& card = surroundings.device.card;
     if (card) return make_gpu_solver(options_of(scene, surroundings), card);
     return make_solver(options_of(scene, surroundings));
   }

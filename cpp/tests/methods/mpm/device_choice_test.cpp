@@ -63,16 +63,17 @@ TEST(DeviceChoice, TheErrorListsAllThatACardDoesNotCompute) {
   options.dimension = 2;
   options.settings.precision = Precision::float64;
   const std::string message = message_of<InputError>([&] { choose_device(options, 1); });
-  EXPECT_EQ(message.find("/dimension: is 2, which a graphics card does not support"), 0u) << message;
+  EXPECT_EQ(message.find("/dimension: is 2, which a graphics card does not support"), 0u)
+      << message;
   EXPECT_NE(message.find("/numerics/precision is \"double\""), std::string::npos) << message;
   EXPECT_EQ(fake.leaks(), 0u);
 }
 
 TEST(DeviceChoice, ParticlesThatDoNotFitAreRefusedWithBothNumbers) {
   const FakeCuda fake;  // with 1 MB
-  const gpu::CudaDevice card(fake.driver(), 0, "Fake card", "machine code");
+  const snowshed::gpu::CudaDevice card(fake.driver(), 0, "Fake card", "machine code");
   EXPECT_NO_THROW(require_memory(card, 4000));
-  EXPECT_EQ(message_of<gpu::Unavailable>([&] { require_memory(card, 1e6); }),
+  EXPECT_EQ(message_of<snowshed::gpu::Unavailable>([&] { require_memory(card, 1e6); }),
             "1e+06 particles need 0.227 GB on the card; free on the Fake card are 0.001 GB; give "
             "fewer particles or a larger dx");
 }
