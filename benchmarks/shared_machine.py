@@ -167,7 +167,7 @@ def fair_share(condition: str) -> float:
     cores = len(os.sched_getaffinity(0))
     if condition == "quota":
         return min(QUOTA, THREADS)
-    return min(THREADS, cores * THREADS / (THREADS + int(condition.split()[0])))
+    return min(THREADS, cores * THREADS / (THREADS + int(condition.split(maxsplit=1)[0])))
 
 
 def measure(scenes: dict[str, Path], repetitions: int) -> pd.DataFrame:
@@ -211,9 +211,7 @@ def main() -> None:
         for method in options.only or SCENES:
             make, duration = SCENES[method]
             files[method] = folder / f"{method}.json"
-            scene = make(folder).update(
-                {"numerics.threads": THREADS, "events.max_time": duration}
-            )
+            scene = make(folder).update({"numerics.threads": THREADS, "events.max_time": duration})
             scene.resolve().save(files[method])
         table = summary(measure(files, options.repetitions))
     keep_cases(table.round(4).to_dict("records"), f"shared-{options.label}")

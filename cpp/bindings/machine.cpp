@@ -26,8 +26,9 @@ gpu::Folders compiler_folders() {
 
 void bind_machine(pybind11::module_& m) {
   gpu::set_compiler_folders(&compiler_folders);
-  m.def("available_cores", &available_cores,
-        "The number of cores that this process may use, by its affinity and its container's quota.");
+  m.def(
+      "available_cores", &available_cores,
+      "The number of cores that this process may use, by its affinity and its container's quota.");
   m.def("available_memory_bytes", &available_memory_bytes,
         "Memory that is available now without swapping.");
   m.def("slow_kernels_note", &slow_kernels_note,

@@ -10,10 +10,9 @@ from reproductions.common.folder import ReproductionFolder
 from reproductions.common.stage import StageReporter, State, StudyStage
 from reproductions.frischholz2023.settings import Settings
 from reproductions.frischholz2023.studies import PANELS
-from snowshed._core import InputError
+from snowshed._core import InputError, available_cores
 from snowshed.analysis.regression.folds import CrossValidation
 from snowshed.analysis.regression.rows import StackRows, read_rows
-from snowshed.base.pool.pool import available_cores
 from snowshed.base.progress import Progress, Reporter
 
 KINDS = ("linear", "rbf")

@@ -8,8 +8,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether a line "number:controllers:group" of /proc/self/cgroup is that of a controller, which may
-/// share its tree with others. The line of version 2 names none.
+/// Whether a line "number:controllers:group" of /proc/self/cgroup is that of a controller, which
+/// may share its tree with others. The line of version 2 names none.
 bool names(const std::string& controllers, ControlGroups version, const std::string& controller) {
   if (version == ControlGroups::version2) return controllers.empty();
   return ("," + controllers + ",").find("," + controller + ",") != std::string::npos;

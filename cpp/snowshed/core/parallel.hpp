@@ -38,8 +38,8 @@ class FirstException {
   std::exception_ptr exception_;
 };
 
-/// Calls f(i) for i in [0, n) on at most `threads` threads, which take `grain` iterations at a time.
-/// If memory is short, throws before the first iteration.
+/// Calls f(i) for i in [0, n) on at most `threads` threads, which take `grain` iterations at a
+/// time. If memory is short, throws before the first iteration.
 template <class F>
 void parallel_for_dynamic(std::ptrdiff_t n, int threads, std::ptrdiff_t grain, F f) {
   if (threads == 1 || n <= grain || is_in_shared_loop()) {
@@ -95,9 +95,8 @@ void parallel_pieces(std::ptrdiff_t n, int threads, std::ptrdiff_t piece, F f) {
 template <class F, class G>
 void parallel_pieces(int threads, PieceLoop<F> first, PieceLoop<G> second) {
   const std::ptrdiff_t m = first.pieces();
-  parallel_for_dynamic(m + second.pieces(), threads, 1, [&](std::ptrdiff_t p) {
-    p < m ? first.run(p) : second.run(p - m);
-  });
+  parallel_for_dynamic(m + second.pieces(), threads, 1,
+                       [&](std::ptrdiff_t p) { p < m ? first.run(p) : second.run(p - m); });
 }
 
 }  // namespace snowshed

@@ -18,7 +18,8 @@ namespace snowshed {
 namespace {
 
 #ifdef SNOWSHED_IN_TURN
-// For ThreadSanitizer: any two neighbouring iterations run on different threads, in short loops too.
+// For ThreadSanitizer: any two neighbouring iterations run on different threads, in short loops
+// too.
 constexpr bool in_turn = true;
 #else
 constexpr bool in_turn = false;
