@@ -39,7 +39,7 @@ CPP_FILES = $(shell find cpp -name '*.[ch]pp')
 PYTHON_FOLDERS := python reproductions validation tests tools examples benchmarks lua_compat qgis
 
 .PHONY: help build release demo validation thesis test test-cpp test-py test-slow sanitize sanitize-address \
-  sanitize-thread fuzz mutants bench docs qgis components format lint tidy clean
+  sanitize-thread fuzz mutants bench bench-shared docs qgis components format lint tidy clean
 .NOTPARALLEL:
 
 help:
@@ -52,6 +52,7 @@ help:
 	@echo "make fuzz       fuzz all readers of files (FUZZ_SECONDS=$(FUZZ_SECONDS) each)"
 	@echo "make mutants    inject faults and see which the tests catch, an hour or two"
 	@echo "make bench      speed of the solver and of the laboratory events, kept in benchmarks/results"
+	@echo "make bench-shared  runs beside other busy programs, ten minutes"
 	@echo "make docs       the documentation as HTML"
 	@echo "make release    a source distribution, and a wheel that is tried in a clean environment"
 	@echo "make qgis       the QGIS plugin as an archive that QGIS installs"
@@ -201,6 +202,9 @@ bench: build
 	@$(call enable,SNOWSHED_BUILD_BENCH)
 	cmake --build $(TREE) --target snowshed_bench
 	$(BIN)/python -m benchmarks.record $(TREE)/snowshed_bench
+
+bench-shared: build
+	$(BIN)/python -m benchmarks.shared_machine
 
 # --- documentation and style ---------------------------------------------------------------
 

@@ -6,9 +6,10 @@ from snowshed.scene.accuracy_settings import ACCURACY, FORMER_NAMES
 from snowshed.scene.schema import scene_parameters
 
 
-def test_they_are_all_numerics_except_threads_and_the_seeding():
+def test_they_are_all_numerics_except_threads_and_device_and_the_seeding():
     numerics = [p.path for p in scene_parameters() if p.path.startswith("numerics.")]
     numerics.remove("numerics.threads")
+    numerics.remove("numerics.device")
     seeding = ["seeding.particles_per_voxel", "seeding.pattern"]
     assert list(ACCURACY.values()) == numerics + seeding  # the order of a study's columns
 

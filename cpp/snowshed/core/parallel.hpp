@@ -67,8 +67,8 @@ void parallel_for_dynamic(std::ptrdiff_t n, int threads, std::ptrdiff_t grain, F
 /// The same for many cheap iterations.
 template <class F>
 void parallel_for_static(std::ptrdiff_t n, int threads, F f) {
-  constexpr std::ptrdiff_t least_shared = 4096, grain = 1024;
-  parallel_for_dynamic(n, n < least_shared ? 1 : threads, grain, f);
+  constexpr std::ptrdiff_t min_shared = 4096, grain = 1024;
+  parallel_for_dynamic(n, n < min_shared ? 1 : threads, grain, f);
 }
 
 /// A loop in pieces of at most `piece` iterations each: calls f(begin, end). The pieces do not

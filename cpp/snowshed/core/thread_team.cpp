@@ -27,7 +27,7 @@ constexpr bool in_turn = false;
 
 thread_local bool at_work = false;
 
-/// The threads that share the loops of one thread. That thread is member 0.
+/// The threads that share the loops of the calling thread, which is member 0.
 class ThreadTeam {
  public:
   ThreadTeam() = default;
@@ -59,7 +59,7 @@ class ThreadTeam {
   void take_back_offers();
 
   std::vector<std::unique_ptr<Member>> others_;  // member i + 1
-  std::vector<Share> shares_;                    // of every member
+  std::vector<Share> shares_;                    // for each member
   // The loop that is shared now.
   int members_ = 1;
   std::ptrdiff_t grain_ = 1;

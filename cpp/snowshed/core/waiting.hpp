@@ -50,7 +50,7 @@ class Waiting {
 
  private:
   using Microseconds = std::chrono::duration<double, std::micro>;
-  static constexpr Microseconds least{2.0}, most{200.0}, growth{0.25};
+  static constexpr Microseconds min_patience{2.0}, max_patience{200.0}, growth{0.25};
   static constexpr double share_after_sleep = 0.25;
   static constexpr int looks = 32;  // at the condition between looks at the clock
 
@@ -60,17 +60,17 @@ class Waiting {
     do {
       for (int look = 0; look < looks; ++look) {
         if (condition()) {
-          patience_ = std::min(most, patience_ + growth);
+          patience_ = std::min(max_patience, patience_ + growth);
           return true;
         }
         relax_processor();
       }
     } while (std::chrono::steady_clock::now() - begin < patience_);
-    patience_ = std::max(least, share_after_sleep * patience_);
+    patience_ = std::max(min_patience, share_after_sleep * patience_);
     return false;
   }
 
-  Microseconds patience_ = most;
+  Microseconds patience_ = max_patience;
   std::atomic<bool> asleep_{false};
   std::mutex mutex_;
   std::condition_variable woken_;

@@ -14,7 +14,7 @@ std::string megabytes(std::size_t bytes) { return show_rounded(double(bytes) / 1
 
 }  // namespace
 
-/// What a call needs: the context, a stream and the loaded kernels. Each is released even if the
+/// The needs of a call: the context, a stream and the loaded kernels. Each is released even if the
 /// next one fails.
 class CudaDevice::Context {
  public:

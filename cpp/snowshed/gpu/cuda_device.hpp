@@ -39,7 +39,7 @@ class CudaDevice final : public Device {
   class Current;
   struct Kernel {
     cuda::Function function;
-    std::size_t shared_bytes;  // that it may use
+    std::size_t shared_bytes;  // may be used
   };
 
   Kernel& kernel(const char* name);

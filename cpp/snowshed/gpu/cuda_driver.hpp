@@ -25,7 +25,7 @@ inline constexpr Result success = 0, out_of_memory = 2, no_device = 100;
 
 // Numbers of the driver's enumerations.
 inline constexpr int compute_capability_major = 75, compute_capability_minor = 76;
-inline constexpr int max_shared_bytes = 8;          // of a function, beyond the 48 KB of all cards
+inline constexpr int max_shared_bytes = 8;          // attribute of a function: more than 48 KB
 inline constexpr unsigned non_blocking_stream = 1;  // does not wait for the default stream
 
 }  // namespace cuda

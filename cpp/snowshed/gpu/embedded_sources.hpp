@@ -11,7 +11,7 @@ struct SourceText {
   const char *name, *text;
 };
 
-/// The kernels, the headers of the core that they share, and what stands in for other headers.
+/// The kernels, the headers of the core that they share, and the stand-ins for other headers.
 const std::vector<SourceText>& embedded_sources();
 
 }  // namespace snowshed::gpu

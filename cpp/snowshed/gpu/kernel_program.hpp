@@ -11,7 +11,7 @@ namespace snowshed::gpu {
 struct KernelProgram {
   std::string name;                    // in messages of the compiler
   std::string source;                  // CUDA C++17
-  std::vector<std::string> options{};  // of the compiler, such as "-DNAME=VALUE"
+  std::vector<std::string> options{};  // for the compiler, such as "-DNAME=VALUE"
 };
 
 }  // namespace snowshed::gpu

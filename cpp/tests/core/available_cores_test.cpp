@@ -32,11 +32,11 @@ TEST_F(AvailableCores, AQuotaOfVersionTwoCounts) {
   EXPECT_EQ(quota(), none);
   write("sys/fs/cgroup/batch/job/cpu.max", "250000 100000\n");
   EXPECT_EQ(quota(), 2.5);
-  write("sys/fs/cgroup/batch/cpu.max", "150000 100000\n");  // of the group above
+  write("sys/fs/cgroup/batch/cpu.max", "150000 100000\n");  // a group above
   EXPECT_EQ(quota(), 1.5);
 }
 
-TEST_F(AvailableCores, AQuotaInsideAContainerIsThatOfTheTopmostGroup) {
+TEST_F(AvailableCores, TheTopmostGroupHasTheQuotaOfAContainer) {
   write("proc/self/cgroup", "0::/\n");
   write("sys/fs/cgroup/cpu.max", "50000 100000\n");
   EXPECT_EQ(quota(), 0.5);

@@ -100,13 +100,13 @@ extern "C" __global__ void add_one(int* values, int count) {
   int count = 1000;
   std::vector<int> values(std::size_t(count), 0);
   const std::size_t bytes = sizeof(int) * values.size();
-  Address place = device->allocate(bytes);
-  device->clear(place, bytes);
-  void* arguments[] = {&place, &count};
+  Address counts = device->allocate(bytes);
+  device->clear(counts, bytes);
+  void* arguments[] = {&counts, &count};
   for (int i = 0; i < 3; ++i) device->launch("add_one", {8, 128}, arguments);
-  device->download(values.data(), place, bytes);
+  device->download(values.data(), counts, bytes);
   EXPECT_EQ(values, std::vector<int>(std::size_t(count), 3));
-  device->free(place);
+  device->free(counts);
   EXPECT_THROW(device->allocate(std::size_t(1) << 50), SimulationError);
 }
 

@@ -37,13 +37,13 @@ void add_one(Device& device, Address values, int count, std::size_t shared_bytes
 TEST_F(CudaDeviceTest, BytesGoToTheCardThroughKernelsAndBack) {
   CudaDevice device = open();
   const std::vector<int> given{1, 2, 3};
-  std::vector<int> got(4);
+  std::vector<int> downloaded(4);
   const Address values = device.allocate(sizeof(int) * 4);
   device.clear(values, sizeof(int) * 4);
   device.upload(values, given.data(), sizeof(int) * given.size());
   add_one(device, values, 4);
-  device.download(got.data(), values, sizeof(int) * 4);
-  EXPECT_EQ(got, (std::vector<int>{2, 3, 4, 1}));
+  device.download(downloaded.data(), values, sizeof(int) * 4);
+  EXPECT_EQ(downloaded, (std::vector<int>{2, 3, 4, 1}));
   device.free(values);
 }
 
@@ -82,10 +82,11 @@ TEST_F(CudaDeviceTest, AKernelThatFailsIsReportedWhereTheProgramWaits) {
   const Address values = device.allocate(8);
   add_one(device, values, 2);
   fake.fail("cuStreamSynchronize", 719);
-  int got[2];
-  EXPECT_EQ(message_of<SimulationError>([&] { device.download(got, values, sizeof got); }),
-            "graphics card: a kernel or a copy failed: CUDA_ERROR_LAUNCH_FAILED (as the test "
-            "wants)");
+  int downloaded[2];
+  EXPECT_EQ(
+      message_of<SimulationError>([&] { device.download(downloaded, values, sizeof downloaded); }),
+      "graphics card: a kernel or a copy failed: CUDA_ERROR_LAUNCH_FAILED (as the test "
+      "wants)");
   device.free(values);
 }
 

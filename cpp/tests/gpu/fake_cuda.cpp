@@ -20,7 +20,7 @@ struct State {
 
   std::size_t used() const {
     std::size_t sum = 0;
-    for (const auto& [place, bytes] : memory) sum += bytes;
+    for (const auto& [address, bytes] : memory) sum += bytes;
     return sum;
   }
 };
@@ -51,7 +51,7 @@ extern "C" {
 void fake_cuda_fail(const char* function, int result) { state.failing[function] = result; }
 void fake_cuda_reset() { state = State(); }
 const char* fake_cuda_calls() { return state.calls.c_str(); }
-/// What was taken and not given back: bytes, contexts and contexts that are current.
+/// Sum of all that was taken and not given back: bytes, contexts and contexts that are current.
 std::size_t fake_cuda_leaks() { return state.used() + state.contexts + state.pushed; }
 
 // --- the driver ------------------------------------------------------------------------------
@@ -111,9 +111,9 @@ int cuMemGetInfo_v2(std::size_t* free, std::size_t* total) {
 int cuMemAlloc_v2(std::uint64_t* address, std::size_t bytes) {
   if (const int result = called_in_context("cuMemAlloc")) return result;
   if (state.used() + bytes > card_bytes) return out_of_memory;
-  void* const place = std::malloc(bytes);
-  state.memory[place] = bytes;
-  *address = reinterpret_cast<std::uint64_t>(place);
+  void* const block = std::malloc(bytes);
+  state.memory[block] = bytes;
+  *address = reinterpret_cast<std::uint64_t>(block);
   return 0;
 }
 int cuMemFree_v2(std::uint64_t address) {

@@ -62,7 +62,7 @@ TEST_F(SimulationCheckpoint, EmptyBlocksAreRefused) {
 }
 
 /// The results then agree to rounding, and not to the same bits.
-TEST_F(SimulationCheckpoint, ARunFromAnotherDeviceGoesOnWithANote) {
+TEST_F(SimulationCheckpoint, ANoteSaysThatARunBeganOnAnotherDevice) {
   Simulation sim(drop(0.02));
   sim.begin_event();
   sim.save(path("of_cpu"));

@@ -19,6 +19,10 @@ std::shared_ptr<snowshed::gpu::Device> open_card(const Options& options, double 
   return device;
 }
 
+const char* const untried =
+    "computed on a graphics card, whose kernels had run on an emulated card only when this version "
+    "was made: compare with a run on the processor (numerics.device \"cpu\")";
+
 DeviceChoice fall_back(const std::string& reason) {
   return {nullptr, "device \"auto\": computed on the processor: " + reason};
 }
@@ -38,7 +42,7 @@ DeviceChoice choose_device(const Options& options, double particles) {
   const DeviceSetting asked = options.settings.device;
   if (asked == DeviceSetting::cpu) return {};
   try {
-    return {open_card(options, particles), ""};
+    return {open_card(options, particles), untried};
   } catch (const InputError& error) {
     if (asked == DeviceSetting::automatic) return fall_back(error.what());
     if (!error.where().empty()) throw;
