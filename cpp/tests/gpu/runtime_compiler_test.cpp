@@ -76,10 +76,11 @@ TEST(RuntimeCompiler, CompilesTheKernelsOfEveryMethod) {
   for (const SourceText& source : embedded_sources()) {
     const std::string name = source.name, last = "/gpu/kernels.cuh";
     if (name.size() < last.size() || name.substr(name.size() - last.size()) != last) continue;
-    EXPECT_FALSE(compiler->compile({name, "#include \"" + name + "\"\n"}, 90).empty());
+    EXPECT_FALSE(
+        compiler->compile({"kernels of " + name, "#include \"" + name + "\"\n"}, 90).empty());
     ++methods;
   }
-  if (methods == 0) GTEST_SKIP() << "no method has kernels for a card yet";
+  EXPECT_EQ(methods, 1);
 }
 
 TEST(RuntimeCompiler, TheErrorHasTheLogWithFileAndLine) {
