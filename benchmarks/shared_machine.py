@@ -29,6 +29,7 @@ import pandas as pd
 from benchmarks.keeping import keep_cases
 from validation.mps.bodies import WATER, block, floor_and_sides
 
+from snowshed._core import available_cores
 from snowshed.analysis.tomography.example import example_grains
 from snowshed.scene.builders.grains import grains_scene
 from snowshed.scene.builders.slides import example_slide
@@ -74,11 +75,6 @@ def water(folder: Path) -> Scene:
     ).update({"numerics.spacing": 1 / 27})
 
 
-def slide(folder: Path) -> Scene:
-    """Return the example of a slide."""
-    return example_slide(folder)
-
-
 def grains(folder: Path) -> Scene:
     """Return the compression of a small sample of snow."""
     stages = [LoadingStage(kind="compress", strain=0.004)]
@@ -90,7 +86,7 @@ def grains(folder: Path) -> Scene:
 SCENES: dict[str, tuple[Callable[[Path], Scene], float]] = {
     "mpm": (laboratory, 0.25),
     "mps": (water, 2.0),
-    "slide": (slide, 60.0),
+    "slide": (example_slide, 60.0),
     "grains": (grains, 0.0012),
 }
 
@@ -164,19 +160,19 @@ def conditions() -> dict[str, Callable[[], contextlib.AbstractContextManager[Non
 
 def fair_share(condition: str) -> float:
     """Return the cores that two threads get in a condition."""
-    cores = len(os.sched_getaffinity(0))
     if condition == "quota":
         return min(QUOTA, THREADS)
-    return min(THREADS, cores * THREADS / (THREADS + int(condition.split(maxsplit=1)[0])))
+    busy = int(condition.split(maxsplit=1)[0])
+    return min(THREADS, available_cores() * THREADS / (THREADS + busy))
 
 
 def measure(scenes: dict[str, Path], repetitions: int) -> pd.DataFrame:
     """Return the wall and processor time of every run, repetition by repetition."""
-    rows = []
+    rows, held = [], conditions()
     for repetition in range(repetitions):
         for method, scene in scenes.items():
             for run_name, run in RUNS.items():
-                for condition, hold in conditions().items():
+                for condition, hold in held.items():
                     with hold():
                         wall, processor = run(scene)
                     rows.append((method, run_name, condition, repetition, wall, processor))

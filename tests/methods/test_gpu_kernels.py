@@ -2,19 +2,16 @@
 
 import ctypes
 import importlib.util
+import re
 from pathlib import Path
 
 import pytest
 
 CPP = Path(__file__).parents[2] / "cpp"
 STAND_INS = CPP / "snowshed" / "gpu" / "stand_ins"
-STANDS_IN_FOR = {
-    "cmath.cuh": "cmath",
-    "cstdint.cuh": "cstdint",
-    "simd_math.cuh": "snowshed/core/simd_math.hpp",
-    "simd_pack.cuh": "snowshed/core/simd_pack.hpp",
-    "variant.cuh": "snowshed/core/variant.hpp",
-}
+#: Headers and the files that stand in for them, as the build embeds them.
+EMBEDDED = (CPP.parent / "cmake" / "EmbeddedSources.cmake").read_text(encoding="utf-8")
+STANDS_IN_FOR = {file: name for name, file in re.findall(r"^  (\S+)=(\w+\.cuh)", EMBEDDED, re.M)}
 
 
 def runtime_compiler():

@@ -32,14 +32,21 @@ double processor_seconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-TEST(ThreadTeam, OtherThreadsTakePart) {
+/// Calls f on each of so many threads, once all of them are at work.
+template <class F>
+void run_together(int threads, F f) {
   std::atomic<int> present{0};
-  // Each iteration waits for the other, so both run at once.
-  parallel_for_dynamic(2, 2, 1, [&](std::ptrdiff_t) {
+  parallel_for_dynamic(threads, threads, 1, [&](std::ptrdiff_t) {
     ++present;
-    while (present < 2) std::this_thread::yield();
+    while (present < threads) std::this_thread::yield();
+    f();
   });
-  EXPECT_EQ(present, 2);
+}
+
+TEST(ThreadTeam, OtherThreadsTakePart) {
+  std::atomic<int> calls{0};
+  run_together(2, [&] { ++calls; });
+  EXPECT_EQ(calls, 2);
 }
 
 TEST(ThreadTeam, ThreadsThatWaitForLongSleepAndComeBack) {
@@ -47,21 +54,15 @@ TEST(ThreadTeam, ThreadsThatWaitForLongSleepAndComeBack) {
   const double before = processor_seconds();
   std::this_thread::sleep_for(pause);
   EXPECT_LT(processor_seconds() - before, 0.1);
-  std::atomic<int> present{0};
-  parallel_for_dynamic(3, 3, 1, [&](std::ptrdiff_t) {
-    ++present;
-    while (present < 3) std::this_thread::yield();
-  });
-  EXPECT_EQ(present, 3);
+  std::atomic<int> calls{0};
+  run_together(3, [&] { ++calls; });
+  EXPECT_EQ(calls, 3);
 }
 
 TEST(ThreadTeam, TheCallerSleepsWhileItWaits) {
   const double before = processor_seconds();
   const std::thread::id caller = std::this_thread::get_id();
-  std::atomic<int> present{0};
-  parallel_for_dynamic(2, 2, 1, [&](std::ptrdiff_t) {
-    ++present;
-    while (present < 2) std::this_thread::yield();
+  run_together(2, [&] {
     if (std::this_thread::get_id() != caller) std::this_thread::sleep_for(pause);
   });
   EXPECT_LT(processor_seconds() - before, 0.1);

@@ -6,47 +6,34 @@
 #include "snowshed/methods/mpm/describe.hpp"
 
 namespace snowshed::methods::mpm {
-namespace {
-
-const char* const on_the_processor = "or run on the processor (numerics.device \"cpu\")";
-
-}  // namespace
-
 std::vector<Unsupported> unsupported_on_gpu(const Options& o) {
   std::vector<Unsupported> all;
   const Settings& n = o.settings;
   const auto refuse = [&](bool used, const char* path, const std::string& is,
-                          const std::string& instead) {
-    if (used) all.push_back({path, is + ", which a graphics card does not support; " + instead});
+                          const std::string& alternative) {
+    if (!used) return;
+    const std::string other = alternative.empty() ? "" : "use " + alternative + ", or ";
+    all.push_back({path, is + ", which a graphics card does not support; " + other +
+                             "run on the processor (numerics.device \"cpu\")"});
   };
-  const std::string processor = std::string(on_the_processor).substr(3);
-  refuse(o.dimension != 3, "/dimension", "is 2", "use 3, " + std::string(on_the_processor));
-  refuse(n.precision != Precision::float32, "/numerics/precision", "is \"double\"",
-         std::string("use \"float\", ") + on_the_processor);
-  refuse(n.scheme != Scheme::thesis, "/numerics/scheme", "is \"objective\"",
-         std::string("use \"thesis\", ") + on_the_processor);
+  refuse(o.dimension != 3, "/dimension", "is 2", "3");
+  refuse(n.precision != Precision::float32, "/numerics/precision", "is \"double\"", "\"float\"");
+  refuse(n.scheme != Scheme::thesis, "/numerics/scheme", "is \"objective\"", "\"thesis\"");
   refuse(n.transfer != Transfer::flip, "/numerics/transfer",
-         "is \"" + std::string(name_of(n.transfer)) + "\"",
-         std::string("use \"flip\", ") + on_the_processor);
-  refuse(n.basis != Basis::quadratic, "/numerics/basis", "is \"cubic\"",
-         std::string("use \"quadratic\", ") + on_the_processor);
-  refuse(n.contact != ContactRule::kernel, "/numerics/contact", "is \"touch\"",
-         std::string("use \"kernel\", ") + on_the_processor);
-  refuse(n.fields != Fields::one, "/numerics/fields", "is \"events\"",
-         std::string("use \"one\", ") + on_the_processor);
-  refuse(n.damps_over_length(), "/numerics/damping_length", "is a length",
-         std::string("use 0, ") + on_the_processor);
-  refuse(n.crack_band_length > 0, "/numerics/crack_band_length", "is a length",
-         std::string("use 0, ") + on_the_processor);
-  refuse(n.relaxation_time > 0, "/numerics/relaxation_time", "is a time",
-         std::string("use 0, ") + on_the_processor);
-  refuse(o.energy, "/output/energy", "is true", std::string("use false, ") + on_the_processor);
-  refuse(o.forces, "/output/forces", "is true", std::string("use false, ") + on_the_processor);
+         "is \"" + std::string(name_of(n.transfer)) + "\"", "\"flip\"");
+  refuse(n.basis != Basis::quadratic, "/numerics/basis", "is \"cubic\"", "\"quadratic\"");
+  refuse(n.contact != ContactRule::kernel, "/numerics/contact", "is \"touch\"", "\"kernel\"");
+  refuse(n.fields != Fields::one, "/numerics/fields", "is \"events\"", "\"one\"");
+  refuse(n.damps_over_length(), "/numerics/damping_length", "is a length", "0");
+  refuse(n.crack_band_length > 0, "/numerics/crack_band_length", "is a length", "0");
+  refuse(n.relaxation_time > 0, "/numerics/relaxation_time", "is a time", "0");
+  refuse(o.energy, "/output/energy", "is true", "false");
+  refuse(o.forces, "/output/forces", "is true", "false");
   const bool own_friction =
       std::any_of(o.obstacles.begin(), o.obstacles.end(),
                   [](const Obstacle& obstacle) { return obstacle.law.coefficient != nullptr; });
   refuse(o.laws.material || o.laws.constitutive || o.laws.body_force || own_friction, "/",
-         "has laws of the user", processor);
+         "has laws of the user", "");
   return all;
 }
 
