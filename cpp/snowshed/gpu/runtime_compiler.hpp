@@ -22,7 +22,7 @@ class RuntimeCompiler {
   int major() const { return major_; }
   std::string version() const;  ///< such as "13.0"
 
-  /// The architecture to compile for, for a card of this compute capability (90 for 9.0): the
+  /// Returns the architecture of the code for a card of a compute capability (90 for 9.0): the
   /// newest of the same major version that the compiler knows and the card runs. Throws
   /// Unavailable if there is none.
   int architecture_for(int compute_capability) const;

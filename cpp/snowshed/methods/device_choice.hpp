@@ -11,7 +11,7 @@ namespace snowshed::methods {
 /// The device for a run: the card, opened, or none for the processor.
 struct DeviceChoice {
   std::shared_ptr<gpu::Device> card;
-  std::string note;  // the reason why an automatic choice is the processor; empty otherwise
+  std::string note;  // on the choice, for the results; may be empty
 
   bool is_card() const { return card != nullptr; }
   std::string name() const { return card ? card->name() : "cpu"; }

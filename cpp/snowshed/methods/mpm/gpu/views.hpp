@@ -66,7 +66,7 @@ struct ParticleLaunch {
   unsigned long long* integers;  // sums to which the particles are added
 };
 
-/// Motion of a block of particles, for the decision whether it sleeps: sums over its particles.
+/// Sums over the particles of a block, by which the host decides whether the block sleeps.
 struct BlockMotion {
   double speed_squared, velocity[3];  // m2/s2, m/s
   double mass, carried, change[3];    // kg; of the nodes, see SleepingBlockMotion, times the mass
