@@ -177,11 +177,11 @@ class Study:
             self.laws.laws()  # a wrong name is the study's error
         if not self.parts:
             raise InputError("has no parts; give at least one, which may be empty")
+        count = sum(math.prod(len(factor) for factor in part) for part in self._seeded_parts())
+        if count > MAX_RUNS:  # before the values are checked, which takes long for many
+            raise InputError(f"has {count} runs; at most {MAX_RUNS} are allowed")
         for part in self.parts:
             self._check(part)
-        count = sum(math.prod(len(factor) for factor in part) for part in self._seeded_parts())
-        if count > MAX_RUNS:
-            raise InputError(f"has {count} runs; at most {MAX_RUNS} are allowed")
 
     @property
     def axes(self) -> list[str]:
