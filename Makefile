@@ -146,8 +146,9 @@ test-cpp: build
 	cmake --build $(TREE) --target snowshed_tests
 	ctest --test-dir $(TREE) -j 2 --output-on-failure
 
+# Tests run side by side, so each has one thread unless it asks for more.
 test-py: build $(VENV)/.dev-tools
-	$(BIN)/python -m pytest -n 3 --dist loadfile
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 3 --dist loadfile
 
 test-slow: build $(VENV)/.dev-tools
 	$(BIN)/python -m pytest -m slow

@@ -33,7 +33,7 @@ from snowshed.running.scene_notes import notes_of_beginning
 from snowshed.scene.schema import Parameter, scene_parameters
 
 # The same examples in every run, so that failures can be repeated.
-same_every_time = settings(derandomize=True, database=None, deadline=None, max_examples=100)
+same_every_time = settings(derandomize=True, database=None, deadline=None, max_examples=50)
 
 PARAMETERS = {parameter.path: parameter for parameter in scene_parameters()}
 FOLLOWERS = ("slab.length", "slab.width", "seeding.particles_per_voxel")
