@@ -14,7 +14,7 @@
 namespace snowshed::methods::mpm {
 
 /// Smallest number of particles for which it is worth waking another thread twice a step.
-inline constexpr int particles_per_thread = 2000;
+inline constexpr int particles_per_thread = 500;
 
 /// With contact by touch, nodes up to this distance (in cells) outside an obstacle hold snow, too.
 /// The outermost of these nodes then lie on the obstacle's surface on average, wherever the surface

@@ -68,6 +68,13 @@ inline std::unique_ptr<Solver> body_of(const Options& o, const Vec3& corner) {
   return mps;
 }
 
+/// Mean velocity along x.
+inline double mean_speed(const Method& method) {
+  double speed = 0;
+  for (const Vec3& u : method.state().velocities) speed += u.x() / double(method.size());
+  return speed;
+}
+
 inline void flow_until(Method& method, double time) {
   while (method.time() < time) method.step();
 }

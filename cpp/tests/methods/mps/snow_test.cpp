@@ -29,12 +29,6 @@ double frictional_acceleration(const Options& o) {
   return o.gravity.x() + o.gravity.z() * std::tan(24 * 3.14159265358979 / 180);
 }
 
-double mean_speed(const Method& method) {
-  double speed = 0;
-  for (const Vec3& u : method.state().velocities) speed += u.x() / double(method.size());
-  return speed;
-}
-
 TEST(MpsSolver, ASlabOnAnInclineFollowsCoulomb) {
   for (const Walls walls : {Walls::mirrors, Walls::particles})
     for (const double degrees : {35.0, 45.0}) {
