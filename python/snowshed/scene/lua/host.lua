@@ -17,7 +17,7 @@ local format, getinfo, load, next = string.format, debug.getinfo, load, next
 local rep, resume, select, sethook = string.rep, coroutine.resume, select, debug.sethook
 local gmatch, match, randomseed, sub = string.gmatch, string.match, math.randomseed, string.sub
 local sort, tonumber, type, number_type = table.sort, tonumber, type, math.type
-local setmetatable, unpack = setmetatable, table.unpack
+local rawset, setmetatable, unpack = rawset, setmetatable, table.unpack
 local library_tostring = tostring
 
 local INTERVAL = 200 -- instructions between two looks at the limits
@@ -263,6 +263,27 @@ local function forbid()
   end
 end
 
+-- Makes the names of the vocabulary constant. Without this, `panel = { tilt = 50 }` in place of
+-- `panel { tilt = 50 }` would replace a function, and set nothing.
+local function protect_vocabulary()
+  local vocabulary = {}
+  for _, names in next, { words, shapes } do
+    for key, value in next, names do
+      local name = names == words and value or key
+      vocabulary[name], env[name] = env[name], nil
+    end
+  end
+  setmetatable(env, {
+    __index = vocabulary,
+    __newindex = function(variables, name, value)
+      if vocabulary[name] then
+        error(format("%s = ... sets nothing; call %s, without the equals sign", name, name), 0)
+      end
+      rawset(variables, name, value)
+    end,
+  })
+end
+
 local function fill_environment()
   forbid()
   for _, name in next, ALLOWED_FUNCTIONS do
@@ -285,6 +306,7 @@ local function fill_environment()
   for name, kind in next, shapes do
     env[name] = shape_maker(name, kind)
   end
+  protect_vocabulary()
   getmetatable("").__index = env.string -- ("text"):rep is env.string.rep
 end
 

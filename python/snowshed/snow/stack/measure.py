@@ -45,6 +45,8 @@ CONNECTION_VOXEL = 0.01
 MIN_DENSITY, MAX_DENSITY = 5.0, 1500.0
 #: Largest size of a stack over the side of a cube of its snow; beyond it, a note asks for the unit.
 MAX_SPREAD = 100.0
+#: Largest side of a cube of the snow over the size of its particles' box; as `MAX_SPREAD`.
+MAX_PACKING = 3.0
 
 
 @dataclass(frozen=True, repr=False)
@@ -232,7 +234,7 @@ def measure_stack(
     coordinates = points("positions", positions, dimension)
     every_mass = column("masses", masses, len(coordinates), non_negative=True)
     every_density = column("densities", densities, len(coordinates), non_negative=True)
-    _note_on_units(coordinates, every_mass, every_density, dimension)
+    _note_on_units(coordinates, every_mass, every_density, dimension, dx)
     on_panel = (
         np.zeros(len(coordinates), dtype=bool)
         if exclude is None
@@ -272,7 +274,9 @@ def measure_stack(
     )
 
 
-def _note_on_units(positions: Floats, masses: Floats, densities: Floats, dimension: int) -> None:
+def _note_on_units(
+    positions: Floats, masses: Floats, densities: Floats, dimension: int, dx: float
+) -> None:
     """Issue notes if the arrays cannot be in metres, kg and kg/m3."""
     dense = densities[masses > 0.0]
     if not len(dense):
@@ -287,6 +291,12 @@ def _note_on_units(positions: Floats, masses: Floats, densities: Floats, dimensi
     sides = np.ptp(positions, axis=0)[[0, 2] if dimension == 2 else [0, 1, 2]]
     size = float(np.prod(sides)) ** (1 / dimension)
     snow = float((masses / np.maximum(densities, MIN_DENSITY)).sum()) ** (1 / dimension)
+    if snow > MAX_PACKING * float(np.prod(sides + dx)) ** (1 / dimension):
+        issue_note(
+            f"masses: by its mass and density the snow has the volume of "
+            f"{'a square' if dimension == 2 else 'a cube'} with sides of {snow:.2g} m, but its "
+            f"particles span only {size:.2g} m; are the masses in g, or is `dimension` another one?"
+        )
     if size > MAX_SPREAD * snow:
         issue_note(
             f"positions: the particles span {' x '.join(f'{side:.3g}' for side in sides)} m, "
