@@ -69,13 +69,15 @@ class Factor:
 
     def _note_repeated_points(self) -> None:
         """Issue a note if a point appears twice, because its runs are computed once."""
-        seen: set[str] = set()
+        seen: set[object] = set()
         for point in self.points():
-            if repr(point) in seen:
+            plain = tuple(each if isinstance(each, (str, float, int)) else repr(each)
+                          for each in point.values())  # fmt: skip
+            if plain in seen:
                 values = ", ".join(f"{path} = {value}" for path, value in point.items())
                 issue_note(f"{values}: appears twice, and is computed once")
                 return
-            seen.add(repr(point))
+            seen.add(plain)
 
     def __len__(self) -> int:
         return len(next(iter(self.columns.values())))

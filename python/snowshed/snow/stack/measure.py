@@ -45,6 +45,7 @@ CONNECTION_VOXEL = 0.01
 MIN_DENSITY, MAX_DENSITY = 5.0, 1500.0
 #: Largest size of a stack over the side of a cube of its snow; beyond it, a note asks for the unit.
 MAX_SPREAD = 100.0
+MIN_TILT = 2.0  # degrees, of the ground; smaller ones but 0 may be radians
 #: Largest side of a cube of the snow over the size of its particles' box; as `MAX_SPREAD`.
 MAX_PACKING = 3.0
 
@@ -245,6 +246,8 @@ def measure_stack(
         np.zeros(len(coordinates)) if ground is None else column("ground", ground, len(coordinates))
     )
     levelled[:, 2] -= under
+    if structures is None:  # which might hold the snow above the ground
+        _note_on_places(levelled[~on_panel], dx, ground_tilt_deg)
     if dimension == 2:
         levelled[:, 1] = 0.0
     touching = np.zeros(len(coordinates), dtype=bool)
@@ -303,6 +306,32 @@ def _note_on_units(
             f"but their snow has the volume of {'a square' if dimension == 2 else 'a cube'} with "
             f"sides of {snow:.2g} m; are the positions in mm or cm?"
         )
+
+
+def _note_on_places(snow: Floats, dx: float, ground_tilt_deg: float) -> None:
+    """Issue notes on snow below the ground or above it, and on a grid of another unit.
+
+    Parameters
+    ----------
+    snow : (n, 3)
+        Positions above level ground, m.
+    dx
+        Size of the grid cells, m.
+    ground_tilt_deg
+        Tilt of the ground, degrees.
+    """
+    if 0.0 < abs(ground_tilt_deg) < MIN_TILT:
+        issue_note(f"ground_tilt_deg: {ground_tilt_deg:g} degrees is unusual; is it in radians?")
+    if not len(snow):
+        return
+    size = float(np.ptp(snow, axis=0).max())
+    if dx > size > 0.0:
+        issue_note(f"dx: {dx:g} m is more than the whole snow of {size:.3g} m; is it in mm?")
+    heights = snow[:, 2]
+    if np.median(heights) < -dx:
+        issue_note(f"positions: half of the snow lies {-np.median(heights):.3g} m below the ground")
+    elif heights.min() > max(size, dx):
+        issue_note(f"positions: the lowest snow is {heights.min():.3g} m above the ground")
 
 
 def _held(
