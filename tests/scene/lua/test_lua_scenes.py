@@ -385,3 +385,10 @@ def test_a_word_that_is_set_like_a_variable_is_refused(tmp_path, name):
 def test_scripts_have_variables_of_their_own(tmp_path):
     data = scene_of(tmp_path, "preset 'lab-50'\nangle = 30", "panel { tilt = _G.angle }")
     assert data["panel"]["tilt"] == 30
+
+
+@pytest.mark.parametrize("name", ["SEPERATE", "slip", "tlit"])
+def test_a_name_without_a_value_is_noted_because_its_setting_is_left_out(tmp_path, name):
+    script = f"preset 'lab-50'\npanel {{ condition = {name} }}"
+    with pytest.warns(SnowshedNote, match=f"init.lua:2: {name} has no value"):
+        load(tmp_path, script)
