@@ -1,4 +1,4 @@
-"""Values that are probably mistakes are told, and answers that are none are refused."""
+"""Values that are probably mistakes are told, and answers of a wrong type are refused."""
 
 import numpy as np
 import pytest
@@ -145,9 +145,9 @@ def test_points_of_a_study_that_repeat_are_told(tiny):
 def test_factors_that_cannot_be_combined_are_refused(tiny):
     with pytest.raises(InputError, match=r"panel\.tilt: None is no value"):
         Factor({"panel.tilt": [40, None]})
-    whole = {"height": 1, "length": 1, "tilt": 10}
+    panel = {"height": 1, "length": 1, "tilt": 10}
     with pytest.raises(InputError, match=r"panel: contains panel\.tilt, which varies"):
-        Study.product(tiny, {"panel.tilt": [40], "panel": [whole]})
+        Study.product(tiny, {"panel.tilt": [40], "panel": [panel]})
 
 
 def test_a_measure_that_returns_nothing_is_refused(tiny, tmp_path):

@@ -31,7 +31,7 @@ void expect_note(const Scene& scene, const std::string& text) {
   EXPECT_NE(notes[0].find(text), std::string::npos) << notes[0];
 }
 
-TEST(EffectNotes, PresetsHaveNone) {
+TEST(EffectNotes, ThePresetsHaveNoNotesOnEffects) {
   for (const std::string& name : scene_preset_names())
     EXPECT_TRUE(notes_of(preset_scene(name)).empty()) << name;
 }

@@ -90,9 +90,9 @@ def accumulate(
     >>> round(day.load), round(day.balance.driving), round(day.balance.resisting), day.event
     (10, 85, 84, 1)
     """
-    told = season.notes if isinstance(season, ReadSeason) else ()
+    earlier = season.notes if isinstance(season, ReadSeason) else ()
     for note in warm_snow(check_given_rows(season)):
-        if note not in told:
+        if note not in earlier:
             issue_note(note)
     return snow_on_panel(season, settings, tilt, gravity)
 
