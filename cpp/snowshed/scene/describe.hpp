@@ -67,8 +67,8 @@ void describe(V& v, material::Snow& s) {
            methods::allowed::pressure.usual(50, 1e7), "Initial preconsolidation pressure p0");
   v.number("cohesion", s.cohesion, "", methods::fraction,
            "Cohesion beta: tensile strength over p0");
-  v.number("hardening_factor", s.hardening_factor, "", methods::positive.up_to(1e3).usual(1e-3, 100),
-           "Hardening factor xi");
+  v.number("hardening_factor", s.hardening_factor, "",
+           methods::positive.up_to(1e3).usual(1e-3, 100), "Hardening factor xi");
 }
 
 template <class V>

@@ -57,7 +57,7 @@ TEST(EffectNotes, IntervalsOfRecordsThatAreNotKeptAreNotUsed) {
   expect_note(scene, "/output/film_interval: 0.2 s is not used");
 }
 
-TEST(EffectNotes, ObstaclesThatNoSnowMeetsAreTold) {
+TEST(EffectNotes, ObstaclesThatNoSnowMeetsAreNoted) {
   EXPECT_TRUE(notes_of(scene_with_ball(1.5, 0.05)).empty());
   expect_note(scene_with_ball(1.5, -0.2), "/obstacles/0: it lies below the ground");
   expect_note(scene_with_ball(1500, 0.05), "/obstacles/0: it lies");
@@ -69,7 +69,7 @@ TEST(EffectNotes, AnObstacleThatMovesMayComeNear) {
   EXPECT_TRUE(notes_of(scene).empty());
 }
 
-TEST(EffectNotes, MotionsThatBeginAfterTheRunAreTold) {
+TEST(EffectNotes, MotionsThatBeginAfterTheRunAreNoted) {
   Scene scene = scene_with_ball(1.5, 0.05);
   scene.events.count = 2;
   scene.events.max_time = 10;
