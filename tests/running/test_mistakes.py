@@ -114,6 +114,24 @@ def test_measured_stacks_in_centimetres_or_percent_are_noted():
         Measurement(50, 1, 1, "height", 0.05, 5.0)
     with pytest.raises(InputError, match="a positive uncertainty"):
         Measurement(50, 1, 1, "height", 0.05, 0.0)
+    with pytest.warns(SnowshedNote, match="is it in radians"):
+        Measurement(0.87, 1, 1, "height", 0.05, 0.002)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ((-50, 1, 1, "height", 0.05), "tilt: -50 is outside the allowed range"),
+        (("50", 1, 1, "height", 0.05), "tilt: '50'; needed: a number"),
+        ((50, 0, 1, "height", 0.05), "event: 0 is not a whole number from 1"),  # STEP 0
+        ((50, 1, 0, "height", 0.05), "round: 0 is not a whole number from 1"),
+        ((50, 1, 1, "heigth", 0.05), "quantity: 'heigth'; allowed: height, length"),
+        ((50, 1, 1, "height", -0.05), "-0.05 m is not positive"),
+    ],
+)
+def test_a_measurement_that_cannot_be_is_refused_where_it_is_made(given, message):
+    with pytest.raises(InputError, match=re.escape(message)):
+        Measurement(*given, 0.002)
 
 
 def test_a_saved_scene_says_that_its_arrays_end_with_the_process(tmp_path):

@@ -102,8 +102,15 @@ def test_rows_that_were_read_are_told_of_once():
     with record_notes() as notes:
         accumulate(read_season(rows), SeasonSettings(), 40.0)
     assert sum(WARM in note for note in notes) == 1
-    with pytest.warns(SnowshedNote, match=WARM):  # others of the same values
-        accumulate([replace(row) for row in rows], SeasonSettings(), 40.0)
+    with pytest.warns(SnowshedNote, match=WARM):  # the same rows, which nobody read
+        accumulate(rows, SeasonSettings(), 40.0)
+
+
+def test_warm_snow_that_joins_a_season_after_reading_is_told():
+    season = read_season(rows_with(temperature=-4.0))
+    season.append(replace(ROW, date=datetime(2024, 12, 5), temperature=25.0))
+    with pytest.warns(SnowshedNote, match=WARM):
+        accumulate(season, SeasonSettings(), 40.0)
 
 
 def test_a_season_tells_of_snow_in_warm_air_once(tmp_path):

@@ -34,6 +34,14 @@ def test_the_version_is_that_of_the_project(recipe):
     assert recipe["context"]["version"] == version[1]
 
 
+def test_the_c_library_is_that_of_the_wheels(recipe):
+    variants = pytest.importorskip("yaml").safe_load(RECIPE.with_name("variants.yaml").read_text())
+    assert any('stdlib("c")' in str(each) for each in recipe["requirements"]["build"])
+    image = re.search(r'manylinux-x86_64-image = "manylinux_(\d+)_(\d+)"',
+                      (ROOT / "pyproject.toml").read_text())  # fmt: skip
+    assert variants["c_stdlib_version"] == [f"{image[1]}.{image[2]}"]
+
+
 def test_the_requirements_are_those_of_the_project(recipe):
     assert names(recipe["requirements"]["run"]) - {"python"} == required()[0]
     built = re.search(r"requires = \[(.*)\]", (ROOT / "pyproject.toml").read_text())[1]

@@ -2,6 +2,7 @@
 
 #include "snowshed/scene/build_obstacles.hpp"
 #include "snowshed/scene/distinct_snows.hpp"
+#include "snowshed/scene/effect_notes.hpp"
 #include "snowshed/scene/file_notes.hpp"
 #include "snowshed/scene/thicken_obstacles.hpp"
 #include "snowshed/scene/unusual_values.hpp"
@@ -16,6 +17,7 @@ methods::Surroundings build_surroundings(const Scene& scene,
   s.obstacles = build_obstacles(scene, base_dir, &s.notes);
   s.resolved = thicken_obstacles(scene, s.obstacles, s.notes);
   add_notes_on_files(scene, base_dir, s.obstacles, s.notes);
+  add_notes_on_effects(scene, s.obstacles, s.notes);
   s.input = scene.numerics->read(view_of(scene), base_dir);
   return s;
 }

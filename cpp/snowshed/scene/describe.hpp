@@ -67,8 +67,8 @@ void describe(V& v, material::Snow& s) {
            methods::allowed::pressure.usual(50, 1e7), "Initial preconsolidation pressure p0");
   v.number("cohesion", s.cohesion, "", methods::fraction,
            "Cohesion beta: tensile strength over p0");
-  v.number("hardening_factor", s.hardening_factor, "", methods::positive.up_to(1e3),
-           "Hardening factor xi");
+  v.number("hardening_factor", s.hardening_factor, "",
+           methods::positive.up_to(1e3).usual(1e-3, 100), "Hardening factor xi");
 }
 
 template <class V>
@@ -144,7 +144,7 @@ void describe(V& v, scene::ShapeSpec& s) {
 template <class V>
 void describe(V& v, geometry::MotionSpec& m) {
   v.vector("velocity", m.velocity, "m/s", methods::allowed::speed.usual(0, 100), "Velocity");
-  v.spin("angular_velocity", m.angular_velocity, "rad/s", methods::allowed::speed,
+  v.spin("angular_velocity", m.angular_velocity, "rad/s", methods::allowed::speed.usual(0, 50),
          "Angular velocity about the pivot");
   v.vector("pivot", m.pivot, "m", methods::allowed::coordinate,
            "Centre of the rotation; moves with the velocity");
@@ -251,7 +251,7 @@ void describe(V& v, methods::LoadingStage& s) {
            "nothing, until the snow rests (hold)");
   v.number("speed", s.speed, "m/s", methods::positive.up_to(1e3),
            "Speed of the plates or of the cone");
-  v.number("strain", s.strain, "", methods::positive.up_to(10.0),
+  v.number("strain", s.strain, "", methods::positive.up_to(10.0).usual(1e-6, 1),
            "Displacement over the sample's initial height at which the stage ends");
   v.number("stress", s.stress, "Pa", methods::non_negative.up_to(1e12),
            "Stress that ends the stage (compress, isotropic; 0: none; unload), or is kept on the "

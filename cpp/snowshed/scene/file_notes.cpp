@@ -18,7 +18,7 @@ constexpr double max_size_ratio = 300;
 /// A panel in centimetres is 100 times too long beside its snow.
 constexpr double max_panel_ratio = 100;
 /// Thinner slabs on a panel are noted.
-constexpr double min_slab_ratio = 1e-3;
+constexpr double min_slab_ratio = 1.0 / 400;
 /// Lowest and highest lower edge, and least width, beside the length of a panel.
 constexpr double min_height_ratio = 1.0 / 60, max_height_ratio = 30;
 constexpr double min_width_ratio = 1.0 / 30;

@@ -41,7 +41,10 @@ class UnusualValues : public PathVisitor<UnusualValues> {
   }
   void direction(const char*, Vec3&, const char*) {}
   void axis(const char*, Vec3&, const char*) {}
-  void spin(const char*, Vec3&, const char*, const methods::Range&, const char*) {}
+  void spin(const char* key, Vec3& value, const char* unit, const methods::Range& range,
+            const char* doc) {
+    vector(key, value, unit, range, doc);
+  }
   void outline(const char*, geometry::Ring&, const char*) {}
 
  private:

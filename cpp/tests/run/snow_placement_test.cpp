@@ -191,6 +191,7 @@ TEST(SnowPlacementNotes, IncludeTheSnowOfEarlierEvents) {
 scene::Scene sticky_panel(int events) {
   scene::Scene scene = small_scene();
   scene.panel->condition = methods::Condition::sticky;
+  scene.panel->friction = scene::Panel{}.friction;  // any other is noted
   scene.events.count = events;
   scene.events.max_time = 0.02;
   scene.events.rest_time = 0.005;

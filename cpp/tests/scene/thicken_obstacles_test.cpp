@@ -144,7 +144,7 @@ TEST(FileNotes, SolidsOfNoFileInAnotherUnitAreNoted) {
   const auto notes = [&] { return build_surroundings(scene, dir.path()).notes; };
   scene.obstacles = {obstacle("post", box_spec({5, 0, 1}, {0.2, 0.2, 2}))};
   EXPECT_TRUE(notes().empty());
-  scene.obstacles = {obstacle("post", box_spec({5000, 0, 1000}, {200, 200, 2000}))};
+  scene.obstacles = {obstacle("post", box_spec({50, 0, 1000}, {200, 200, 2000}))};
   ASSERT_EQ(notes().size(), 1u);
   EXPECT_EQ(notes()[0],
             "/obstacles/0/shape: the solid is 2e+03 m large, and everything else at most 2 m; "

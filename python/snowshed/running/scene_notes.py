@@ -41,9 +41,9 @@ def notes_before(scene: Mapping[str, Any]) -> list[str]:
     ['the slab is 20 mm thick, less than two cells of 100 mm: its stack is coarse; try dx = 0.01 m']
     """
     method = method_of(scene)
+    notes = method.settings.from_data(scene["numerics"], "/numerics").unused()
     if "stack" not in method.results:
-        return []
-    notes = []
+        return notes
     if not any(scene.get(part) for part in FLOORS):
         notes.append(
             "the scene has no ground, no domain and no obstacles: snow falls for as long as "
@@ -58,7 +58,25 @@ def notes_before(scene: Mapping[str, Any]) -> list[str]:
             f"{method.settings.ELEMENTS} of {1000 * size:.3g} mm: its stack is coarse; try "
             f"{method.settings.RESOLUTION} = {thickness / MIN_CELLS_ACROSS:.2g} m"
         )
-    return notes
+    return notes + _notes_on_coarse_bodies(scene, size, method.settings.ELEMENTS)
+
+
+def _notes_on_coarse_bodies(scene: Mapping[str, Any], size: float, elements: str) -> list[str]:
+    """Return a note if a box of snow is less than two cells thick.
+
+    Examples
+    --------
+    >>> body = {"shape": {"type": "box", "size": [0.2, 0.01]}}
+    >>> _notes_on_coarse_bodies({"bodies": [body]}, 0.02, "cells")
+    ['/bodies/0: the box is 10 mm thick, less than two cells of 20 mm: its snow is coarse']
+    """
+    return [
+        f"/bodies/{number}: the box is {1000 * thickness:.3g} mm thick, less than two {elements} "
+        f"of {1000 * size:.3g} mm: its snow is coarse"
+        for number, body in enumerate(scene.get("bodies", ()))
+        if body["shape"]["type"] == "box"
+        and (thickness := min(body["shape"]["size"])) < MIN_CELLS_ACROSS * size
+    ]
 
 
 def _density_notes(snow: Mapping[str, Any]) -> list[str]:
@@ -154,18 +172,48 @@ def notes_after(table: pd.DataFrame, scene: Mapping[str, Any]) -> list[str]:
     >>> notes_after(pd.DataFrame({"mass_kg": [0.0], "on_panel_kg": [2.0]}), {"panel": {}})
     ['nothing slid: the snow stays on the panel; there is no stack to measure']
     """
+    notes = _notes_on_records(table, scene)
     last = table.iloc[-1]
     held = last["on_panel_kg"] + last.get("on_structures_kg", 0.0)
     if held <= 0.0:
-        return []
+        return notes
     holders = [("the panel", "panel" in scene), ("structures", bool(scene.get("obstacles")))]
     where = " or on ".join(name for name, given in holders if given)
     slides = "slid" if "panel" in scene else "fell"
     part = held / (held + last["mass_kg"])
     if last["mass_kg"] == 0.0:
-        return [f"nothing {slides}: the snow stays on {where}; there is no stack to measure"]
+        return [
+            *notes,
+            f"nothing {slides}: the snow stays on {where}; there is no stack to measure",
+        ]
     if part >= NEARLY_ALL:
-        return [f"next to nothing {slides}: {100 * part:.1f} % of the snow stays on {where}"]
+        return [
+            *notes,
+            f"next to nothing {slides}: {100 * part:.1f} % of the snow stays on {where}",
+        ]
     if part >= 1.0 - NEARLY_ALL:
-        return [f"{100 * part:.0f} % of the snow stays on {where}"]
-    return []
+        return [*notes, f"{100 * part:.0f} % of the snow stays on {where}"]
+    return notes
+
+
+def _notes_on_records(table: pd.DataFrame, scene: Mapping[str, Any]) -> list[str]:
+    """Return notes on intervals of records that are longer than any event was.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> times = pd.DataFrame({"sim_time_s": [0.7, 0.9]})
+    >>> _notes_on_records(times, {"output": {"snapshot_interval": 10.0, "film": False}})
+    ['output.snapshot_interval: 10 s is longer than any event was, at most 0.9 s']
+    """
+    output = scene.get("output", {})
+    if "sim_time_s" not in table or not output:
+        return []
+    longest = float(table["sim_time_s"].max())
+    names = ["snapshot_interval"]
+    names += ["film_interval"] * output["film"] + ["force_interval"] * output.get("forces", False)
+    return [
+        f"output.{name}: {output[name]:g} s is longer than any event was, at most {longest:.3g} s"
+        for name in names
+        if output[name] > longest
+    ]

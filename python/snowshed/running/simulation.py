@@ -19,12 +19,15 @@ from snowshed.methods.registry import method_of
 from snowshed.results.provenance import present_origin, with_origin
 from snowshed.running.laws import Laws, addresses_of
 from snowshed.running.particle_reading import ReadsParticles
+from snowshed.running.scene_notes import notes_before
 from snowshed.running.sequence import issuing_notes
 from snowshed.running.stepping_checks import (
+    check_speeds,
+    is_reached,
+    note_on_distance,
     note_on_mass,
     note_on_time,
     refuse_coincident,
-    refuse_fast,
 )
 from snowshed.scene.components import Snow
 from snowshed.scene.resolved import snows_of
@@ -102,7 +105,7 @@ class Simulation(ReadsParticles):
         self._laws = laws  # keeps the functions alive
         addresses = addresses_of(laws, self._scene.data)
         self._core = _core.Simulation(self._scene.core, self._scene.base_dir, addresses)
-        for note in self._core.notes:
+        for note in (*notes_before(self._scene.data), *self._core.notes):
             issue_note(note)
 
     @classmethod
@@ -234,7 +237,7 @@ class Simulation(ReadsParticles):
         on_step: Optional[OnStep] = None,
     ) -> Ended:
         limit = self._max_time
-        while not condition(self):
+        while not is_reached(condition(self)):
             if self.time >= limit:
                 return "time_limit"
             if on_step is None:
@@ -329,7 +332,8 @@ class Simulation(ReadsParticles):
         seeded = self._seeded_mass(snows[kind])
         heavy = seeded if mass is None else positive("mass", mass)
         note_on_mass(heavy, seeded)
-        refuse_fast("velocity", speed)
+        check_speeds("velocity", speed)
+        note_on_distance(given, self._core.positions())
         with issuing_notes(self._core):
             self._core.add_snow(given, heavy, tuple(speed.tolist()), kind)
 
@@ -357,7 +361,7 @@ class Simulation(ReadsParticles):
         is_single = rows.ndim == 1
         count = 1 if is_single else self.particle_count
         vectors = points("changes", rows[None] if is_single else rows, self.dimension, count)
-        refuse_fast("changes", vectors)
+        check_speeds("changes", vectors)
         self._core.add_velocity(np.broadcast_to(vectors, (self.particle_count, 3)))
 
     def _seeded_mass(self, snow: Snow) -> float:
@@ -371,6 +375,8 @@ class Simulation(ReadsParticles):
         See `measure_stack`; `snowshed.snow.stack.particles` defines the ground.
         """
         self._require("stack", "makes no stack")
+        if not self.event:
+            issue_note("no event has begun: there is no snow to measure")
         core = self._core
         arrays = core.positions(), core.masses(), core.densities(), core.on_panel()
         return measure_particles(core, self.scene.data, *arrays)

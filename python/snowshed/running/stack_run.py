@@ -60,8 +60,10 @@ class StackRun(MethodRun):
         self.stack: Optional[StackMeasure] = None
         ageing = self.options.ageing
         ageing_data = None if ageing is None else ageing.data
-        if ageing_data is not None:
+        if ageing is not None and ageing_data is not None:
             self.sequence.set_ageing(json.dumps(ageing_data))
+            for note in ageing.notes(self.scene.data["events"]["count"]):
+                record_note(self.sequence, note)
         if self.options.resume:
             self._continue_tables(ageing_data)
         elif ageing_data is not None:

@@ -13,8 +13,9 @@ from snowshed.running.ageing.ageing import Ageing, Interval
 from snowshed.season.release import SnowBalance, snow_balance
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.settling_column import SnowColumn
-from snowshed.season.weather.checks import check_given_rows, check_one_season, untold_warm_snow
+from snowshed.season.weather.checks import check_given_rows, check_one_season, warm_snow
 from snowshed.season.weather.row import Weather
+from snowshed.season.weather.season_record import ReadSeason
 from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
 
 
@@ -89,8 +90,10 @@ def accumulate(
     >>> round(day.load), round(day.balance.driving), round(day.balance.resisting), day.event
     (10, 85, 84, 1)
     """
-    for note in untold_warm_snow(check_given_rows(season)):
-        issue_note(note)
+    earlier = season.notes if isinstance(season, ReadSeason) else ()
+    for note in warm_snow(check_given_rows(season)):
+        if note not in earlier:
+            issue_note(note)
     return snow_on_panel(season, settings, tilt, gravity)
 
 

@@ -10,10 +10,10 @@ from snowshed.season.weather.columns import COLUMNS, MeasuredColumn
 
 _RANGES = {
     "load": MeasuredColumn(0.0, 1e5, "kg/m2"),
-    "tilt": MeasuredColumn(0.0, 90.0, "degrees"),
+    "tilt": MeasuredColumn(0.0, 90.0, "degrees", usual=(3.0, 90.0)),
     "friction": COLUMNS["friction"],
     "adhesion": COLUMNS["adhesion_pa"],
-    "gravity": MeasuredColumn(0.0, 1000.0, "m/s2"),
+    "gravity": MeasuredColumn(0.0, 1000.0, "m/s2", usual=(1.0, 30.0)),
 }
 
 

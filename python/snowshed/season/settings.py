@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Optional, Union
@@ -11,6 +10,7 @@ from snowshed._core import InputError
 from snowshed.base.arguments import checked
 from snowshed.running.ageing.ageing import Ageing, Interval
 from snowshed.season.rows import SINGLE_ROW, PanelRows
+from snowshed.season.weather.columns import MeasuredColumn
 from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
 from snowshed.snow.relations.relation import check_choice, choose
 from snowshed.snow.relations.settling import SETTLING_LAWS, SettlingLaw
@@ -26,6 +26,16 @@ SUNSHINE_PER_DEGREE = 80.0  # W/m2 per degree C
 #: snow in Hock 2003, J. Hydrol. 282, 104-115, which differ by a factor of four.
 DEGREE_DAY_FACTOR = 4.0
 DAY = 86400.0  # s
+
+
+_RANGES = {
+    "friction": MeasuredColumn(0.0, 10.0, "", usual=(0.01, 2.0)),
+    "adhesion": MeasuredColumn(0.0, 1e6, "Pa", usual=(0.2, 1e4)),
+    "catch": MeasuredColumn(0.0, 1.0, ""),
+    "cover": MeasuredColumn(0.0, 10.0, "m"),
+    "pool_below": MeasuredColumn(0.0, 10.0, "m", usual=(1e-3, 1.0)),
+    "melt_factor": MeasuredColumn(0.0, 100.0, "kg/m2 per day and degree", usual=(0.5, 20.0)),
+}
 
 
 @checked
@@ -92,20 +102,20 @@ class SeasonSettings:
     rows: PanelRows = SINGLE_ROW
 
     def __post_init__(self) -> None:
-        _check("friction", self.friction, 0.0, 10.0, "")
-        _check("adhesion", self.adhesion, 0.0, 1e6, "Pa")
-        _check("catch", self.catch, 0.0, 1.0, "")
+        _RANGES["friction"].check(self.friction, "friction")
+        _RANGES["adhesion"].check(self.adhesion, "adhesion")
+        _RANGES["catch"].check(self.catch, "catch")
         choose(self.density, NEW_SNOW_DENSITY, "density")
         check_choice("strength", self.strength, TENSILE_STRENGTH)
         check_choice("settling", self.settling, SETTLING_LAWS)
         check_choice("sintering", self.sintering, SINTERING_LAWS)
         check_choice("thaw", self.thaw, THAWS)
         if not isinstance(self.cover, str):
-            _check("cover", self.cover, 0.0, 10.0, "m")
+            _RANGES["cover"].check(self.cover, "cover")
         elif self.cover not in COVERS:
             raise InputError(f"cover: {self.cover!r}; allowed: weather, none, a depth in m")
-        _check("pool_below", self.pool_below, 0.0, 10.0, "m")
-        _check("melt_factor", self.melt_factor, 0.0, 100.0, "kg/m2 per day and degree")
+        _RANGES["pool_below"].check(self.pool_below, "pool_below")
+        _RANGES["melt_factor"].check(self.melt_factor, "melt_factor")
         self.ageing({})
 
     def ageing(self, pauses: Mapping[int, Sequence[Interval]]) -> Ageing:
@@ -148,9 +158,3 @@ class SeasonSettings:
     def settling_law(self) -> Optional[SettlingLaw]:
         """The law of settling, if there is one."""
         return None if self.settling is None else SETTLING_LAWS[self.settling]
-
-
-def _check(name: str, value: float, low: float, high: float, unit: str) -> None:
-    if not (math.isfinite(value) and low <= value <= high):
-        allowed = f"{low:g} <= value <= {high:g} {unit}".rstrip()
-        raise InputError(f"{name}: {value:g} is outside the allowed range ({allowed})")

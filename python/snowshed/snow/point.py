@@ -16,6 +16,7 @@ import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats, number_array, whole_number
+from snowshed.base.notes import issue_note
 from snowshed.scene.components import Snow
 
 if TYPE_CHECKING:
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 STRAIN, STRESS = "strain", "stress"
 TOLERANCE = 1e-10  # of the stress that a path prescribes, relative to Young's modulus
 MAX_ITERATIONS = 50
+MAX_STRAIN = 1.0  # beyond it, a note asks for the unit
+MIN_STRESS = 50.0  # Pa, as `MAX_STRAIN`; the strength of snow is larger
 #: A law: pressure, Mises stress and plastic strain after an elastic trial.
 ReturnMap = Callable[[float, float, float], "tuple[float, float, float]"]
 
@@ -114,7 +117,19 @@ def _targets(
     points = np.column_stack(values)
     if not np.isfinite(points).all():
         raise InputError("path: holds a value that is not finite")
+    _note_on_units(kinds, points)
     return kinds, points
+
+
+def _note_on_units(kinds: Sequence[str], points: Floats) -> None:
+    """Issue notes on strains that are probably in percent, and stresses probably in kPa."""
+    is_strain = np.array([kind == STRAIN for kind in kinds])
+    strain = np.abs(points[:, is_strain]).max(initial=0.0)
+    stress = np.abs(points[:, ~is_strain]).max(initial=0.0)
+    if strain > MAX_STRAIN:
+        issue_note(f"path: a logarithmic strain of {strain:g} is unusual; is it in percent?")
+    if 0.0 < stress < MIN_STRESS:
+        issue_note(f"path: no stress is more than {stress:g} Pa; are they in kPa?")
 
 
 class _Point:

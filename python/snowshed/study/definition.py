@@ -354,6 +354,9 @@ class Study:
         for path in paths:
             if paths.count(path) > 1:
                 raise InputError(f"{path}: varied by two factors of the same product")
+            inner = next((other for other in paths if other.startswith(f"{path}.")), None)
+            if inner is not None:
+                raise InputError(f"{path}: contains {inner}, which varies in the same product")
             if any(path == name or path.startswith(f"{name}.") for name in WITHOUT_EFFECT):
                 raise InputError(f"{path}: cannot be varied; it does not change a result")
             if self.season is not None and any(path.startswith(name) for name in SEASON_PATHS):

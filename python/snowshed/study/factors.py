@@ -15,6 +15,7 @@ from typing import Optional
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
 from snowshed.base.messages import shortened
+from snowshed.base.notes import issue_note
 
 MAX_COUNT = 1_000_000  # values of one factor; more are a mistyped range
 SCALES = ("linear", "log")
@@ -36,7 +37,7 @@ class Factor:
     Raises
     ------
     InputError
-        If there are no values, or different numbers of them.
+        If there are no values, different numbers of them, or None among them.
 
     Examples
     --------
@@ -56,11 +57,27 @@ class Factor:
         for path, count in counts.items():
             if not 0 < count <= MAX_COUNT:
                 raise InputError(f"{path}: {count} values; allowed are 1 to {MAX_COUNT}")
+        for path, values in self.columns.items():
+            if any(value is None for value in values):
+                raise InputError(f"{path}: None is no value of a parameter that varies")
         if len(set(counts.values())) > 1:
             listed = ", ".join(f"{path} has {count}" for path, count in counts.items())
             raise InputError(
                 f"parameters that vary together need equally many values, but {listed}"
             )
+        self._note_repeated_points()
+
+    def _note_repeated_points(self) -> None:
+        """Issue a note if a point appears twice, because its runs are computed once."""
+        seen: set[object] = set()
+        for point in self.points():
+            plain = tuple(each if isinstance(each, (str, float, int)) else repr(each)
+                          for each in point.values())  # fmt: skip
+            if plain in seen:
+                values = ", ".join(f"{path} = {value}" for path, value in point.items())
+                issue_note(f"{values}: appears twice, and is computed once")
+                return
+            seen.add(plain)
 
     def __len__(self) -> int:
         return len(next(iter(self.columns.values())))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
+from snowshed.base.field_type import shown
 from snowshed.base.paths import PathLike
 from snowshed.results.event_particles import EventParticles
 from snowshed.results.folder import measured_columns
@@ -85,6 +86,11 @@ def remeasure(
                 if (hash_, event) in rows:
                     particles = _unpacked(store, hash_, event, data)
                     more = measure(particles) if measure else {}
+                    if not isinstance(more, Mapping):
+                        raise InputError(
+                            f"measure: the function returned {shown(more)}; needed: a dict of "
+                            "columns"
+                        )
                     columns = measured_columns(particles.measure(trimming))
                     measures[rows[hash_, event]] = {**columns, **more}
     if len(measures) < len(rows):

@@ -68,7 +68,7 @@ def test_rounds_share_the_error_of_the_model(surrogate):
         repeated = [
             type(measurement)(**{**vars(measurement), "round": r})
             for measurement in single_round
-            for r in range(rounds)
+            for r in range(1, rounds + 1)
         ]
         ranges = sample_posterior(surrogate, repeated, steps=STEPS).ranges()
         widths.append((ranges["upper_95"] - ranges["lower_95"]).to_numpy() / (HIGH - LOW))

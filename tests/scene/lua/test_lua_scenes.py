@@ -335,6 +335,7 @@ def test_errors_in_the_docs_are_real(tmp_path):
     errors = [
         error_of(tmp_path, VALID, "\npanel { tilt = 95 }"),
         error_of(tmp_path, base + "materail {}"),
+        error_of(tmp_path, base + "\n\npanel = { tilt = 30 }"),
         error_of(tmp_path, VALID + "\nwhile true do end"),
         error_of(tmp_path, "os.exit()"),
     ]
@@ -372,3 +373,22 @@ def test_the_volume_of_a_body_gives_its_mass_as_in_the_thesis(tmp_path):
         assert simulation.masses().sum() == pytest.approx(250 * factor * 0.02)
     error = error_of(tmp_path, init, 'body { name = "stack", volume = -1 }')
     assert "update.lua:1: /bodies/0/volume: -1 is outside the allowed range" in error
+
+
+@pytest.mark.parametrize("name", ["panel", "dimension", "box"])
+def test_a_word_that_is_set_like_a_variable_is_refused(tmp_path, name):
+    script = f"preset 'lab-50'\nfriction = 0.1\n{name} = {{ tilt = 20 }}"
+    error = error_of(tmp_path, script)
+    assert error == f"init.lua:3: {name} = ... sets nothing; call {name}, without the equals sign"
+
+
+def test_scripts_have_variables_of_their_own(tmp_path):
+    data = scene_of(tmp_path, "preset 'lab-50'\nangle = 30", "panel { tilt = _G.angle }")
+    assert data["panel"]["tilt"] == 30
+
+
+@pytest.mark.parametrize("name", ["SEPERATE", "slip", "tlit"])
+def test_a_name_without_a_value_is_noted_because_its_setting_is_left_out(tmp_path, name):
+    script = f"preset 'lab-50'\npanel {{ condition = {name} }}"
+    with pytest.warns(SnowshedNote, match=f"init.lua:2: {name} has no value"):
+        load(tmp_path, script)

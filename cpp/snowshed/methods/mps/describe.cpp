@@ -17,7 +17,7 @@ void describe(SettingsVisitor& v, Settings& s) {
   v.choice("rheology", s.rheology, "Law of the shear stress");
   v.choice("regularisation", s.regularisation, "Form of the yield stress at small shear rates");
   v.number("viscosity", s.viscosity, "Pa s", non_negative.up_to(1e6), "Plastic viscosity");
-  v.number("cohesion", s.cohesion, "Pa", non_negative.up_to(1e6),
+  v.number("cohesion", s.cohesion, "Pa", non_negative.up_to(1e6).usual(1, 1e5),
            "Yield stress without pressure (adhesive force)");
   v.number("friction_angle", s.friction_angle, "degrees", non_negative.below(90.0).usual(2, 90),
            "Inner friction angle: the yield stress grows with its tangent times the pressure");

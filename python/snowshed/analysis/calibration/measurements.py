@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Optional
@@ -24,6 +25,7 @@ POSITIVE_QUANTITIES = ("height", "length")
 KEYS = ("tilt_deg", "event")
 ROUND = "round"
 MAX_TILT = 90.0  # degrees; a tilt must be smaller
+UNUSUAL_TILT = 3.0  # degrees; snow stays on flatter panels, and smaller numbers may be radians
 UNUSUAL_LENGTH = 3.0  # m; stacks of experiments are lower and shorter
 MAX_DISTANCE = 100.0  # m, of all measured lengths and positions
 MAX_LENGTH_DEVIATIONS = (
@@ -74,6 +76,7 @@ COLUMNS = (
 )
 
 
+@checked
 @dataclass(frozen=True)
 class Measurement:
     """One measured length of one stack.
@@ -83,15 +86,20 @@ class Measurement:
     tilt
         Tilt of the panel, degrees.
     event
-        Number of slide-offs so far.
+        Number of slide-offs so far, from 1.
     round
-        Repetition of the experiment.
+        Repetition of the experiment, from 1.
     quantity
         One of `QUANTITIES`.
     value, uncertainty
         The measured value and its standard deviation, m.
     line
         Line in the file, from 1.
+
+    Raises
+    ------
+    InputError
+        If a value is not allowed.
     """
 
     tilt: float
@@ -103,12 +111,22 @@ class Measurement:
     line: int = 0
 
     def __post_init__(self) -> None:
+        if self.quantity not in QUANTITIES:
+            allowed = ", ".join(QUANTITIES)
+            raise InputError(f"quantity: {quoted(self.quantity)}; allowed: {allowed}")
+        _check_tilt("tilt", self.tilt)
+        _check_count("event", self.event)
+        _check_count("round", self.round)
         where = f"{self.quantity} after event {self.event} at {self.tilt:g} degrees"
         if not (math.isfinite(self.value) and 0.0 < self.uncertainty < math.inf):
             raise InputError(
                 f"{where}: {self.value:g} m with an uncertainty of {self.uncertainty:g} m; needed "
                 "are finite numbers, and a positive uncertainty"
             )
+        if self.value <= 0 and self.quantity in POSITIVE_QUANTITIES:
+            raise InputError(f"{where}: {self.value:g} m is not positive")
+        if self.tilt < UNUSUAL_TILT:
+            issue_note(f"tilt: {self.tilt:g} degrees is unusual; is it in radians?")
         if abs(self.value) > UNUSUAL_LENGTH:
             issue_note(f"{where}: {self.value:g} m is unusual; is it in centimetres?")
         if self.uncertainty > abs(self.value) and self.quantity in POSITIVE_QUANTITIES:
@@ -116,6 +134,18 @@ class Measurement:
                 f"{where}: its uncertainty of {self.uncertainty:g} m is larger than the value of "
                 f"{self.value:g} m; is it in another unit, or in percent?"
             )
+
+
+def _check_tilt(name: str, tilt: float) -> None:
+    """Refuse a tilt that no panel of an experiment has."""
+    if not 0 <= tilt < MAX_TILT:
+        raise InputError(f"{name}: {tilt:g} is outside the allowed range (0 to 90 degrees)")
+
+
+def _check_count(name: str, number: float) -> None:
+    """Refuse what cannot be the number of an event or of a round."""
+    if not 1 <= number <= MAX_EVENT_NUMBER or number % 1:
+        raise InputError(f"{name}: {number:g} is not a whole number from 1 to {MAX_EVENT_NUMBER}")
 
 
 def measurements_template() -> str:
@@ -262,18 +292,16 @@ class _Row:
 
     def _tilt(self) -> float:
         tilt = self._number("tilt_deg")
-        if not 0 <= tilt < MAX_TILT:
-            raise self._error(f"tilt_deg: {tilt:g} is outside the allowed range (0 to 90 degrees)")
+        with self._in_place():
+            _check_tilt("tilt_deg", tilt)
         return tilt
 
     def _whole_number(self, column: str, default: int = 0) -> int:
         if default and not self.cells.get(column):
             return default
         number = self._number(column)
-        if not 1 <= number <= MAX_EVENT_NUMBER or number % 1:
-            raise self._error(
-                f"{column}: {number:g} is not a whole number from 1 to {MAX_EVENT_NUMBER}"
-            )
+        with self._in_place():
+            _check_count(column, number)
         return int(number)
 
     def _number(self, column: str) -> float:
@@ -282,6 +310,14 @@ class _Row:
         if math.isnan(number):
             raise self._error(f"{column}: {quoted(cell)} is not a number")
         return number
+
+    @contextmanager
+    def _in_place(self) -> Iterator[None]:
+        """Put the place of the row before the message of an error."""
+        try:
+            yield
+        except InputError as error:
+            raise self._error(str(error)) from None
 
     def _error(self, message: str) -> InputError:
         return InputError(f"{self.row.where}: {message}")

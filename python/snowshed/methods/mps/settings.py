@@ -153,5 +153,27 @@ class MpsSettings(MethodSettings):
     max_iterations: Optional[int] = default(1000)
     threads: Optional[int] = default(0)
 
+    UNUSED: ClassVar = (
+        (
+            "erosion",
+            False,
+            (
+                "erodible_thickness",
+                "erosion_pressure",
+                "erosion_speed",
+                "deposition_pressure",
+                "deposition_speed",
+            ),
+        ),
+        (
+            "rheology",
+            "newtonian",
+            ("cohesion", "friction_angle", "yield_strain", "dilatant_rate", "dilatant_exponent"),
+        ),
+        ("rheology", "bingham", ("dilatant_rate", "dilatant_exponent")),
+        ("stress", "published", ("yield_strain",)),
+        ("stress", "elastoplastic", ("regularisation",)),
+    )
+
     RESOLUTION: ClassVar[str] = "spacing"
     ELEMENTS: ClassVar[str] = "spacings"

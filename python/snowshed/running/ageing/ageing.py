@@ -22,6 +22,7 @@ from snowshed.base.arrays import Booleans, Floats
 from snowshed.base.field_type import shown
 from snowshed.base.json_values import JsonObject
 from snowshed.base.messages import shortened
+from snowshed.base.notes import issue_note
 from snowshed.running.ageing.columns import SnowColumns
 from snowshed.scene.resolved import snows_of
 from snowshed.snow.relations.relation import check_choice
@@ -31,6 +32,9 @@ from snowshed.snow.relations.sintering import SINTERING_LAWS
 # The volume of loosened snow has no meaning; the laws hold for connected snow only.
 MIN_DENSITY = 50.0  # kg/m3
 ABSOLUTE_ZERO = -273.15  # degrees C
+MAX_TEMPERATURE = 60.0  # degrees C, of the air; more is in kelvin or degrees F
+MIN_PAUSE = 60.0  # s; less is probably in hours or days
+FIRST_EVENT = 2  # that follows a pause
 
 
 class Interval(NamedTuple):
@@ -82,6 +86,11 @@ class Ageing:
             event: [_plain(pause, f"pauses[{event}][{at}]") for at, pause in enumerate(intervals)]
             for event, intervals in self.pauses.items()
         }
+        first = min(pauses, default=FIRST_EVENT)
+        if first < FIRST_EVENT:
+            raise InputError(
+                f"pauses: no pause is before event {first}; {FIRST_EVENT} is the first"
+            )
         object.__setattr__(self, "pauses", pauses)
 
     @classmethod
@@ -126,6 +135,23 @@ class Ageing:
         """The ageing as JSON data."""
         data: JsonObject = json.loads(json.dumps(asdict(self)))
         return data
+
+    def notes(self, events: int) -> list[str]:
+        """Return notes on pauses that change nothing in a run of a number of events.
+
+        Examples
+        --------
+        >>> Ageing({9: [Interval(86400.0, -5.0)]}, settling="vionnet-2012").notes(5)
+        ['ageing: no pause is before event 9, because the scene has 5']
+        """
+        beyond = [event for event in self.pauses if event > events]
+        notes = [
+            f"ageing: no pause is before event {event}, because the scene has {events}"
+            for event in beyond
+        ]
+        if self.pauses and not (self.settling or self.sintering):
+            notes.append("ageing: neither settling nor sintering; the pauses change nothing")
+        return notes
 
     def hours(self, event: int) -> float:
         """Return the time before an event, h."""
@@ -201,6 +227,13 @@ def _plain(interval: Interval, where: str) -> Interval:
             f"{where}, temperature: {interval.temperature:g} °C is below absolute zero "
             f"({ABSOLUTE_ZERO} °C)"
         )
+    if interval.temperature > MAX_TEMPERATURE:
+        raise InputError(
+            f"{where}, temperature: {interval.temperature:g} °C; at most {MAX_TEMPERATURE:g} °C "
+            "are allowed; is it in kelvin or degrees F?"
+        )
+    if 0 < interval.seconds < MIN_PAUSE:
+        issue_note(f"{where}, seconds: {interval.seconds:g} s is unusual; is it in hours or days?")
     return Interval(*map(float, interval))
 
 

@@ -88,9 +88,10 @@ def _run(lua: Any, host: Any, texts: Any, limits: dict[str, Any]) -> str:
     message = host.run(texts)
     lua.set_max_memory(limits["memory_bytes"] + SPARE_BYTES)
     printed = [_from_lua(line) for line in host.printed.values()]
+    unset = [_from_lua(entry).split(":", 2) for entry in host.unset.values()]
     if message is None:
         calls = [json.loads(_from_lua(call)) for call in host.calls.values()]
-        return json.dumps({"printed": printed, "calls": calls})
+        return json.dumps({"printed": printed, "unset": unset, "calls": calls})
     script, line = host.place()
     error = {"message": _from_lua(message), "script": script, "line": line}
     return json.dumps({"printed": printed, "error": error})

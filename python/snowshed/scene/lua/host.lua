@@ -17,12 +17,13 @@ local format, getinfo, load, next = string.format, debug.getinfo, load, next
 local rep, resume, select, sethook = string.rep, coroutine.resume, select, debug.sethook
 local gmatch, match, randomseed, sub = string.gmatch, string.match, math.randomseed, string.sub
 local sort, tonumber, type, number_type = table.sort, tonumber, type, math.type
-local setmetatable, unpack = setmetatable, table.unpack
+local rawset, setmetatable, unpack = rawset, setmetatable, table.unpack
 local library_tostring = tostring
 
 local INTERVAL = 200 -- instructions between two looks at the limits
 
 local calls, printed = {}, {}
+local unset = {} -- script, line and name of each variable that was read without a value
 local main -- the coroutine that runs the scripts
 local current = 1 -- the number of the script that runs
 local env = {}
@@ -263,6 +264,34 @@ local function forbid()
   end
 end
 
+-- Makes the names of the vocabulary constant, and records names that are read without a value.
+-- Without this, `panel = { tilt = 50 }` in place of `panel { tilt = 50 }` would replace a function
+-- and set nothing, and `panel { condition = SEPERATE }` would leave the condition as it is.
+local function guard_names()
+  local vocabulary = {}
+  for _, names in next, { words, shapes } do
+    for key, value in next, names do
+      local name = names == words and value or key
+      vocabulary[name], env[name] = env[name], nil
+    end
+  end
+  setmetatable(env, {
+    __index = function(_, name)
+      if vocabulary[name] == nil and type(name) == "string" and #unset < limits.printed_lines then
+        local script, line = place()
+        unset[#unset + 1] = format("%d:%d:%s", script, line, sub(name, 1, limits.line_length))
+      end
+      return vocabulary[name]
+    end,
+    __newindex = function(variables, name, value)
+      if vocabulary[name] then
+        error(format("%s = ... sets nothing; call %s, without the equals sign", name, name), 0)
+      end
+      rawset(variables, name, value)
+    end,
+  })
+end
+
 local function fill_environment()
   forbid()
   for _, name in next, ALLOWED_FUNCTIONS do
@@ -285,6 +314,7 @@ local function fill_environment()
   for name, kind in next, shapes do
     env[name] = shape_maker(name, kind)
   end
+  guard_names()
   getmetatable("").__index = env.string -- ("text"):rep is env.string.rep
 end
 
@@ -329,4 +359,4 @@ end
 
 randomseed(0) -- the same script makes the same scene
 fill_environment()
-return { run = run, place = place, calls = calls, printed = printed }
+return { run = run, place = place, calls = calls, printed = printed, unset = unset }

@@ -14,6 +14,7 @@ from typing import Any, Optional, Union
 
 from snowshed._core import InputError
 from snowshed.base.extras import require
+from snowshed.base.notes import issue_note
 from snowshed.scene.lua.limits import LuaLimits
 
 PROGRAM = Path(__file__).with_name("child.py")
@@ -111,6 +112,11 @@ def run_sandboxed(
             echo(_printable(line))
     if "error" in answer:
         raise _failure(answer["error"], names, limits)
+    for script, line, name in answer["unset"]:
+        place = f"{names[int(script) - 1]}:{line}"
+        issue_note(
+            f"{place}: {_printable(name)} has no value; a setting without one stays as it is"
+        )
     return [
         Call(word, arguments, ScriptLine(names[script - 1], line))
         for word, script, line, arguments in answer["calls"]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from datetime import date, datetime
-from weakref import WeakValueDictionary
 
 from snowshed._core import InputError
 from snowshed.base.field_type import shown
@@ -31,9 +30,6 @@ MIN_LONE_GAP_DAYS = 3 * YEAR
 TOO_WARM_FOR_SNOW = 10.0
 NO_SNOW = "it never snows"
 HINT = "is it in cm, mm or inches?"
-
-#: Rows whose warm snow was told, by their identity, as long as they exist.
-_told: WeakValueDictionary[int, Weather] = WeakValueDictionary()
 
 
 def check_rows(
@@ -122,29 +118,6 @@ def warm_snow(rows: Sequence[Weather]) -> list[str]:
         f"{warmest.temperature:g} °C on {warmest.date.date()}, where precipitation is rain; are "
         "temperatures in degrees F, or sums of water in the column of snow?"
     ]
-
-
-def mark_told(rows: Sequence[Weather]) -> None:
-    """Remember rows whose warm snow a note has told, so that `untold_warm_snow` is silent on them.
-
-    Rows are remembered themselves, not by their values: a season of the same values that nothing
-    was told about still has its note.
-    """
-    _told.update((id(row), row) for row in rows if _is_warm_snow(row))
-
-
-def untold_warm_snow(rows: Sequence[Weather]) -> list[str]:
-    """Return what `warm_snow` returns, unless each such row was told before.
-
-    Examples
-    --------
-    >>> first, other = (Weather(2, datetime(2024, 12, 1), 0.1, None, 25.0) for _ in range(2))
-    >>> mark_told([first])
-    >>> untold_warm_snow([first]), len(untold_warm_snow([first, other]))
-    ([], 1)
-    """
-    is_known = all(_told.get(id(row)) is row for row in rows if _is_warm_snow(row))
-    return [] if is_known else warm_snow(rows)
 
 
 def _is_warm_snow(row: Weather) -> bool:

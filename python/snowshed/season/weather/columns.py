@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.base.notes import issue_note
 
 #: Largest snowfall of a row, which may hold the snow of several days.
 MAX_SNOWFALL = 3.0  # m
@@ -21,6 +23,7 @@ class MeasuredColumn:
     required: bool = False  # whether the column must exist
     filled: bool = False  # whether every cell must be filled
     hint: str = ""  # likely meaning of a number beyond the range
+    usual: Optional[tuple[float, float]] = None  # other numbers than 0 are noted
 
     @property
     def range_text(self) -> str:
@@ -28,11 +31,24 @@ class MeasuredColumn:
         return f"{self.low:g} <= value <= {self.high:g} {self.unit}".rstrip()
 
     def check(self, value: float, where: str) -> None:
-        """Raise InputError if a value is outside the range."""
+        """Raise InputError if a value is outside the range; note an unusual one.
+
+        Examples
+        --------
+        >>> MeasuredColumn(0.0, 90.0, "degrees").check(95.0, "tilt")
+        Traceback (most recent call last):
+        snowshed._core.InputError: tilt: 95 is outside the allowed range (0 <= value <= 90 degrees)
+        """
         if not self.low <= value <= self.high:
             hint = self.hint if value > self.high else ""
             raise InputError(
                 f"{where}: {value:g} is outside the allowed range ({self.range_text}){hint}"
+            )
+        if self.usual and value and not self.usual[0] <= value <= self.usual[1]:
+            low, high = (f"{limit:g} {self.unit}".rstrip() for limit in self.usual)
+            issue_note(
+                f"{where}: {value:g} {self.unit} is unusual; most values are {low} to {high}, so "
+                "check its unit"
             )
 
 

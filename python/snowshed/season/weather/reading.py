@@ -25,17 +25,11 @@ from snowshed.io.csv_table import TableRow, frame_as_text, read_text_table
 from snowshed.io.weather.joined import read_stations
 from snowshed.io.weather.observation import Station
 from snowshed.io.weather.recognise import read_station
-from snowshed.season.weather.checks import (
-    NO_SNOW,
-    check_given_rows,
-    check_rows,
-    mark_told,
-    warm_snow,
-)
+from snowshed.season.weather.checks import NO_SNOW, check_given_rows, check_rows, warm_snow
 from snowshed.season.weather.columns import ALLOWED, COLUMNS, MeasuredColumn
 from snowshed.season.weather.observed import record_of
 from snowshed.season.weather.row import Weather
-from snowshed.season.weather.season_record import SeasonRecord
+from snowshed.season.weather.season_record import ReadSeason, SeasonRecord
 from snowshed.season.weather.source import AUTO, CHOICES
 
 if TYPE_CHECKING:
@@ -84,8 +78,7 @@ def read_season(season: Season) -> list[Weather]:
     record = read_record(season)
     for note in record.notes:
         issue_note(note)
-    mark_told(record.rows)
-    return [*record.rows]
+    return ReadSeason(record.rows, record.notes)
 
 
 @checked

@@ -15,6 +15,21 @@ from snowshed.season.weather.source import SnowSource
 from snowshed.season.weather.winter_years import Calendar, SnowSeason, calendar_of
 
 
+class ReadSeason(list[Weather]):
+    """The rows of a season, and the notes that were issued when they were read.
+
+    Examples
+    --------
+    >>> season = ReadSeason([], ["snow in warm air"])
+    >>> len(season), season.notes
+    (0, ('snow in warm air',))
+    """
+
+    def __init__(self, rows: Sequence[Weather], notes: Sequence[str]) -> None:
+        super().__init__(rows)
+        self.notes = tuple(notes)
+
+
 @checked
 @dataclass(frozen=True)
 class SeasonRecord:

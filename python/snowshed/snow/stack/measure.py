@@ -45,6 +45,9 @@ CONNECTION_VOXEL = 0.01
 MIN_DENSITY, MAX_DENSITY = 5.0, 1500.0
 #: Largest size of a stack over the side of a cube of its snow; beyond it, a note asks for the unit.
 MAX_SPREAD = 100.0
+MIN_TILT = 2.0  # degrees, of the ground; smaller ones but 0 may be radians
+#: Largest side of a cube of the snow over the size of its particles' box; as `MAX_SPREAD`.
+MAX_PACKING = 3.0
 
 
 @dataclass(frozen=True, repr=False)
@@ -232,7 +235,7 @@ def measure_stack(
     coordinates = points("positions", positions, dimension)
     every_mass = column("masses", masses, len(coordinates), non_negative=True)
     every_density = column("densities", densities, len(coordinates), non_negative=True)
-    _note_on_units(coordinates, every_mass, every_density, dimension)
+    _note_on_units(coordinates, every_mass, every_density, dimension, dx)
     on_panel = (
         np.zeros(len(coordinates), dtype=bool)
         if exclude is None
@@ -243,6 +246,8 @@ def measure_stack(
         np.zeros(len(coordinates)) if ground is None else column("ground", ground, len(coordinates))
     )
     levelled[:, 2] -= under
+    if structures is None:  # which might hold the snow above the ground
+        _note_on_places(levelled[~on_panel], dx, ground_tilt_deg)
     if dimension == 2:
         levelled[:, 1] = 0.0
     touching = np.zeros(len(coordinates), dtype=bool)
@@ -272,7 +277,9 @@ def measure_stack(
     )
 
 
-def _note_on_units(positions: Floats, masses: Floats, densities: Floats, dimension: int) -> None:
+def _note_on_units(
+    positions: Floats, masses: Floats, densities: Floats, dimension: int, dx: float
+) -> None:
     """Issue notes if the arrays cannot be in metres, kg and kg/m3."""
     dense = densities[masses > 0.0]
     if not len(dense):
@@ -287,12 +294,44 @@ def _note_on_units(positions: Floats, masses: Floats, densities: Floats, dimensi
     sides = np.ptp(positions, axis=0)[[0, 2] if dimension == 2 else [0, 1, 2]]
     size = float(np.prod(sides)) ** (1 / dimension)
     snow = float((masses / np.maximum(densities, MIN_DENSITY)).sum()) ** (1 / dimension)
+    if snow > MAX_PACKING * float(np.prod(sides + dx)) ** (1 / dimension):
+        issue_note(
+            f"masses: by its mass and density the snow has the volume of "
+            f"{'a square' if dimension == 2 else 'a cube'} with sides of {snow:.2g} m, but its "
+            f"particles span only {size:.2g} m; are the masses in g, or is `dimension` another one?"
+        )
     if size > MAX_SPREAD * snow:
         issue_note(
             f"positions: the particles span {' x '.join(f'{side:.3g}' for side in sides)} m, "
             f"but their snow has the volume of {'a square' if dimension == 2 else 'a cube'} with "
             f"sides of {snow:.2g} m; are the positions in mm or cm?"
         )
+
+
+def _note_on_places(snow: Floats, dx: float, ground_tilt_deg: float) -> None:
+    """Issue notes on snow below the ground or above it, and on a grid of another unit.
+
+    Parameters
+    ----------
+    snow : (n, 3)
+        Positions above level ground, m.
+    dx
+        Size of the grid cells, m.
+    ground_tilt_deg
+        Tilt of the ground, degrees.
+    """
+    if 0.0 < abs(ground_tilt_deg) < MIN_TILT:
+        issue_note(f"ground_tilt_deg: {ground_tilt_deg:g} degrees is unusual; is it in radians?")
+    if not len(snow):
+        return
+    size = float(np.ptp(snow, axis=0).max())
+    if dx > size > 0.0:
+        issue_note(f"dx: {dx:g} m is more than the whole snow of {size:.3g} m; is it in mm?")
+    heights = snow[:, 2]
+    if np.median(heights) < -dx:
+        issue_note(f"positions: half of the snow lies {-np.median(heights):.3g} m below the ground")
+    elif heights.min() > max(size, dx):
+        issue_note(f"positions: the lowest snow is {heights.min():.3g} m above the ground")
 
 
 def _held(
