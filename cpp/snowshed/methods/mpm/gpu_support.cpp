@@ -28,7 +28,6 @@ std::vector<Unsupported> unsupported_on_gpu(const Options& o) {
   refuse(n.crack_band_length > 0, "/numerics/crack_band_length", "is a length", "0");
   refuse(n.relaxation_time > 0, "/numerics/relaxation_time", "is a time", "0");
   refuse(o.energy, "/output/energy", "is true", "false");
-  refuse(o.forces, "/output/forces", "is true", "false");
   const bool own_friction =
       std::any_of(o.obstacles.begin(), o.obstacles.end(),
                   [](const Obstacle& obstacle) { return obstacle.law.coefficient != nullptr; });

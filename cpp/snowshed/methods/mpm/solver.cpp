@@ -133,7 +133,7 @@ void SolverImpl<T, D>::scatter_block(const StepParameters<T>& step, const Partic
 /// First half of a step: the node sums and, in the same loop, the node velocities for a step of dt.
 template <class T, int D>
 void SolverImpl<T, D>::gather_and_update(double dt) {
-  follow_obstacles();
+  state_.follow_obstacles(model_, threads());
   if (model_.touches())
     workspace_.touch.update(model_, state_, state_.totals.speed * state_.totals.dt, threads());
   if (model_.boundary.any_slip()) state_.contacts.find_friction_shares(workspace_.friction_shares);

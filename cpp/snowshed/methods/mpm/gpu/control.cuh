@@ -75,6 +75,7 @@ __device__ inline void record_step(Control& c) {
   c.smallest_dt = c.dt < c.smallest_dt ? c.dt : c.smallest_dt;
   ++c.steps;
   --c.steps_left;
+  ++c.taken;
   c.strays = 0;
   c.phase = c.unsound != no_particle ? Phase::unsound : Phase::waiting;
 }

@@ -28,6 +28,7 @@ DeviceSnow::DeviceSnow(snowshed::gpu::Device& device, const Model<float, 3>& mod
     : device_(device),
       model_(model),
       particles_(device),
+      forces_(device, model.options.forces ? model.boundary.size() : 0),
       first_(device),
       around_(device),
       order_(device),
@@ -51,6 +52,7 @@ DeviceSnow::DeviceSnow(snowshed::gpu::Device& device, const Model<float, 3>& mod
       contacts_(device),
       snows_(device),
       motions_(device),
+      cell_ranges_(device),
       control_(device) {
   const Settings& n = model.options.settings;
   constants_.courant_factor = n.courant_factor;
@@ -76,7 +78,7 @@ DeviceSnow::DeviceSnow(snowshed::gpu::Device& device, const Model<float, 3>& mod
   control_.resize(1);
 }
 
-void DeviceSnow::upload(const HostState& state) {
+void DeviceSnow::upload(HostState& state) {
   particles_.upload(state.particles);
   strays_.resize(particles_.size());
   find_units(state);
@@ -97,7 +99,7 @@ void DeviceSnow::find_units(const HostState& state) {
   constants_.friction_memory = state.friction_memory;
 }
 
-void DeviceSnow::upload_layout(const HostState& state) {
+void DeviceSnow::upload_layout(HostState& state) {
   const BlockLayout<3>& layout = state.layout;
   blocks_ = std::int32_t(layout.particle_blocks.size());
   first_.upload(layout.first);
@@ -113,7 +115,7 @@ void DeviceSnow::upload_layout(const HostState& state) {
   upload_sleep(state);
 }
 
-void DeviceSnow::upload_contacts(const HostState& state) {
+void DeviceSnow::upload_contacts(HostState& state) {
   std::vector<std::int32_t> first{0};
   std::vector<Contact<float>> all;
   for (std::size_t g = 0; g < state.layout.grid_blocks.size(); ++g) {
@@ -123,6 +125,7 @@ void DeviceSnow::upload_contacts(const HostState& state) {
   }
   first_contact_.upload(first);
   contacts_.upload(all);
+  forces_.upload(state);
 }
 
 void DeviceSnow::upload_sleep(const HostState& state) {
@@ -143,6 +146,7 @@ void DeviceSnow::download(HostState& state) const {
 
 void DeviceSnow::download_contacts(HostState& state) const {
   contacts_.download(state.contacts.all().data());
+  forces_.download(state);
 }
 
 void DeviceSnow::sort(HostState& state) {
@@ -190,10 +194,14 @@ void DeviceSnow::launch_round() {
            contacts(), std::int32_t(contacts_.size()), friction_shares_.data(),
            static_cast<const Control*>(control_.data()));
   launch(device_, "node_step", {unsigned(active_.size()), node_threads}, grid(),
-         static_cast<const std::int32_t*>(active_.data()), contacts(), control_.data(), constants_);
+         static_cast<const std::int32_t*>(active_.data()), contacts(), forces_.view(), control_.data(),
+         constants_);
   launch(device_, "probe", {unsigned(awake_.size()), particle_threads},
          launch_of(awake_, integers_.data()), control_.data(), constants_);
   launch(device_, "judge_step", {1, 1}, control_.data(), constants_);
+  launch(device_, "record_forces", {forces_.obstacles(), particle_threads},
+         static_cast<const std::int32_t*>(active_.data()), std::int32_t(active_.size()), contacts(),
+         forces_.view(), static_cast<const Control*>(control_.data()));
   launch_particles("particle_step", awake_, integers_.data());
   launch_strays("stray_step", integers_.data());
   launch(device_, "next_step", {1, 1}, control_.data(), constants_);
@@ -231,6 +239,13 @@ std::vector<BlockMotion> DeviceSnow::motions(const Sleep<3>& sleep) {
   return motions_.download();
 }
 
+std::vector<CellRange> DeviceSnow::cell_ranges(const DeviceArray<std::int32_t>& blocks) {
+  cell_ranges_.resize(std::size_t(blocks_));
+  launch(device_, "find_cell_ranges", {unsigned(blocks.size()), node_threads},
+         launch_of(blocks, integers_.data()), cell_ranges_.data());
+  return cell_ranges_.download();
+}
+
 ParticleLaunch DeviceSnow::launch_of(const DeviceArray<std::int32_t>& list,
                                      unsigned long long* integers) const {
   return {particles_.view(), {first_.data(), around_.data()}, list.data(), grid(), strays_.data(),
@@ -250,10 +265,10 @@ ContactArrays DeviceSnow::contacts() const {
 }
 
 std::size_t DeviceSnow::bytes() const {
-  std::size_t sum = particles_.bytes();
+  std::size_t sum = particles_.bytes() + forces_.bytes();
   const auto add = [&](const auto&... arrays) { sum += (std::size_t(0) + ... + arrays.bytes()); };
   add(first_, around_, order_, strays_, awake_, asleep_blocks_, active_, idle_, listed_, integers_,
-      asleep_, carried_, force_, velocity_, change_, ranges_, first_contact_, contacts_, motions_);
+      asleep_, carried_, force_, velocity_, change_, ranges_, first_contact_, contacts_, motions_, cell_ranges_);
   return sum;
 }
 

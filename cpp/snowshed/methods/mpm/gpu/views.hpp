@@ -56,6 +56,17 @@ struct ContactArrays {
   const float *friction, *friction_shares;  // one for each obstacle
 };
 
+/// The record of forces; null pointers if forces are not recorded.
+struct ForceArrays {
+  ContactForce<float>* contacts;  // one for each of the contacts
+  float* blocks;                  // impulses (3) of blocks of nodes with a single obstacle, N s
+  double* steps;                  // `recorded_values` of each step since the host looked
+};
+
+/// Values of a step in the record of forces: its end and its length (s), and the impulse (3) of each
+/// obstacle on the snow, N s.
+constexpr int recorded_values(int obstacles) { return 2 + 3 * obstacles; }
+
 /// Arguments of the kernels of particles.
 struct ParticleLaunch {
   ParticleArrays particles;
@@ -72,6 +83,11 @@ struct BlockMotion {
   double mass, carried, change[3];    // kg; of the nodes, see SleepingBlockMotion, times the mass
   float fastest;                      // m2/s2
   std::int32_t holds_its_snow;
+};
+
+/// The range of the cells in which the particles of a block lie, relative to the block.
+struct CellRange {
+  std::int32_t low[3], high[3];
 };
 
 enum class Phase : std::int32_t {
@@ -95,6 +111,7 @@ struct Control {
   Phase phase;
   std::int32_t repeated;         // whether the step being tried has been shortened
   std::int32_t steps_left;       // before the host must look
+  std::int32_t taken;            // steps since the host looked
   std::int32_t must_sort;        // whether a particle is close to the end of the nodes around it
   std::int32_t low[3], high[3];  // range of the node velocities, see `ordered`
   float strain;                  // s^-1, largest velocity gradient that the particles would see

@@ -12,6 +12,8 @@ const snowshed::gpu::EmulatedDevice::Kernels& emulated_kernels() {
       {"next_step", unpacked(next_step)},
       {"judge_step", unpacked(judge_step)},
       {"node_step", unpacked(node_step)},
+      {"record_forces", unpacked(record_forces)},
+      {"find_cell_ranges", unpacked(find_cell_ranges)},
       {"find_friction_shares", unpacked(find_friction_shares)},
       {"probe", unpacked(probe)},
       {"particle_step", unpacked(particle_step)},

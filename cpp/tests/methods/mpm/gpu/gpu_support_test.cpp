@@ -31,7 +31,6 @@ TEST(GpuSupport, NamesEachSetting) {
       {[](Options& o) { o.settings.relaxation_time = 0.01; }, "/numerics/relaxation_time"},
       {[](Options& o) { o.settings.damping_length = 0.01; }, "/numerics/damping_length"},
       {[](Options& o) { o.energy = true; }, "/output/energy"},
-      {[](Options& o) { o.forces = true; }, "/output/forces"},
       {[](Options& o) {
          o.laws.body_force = [](std::int64_t, const double*, const double*, const double*, double,
                                 double*, double*, double*) {};
