@@ -6,6 +6,7 @@ namespace snowshed::methods::mpm::gpu {
 
 void DeviceParticles::upload(const HostParticles& particles) {
   size_ = particles.size();
+  has_affine_ = particles.has_affine;
   has_plastic_ = particles.has_plastic;
   has_material_id_ = particles.has_material_id;
   std::size_t next = 0;
@@ -31,12 +32,14 @@ std::size_t DeviceParticles::bytes() const {
       [](std::size_t sum, const Array& array) { return sum + array.values.bytes(); });
 }
 
-/// The arrays are in the order of Particles::for_each_array, without affine velocities.
+/// The arrays are in the order of Particles::for_each_array.
 ParticleArrays DeviceParticles::view() const {
   ParticleArrays p{};
   std::size_t next = 0;
   for (float*& cell : p.cell) cell = static_cast<float*>(array(next));
   for (float*& velocity : p.velocity) velocity = static_cast<float*>(array(next));
+  if (has_affine_)
+    for (float*& affine : p.affine) affine = static_cast<float*>(array(next));
   for (float*& strain : p.be_minus_identity) strain = static_cast<float*>(array(next));
   if (has_plastic_) p.plastic = static_cast<float*>(array(next));
   p.mass = static_cast<const float*>(array(next));

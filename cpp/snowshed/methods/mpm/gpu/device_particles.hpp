@@ -35,7 +35,7 @@ class DeviceParticles {
   std::vector<Array> arrays_;  // in the order of Particles::for_each_array
   DeviceArray<std::uint8_t> spare_;
   std::size_t size_ = 0;
-  bool has_plastic_ = false, has_material_id_ = false;
+  bool has_affine_ = false, has_plastic_ = false, has_material_id_ = false;
 };
 
 }  // namespace snowshed::methods::mpm::gpu

@@ -60,8 +60,11 @@ DeviceSnow::DeviceSnow(snowshed::gpu::Device& device, const Model<float, 3>& mod
   constants_.dx = n.dx;
   constants_.friction_reach = friction_reach * n.dx;
   constants_.gravity = float(model.options.gravity);
-  constants_.flip_ratio = float(n.flip_ratio);
-  constants_.damping_rate = float(n.damping_rate.value_or(-1.0));
+  constants_.relaxation_time = n.relaxation_time;
+  // The share of FLIP does not depend on the step, unless there is a rate.
+  const bool has_rate = n.damping_rate && !n.damps_over_length() && n.transfer != Transfer::apic;
+  constants_.damping_rate = float(has_rate ? *n.damping_rate : -1.0);
+  constants_.flip_ratio = float(n.transfer == Transfer::apic ? 0.0 : n.flip_share(0.0));
   constants_.snow = model.constants.front();
   snows_.upload(model.constants);
   constants_.snows = snows_.data();
@@ -168,7 +171,9 @@ void DeviceSnow::sort(HostState& state) {
 }
 
 void DeviceSnow::scatter(Control& control) {
-  const double bound = std::max(2 * std::sqrt(double(control.speed_squared)), 1e-12);
+  if (model_.has_affine()) find_spin(control);
+  const double speed = 2 * std::sqrt(double(control.speed_squared));
+  const double bound = std::max(speed + arm * double(control.spin) * constants_.dx, 1e-12);
   control.momentum_unit = constants_.mass_unit * float(power_of_two_above(bound));
   control.strays = 0;
   control_.upload(&control, 1);
@@ -178,6 +183,15 @@ void DeviceSnow::scatter(Control& control) {
   if (asleep_.size() == 0) return;
   asleep_.clear();
   launch_particles("scatter", asleep_blocks_, asleep_.data());
+}
+
+void DeviceSnow::find_spin(Control& control) {
+  constexpr unsigned threads = 256;
+  control.spin = 0;
+  control_.upload(&control, 1);
+  launch(device_, "find_spin", {(unsigned(particles_.size()) + threads - 1) / threads, threads},
+         particles_.view(), std::int32_t(particles_.size()), control_.data());
+  control_.download(&control);
 }
 
 void DeviceSnow::run(Control& control, int rounds) {
@@ -208,7 +222,8 @@ void DeviceSnow::launch_round() {
 }
 
 std::string DeviceSnow::named(const char* kernel) const {
-  return std::string(kernel) + (model_.material_per_particle ? "_several" : "");
+  return std::string(kernel) + (model_.material_per_particle ? "_several" : "") +
+         (model_.has_affine() ? "_affine" : "");
 }
 
 void DeviceSnow::launch_particles(const char* kernel, const DeviceArray<std::int32_t>& list,

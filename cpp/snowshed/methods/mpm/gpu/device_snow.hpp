@@ -55,6 +55,7 @@ class DeviceSnow {
   void upload_layout(HostState&);
   void find_units(const HostState&);
   std::vector<CellRange> cell_ranges(const DeviceArray<std::int32_t>& blocks);
+  void find_spin(Control& control);
   void launch_round();
   void launch_particles(const char* kernel, const DeviceArray<std::int32_t>& list,
                         unsigned long long* integers);

@@ -16,7 +16,7 @@ inline constexpr unsigned particle_threads = 128, node_threads = nodes_of_block;
 
 /// Particles, sorted by blocks; see mpm::ParticleView.
 struct ParticleArrays {
-  float *cell[3], *velocity[3], *be_minus_identity[6];
+  float *cell[3], *velocity[3], *affine[9], *be_minus_identity[6];  // affine: null with FLIP
   float* plastic;  // null with elastic snow alone
   const float* mass;
   const std::uint8_t* material_id;  // null with one snow
@@ -116,16 +116,21 @@ struct Control {
   std::int32_t low[3], high[3];  // range of the node velocities, see `ordered`
   float strain;                  // s^-1, largest velocity gradient that the particles would see
   float speed_squared;           // m2/s2, of the fastest snow in the last step
+  float spin;                    // s^-1, largest component of an affine velocity in the last step
   float strain_of_step;          // strain in the step that failed
   std::int32_t unsound;          // the first particle that is not sound
   std::int32_t strays;           // particles whose nodes do not lie in the tile of their block
   float momentum_unit;           // kg m/s, of the sums of the last step
 };
 
+/// Sum of the largest distances of a node from a particle along the three directions, in cells.
+inline constexpr float arm = 4.5f;
+
 /// Constants of a run.
 struct Constants {
   double elastic_limit, courant_factor, strain_limit, dx;
   double friction_memory, friction_reach;   // s, m
+  double relaxation_time;                   // s, of stress beyond the yield surface
   float gravity, flip_ratio, damping_rate;  // a negative rate: the ratio holds for each step
   float mass_unit, force_unit;              // kg, N
   MaterialConstants<float> snow;            // the only one

@@ -23,12 +23,9 @@ TEST(GpuSupport, NamesEachSetting) {
   const std::vector<std::pair<Change, std::string>> changes{
       {[](Options& o) { o.dimension = 2; }, "/dimension"},
       {[](Options& o) { o.settings.precision = Precision::float64; }, "/numerics/precision"},
-      {[](Options& o) { o.settings.transfer = Transfer::apic; }, "/numerics/transfer"},
       {[](Options& o) { o.settings.basis = Basis::cubic; }, "/numerics/basis"},
       {[](Options& o) { o.settings.contact = ContactRule::touch; }, "/numerics/contact"},
       {[](Options& o) { o.settings.fields = Fields::events; }, "/numerics/fields"},
-      {[](Options& o) { o.settings.crack_band_length = 0.01; }, "/numerics/crack_band_length"},
-      {[](Options& o) { o.settings.relaxation_time = 0.01; }, "/numerics/relaxation_time"},
       {[](Options& o) { o.settings.damping_length = 0.01; }, "/numerics/damping_length"},
       {[](Options& o) { o.energy = true; }, "/output/energy"},
       {[](Options& o) {
