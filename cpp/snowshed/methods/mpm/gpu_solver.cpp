@@ -167,6 +167,8 @@ Control GpuSolver::begin_batch(double until, std::int32_t steps) {
   c.smallest_dt = counters().smallest_dt;
   c.steps = counters().steps;
   c.rejected = counters().rejected;
+  c.undamped_steps = state.totals.undamped_steps;
+  c.undamped_time = state.totals.undamped_time;
   c.steps_left = steps;
   c.taken = 0;
   c.must_sort = 0;
@@ -204,6 +206,8 @@ void GpuSolver::end_batch(const Control& c) {
   totals.counters.steps = c.steps;
   if (c.phase != Phase::stuck) totals.counters.rejected = c.rejected;
   totals.counters.smallest_dt = c.smallest_dt;
+  totals.undamped_steps = c.undamped_steps;
+  totals.undamped_time = c.undamped_time;
   totals.counters.particle_updates += steps * awake;
   totals.slept_updates += steps * (std::int64_t(size()) - awake);
   record_forces(steps);

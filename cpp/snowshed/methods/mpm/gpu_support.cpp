@@ -22,7 +22,6 @@ std::vector<Unsupported> unsupported_on_gpu(const Options& o) {
   refuse(n.basis != Basis::quadratic, "/numerics/basis", "is \"cubic\"", "\"quadratic\"");
   refuse(n.contact != ContactRule::kernel, "/numerics/contact", "is \"touch\"", "\"kernel\"");
   refuse(n.fields != Fields::one, "/numerics/fields", "is \"events\"", "\"one\"");
-  refuse(n.damps_over_length(), "/numerics/damping_length", "is a length", "0");
   refuse(o.energy, "/output/energy", "is true", "false");
   const bool own_friction =
       std::any_of(o.obstacles.begin(), o.obstacles.end(),
@@ -47,7 +46,10 @@ double bytes_on_gpu(const Settings& n, double particles) {
   constexpr double indices = 8, spare = 4;
   const double state = 15 * 4 + 4 + 2 + 1 + (n.has_affine() ? 9 * 4 : 0);
   constexpr double node = 2 * 64 + 3 * 16 + 8 + 0.4, nodes_per_particle = 0.8;
-  return particles * (state + indices + spare + node * nodes_per_particle);
+  double coarse_node = 0;  // for each node of the grid
+  if (n.damps_over_length())
+    coarse_node = (2 * 32 + 16) * std::pow(AverageLayout<3>(n, 0).per_cell(), 3);
+  return particles * (state + indices + spare + (node + coarse_node) * nodes_per_particle);
 }
 
 snowshed::gpu::KernelProgram gpu_kernels() {

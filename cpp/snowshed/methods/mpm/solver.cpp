@@ -337,7 +337,7 @@ void SolverImpl<T, D>::g2p2g(double dt) {
 
 template <class T, int D>
 bool SolverImpl<T, D>::damps_next() const {
-  return workspace_.average && state_.totals.undamped_steps + 1 >= steps_between_averages;
+  return workspace_.average && damps_after(state_.totals.undamped_steps);
 }
 
 /// Averages the particles' velocities. The step of dt that follows damps them, and makes up for the
@@ -345,7 +345,7 @@ bool SolverImpl<T, D>::damps_next() const {
 template <class T, int D>
 void SolverImpl<T, D>::average_velocities(double dt) noexcept {
   const double rate = model_.options.settings.damping_rate.value_or(0.0);
-  const double share = -std::expm1(-rate * (state_.totals.undamped_time + dt));
+  const double share = damped_share(rate, state_.totals.undamped_time + dt);
   workspace_.average->update(model_.kernels, state_.particles.view(), state_.layout, state_.sleep,
                              share, threads());
 }

@@ -1,6 +1,7 @@
 // The course of a step, decided on the device: its length, whether it must be shorter, its end.
 #pragma once
 
+#include "snowshed/methods/mpm/average_rule.hpp"
 #include "snowshed/methods/mpm/gpu/views.hpp"
 #include "snowshed/methods/mpm/step_length.hpp"
 
@@ -71,7 +72,12 @@ __device__ inline void clear_range(Control& c) {
 }
 
 /// Records a step that was taken.
-__device__ inline void record_step(Control& c) {
+__device__ inline void record_step(Control& c, const Constants& k) {
+  if (k.average_share > 0) {
+    const bool damped = damps_after(c.undamped_steps);
+    c.undamped_steps = damped ? 0 : c.undamped_steps + 1;
+    c.undamped_time = damped ? 0.0 : c.undamped_time + c.dt;
+  }
   c.time += c.dt;
   c.last_dt = c.dt;
   c.smallest_dt = c.dt < c.smallest_dt ? c.dt : c.smallest_dt;
@@ -120,7 +126,7 @@ __device__ inline void judge(Control& c, const Constants& k) {
 extern "C" __global__ void next_step(snowshed::methods::mpm::gpu::Control* control,
                                      snowshed::methods::mpm::gpu::Constants constants) {
   using namespace snowshed::methods::mpm::gpu;
-  if (control->phase == Phase::accepted) record_step(*control);
+  if (control->phase == Phase::accepted) record_step(*control, constants);
   if (control->phase == Phase::waiting || control->phase == Phase::too_long)
     begin_step(*control, constants);
 }

@@ -29,6 +29,7 @@ DeviceSnow::DeviceSnow(snowshed::gpu::Device& device, const Model<float, 3>& mod
       model_(model),
       particles_(device),
       forces_(device, model.options.forces ? model.boundary.size() : 0),
+      average_(device, model.options.settings),
       first_(device),
       around_(device),
       order_(device),
@@ -61,6 +62,8 @@ DeviceSnow::DeviceSnow(snowshed::gpu::Device& device, const Model<float, 3>& mod
   constants_.friction_reach = friction_reach * n.dx;
   constants_.gravity = float(model.options.gravity);
   constants_.relaxation_time = n.relaxation_time;
+  constants_.average_rate = n.damping_rate.value_or(0.0);
+  constants_.average_share = average_.share_of_length();
   // The share of FLIP does not depend on the step, unless there is a rate.
   const bool has_rate = n.damping_rate && !n.damps_over_length() && n.transfer != Transfer::apic;
   constants_.damping_rate = float(has_rate ? *n.damping_rate : -1.0);
@@ -114,6 +117,7 @@ void DeviceSnow::upload_layout(HostState& state) {
   change_.resize(nodes);
   ranges_.resize(grid_blocks * 6);
   motions_.resize(std::size_t(blocks_));
+  average_.connect(state);
   upload_contacts(state);
   upload_sleep(state);
 }
@@ -183,6 +187,15 @@ void DeviceSnow::scatter(Control& control) {
   if (asleep_.size() == 0) return;
   asleep_.clear();
   launch_particles("scatter", asleep_blocks_, asleep_.data());
+  if (!average_.exists()) return;
+  average_.clear_asleep();
+  launch_average(asleep_blocks_, true);
+}
+
+void DeviceSnow::launch_average(const DeviceArray<std::int32_t>& list, bool asleep) {
+  launch(device_, "scatter_average", {unsigned(list.size()), particle_threads},
+         launch_of(list, integers_.data()), std::int32_t(asleep),
+         static_cast<const Control*>(control_.data()), constants_);
 }
 
 void DeviceSnow::find_spin(Control& control) {
@@ -216,6 +229,11 @@ void DeviceSnow::launch_round() {
   launch(device_, "record_forces", {forces_.obstacles(), particle_threads},
          static_cast<const std::int32_t*>(active_.data()), std::int32_t(active_.size()), contacts(),
          forces_.view(), static_cast<const Control*>(control_.data()));
+  if (average_.exists()) {
+    launch_average(awake_, false);
+    launch(device_, "average_nodes", {average_.coarse_blocks(), node_threads}, average_.view(),
+           static_cast<const Control*>(control_.data()), constants_);
+  }
   launch_particles("particle_step", awake_, integers_.data());
   launch_strays("stray_step", integers_.data());
   launch(device_, "next_step", {1, 1}, control_.data(), constants_);
@@ -263,8 +281,10 @@ std::vector<CellRange> DeviceSnow::cell_ranges(const DeviceArray<std::int32_t>& 
 
 ParticleLaunch DeviceSnow::launch_of(const DeviceArray<std::int32_t>& list,
                                      unsigned long long* integers) const {
-  return {particles_.view(), {first_.data(), around_.data()}, list.data(), grid(), strays_.data(),
-          integers};
+  return {particles_.view(), {first_.data(), around_.data()},
+          list.data(),       grid(),
+          strays_.data(),    integers,
+          average_.view()};
 }
 
 GridArrays DeviceSnow::grid() const {
@@ -280,7 +300,7 @@ ContactArrays DeviceSnow::contacts() const {
 }
 
 std::size_t DeviceSnow::bytes() const {
-  std::size_t sum = particles_.bytes() + forces_.bytes();
+  std::size_t sum = particles_.bytes() + forces_.bytes() + average_.bytes();
   const auto add = [&](const auto&... arrays) { sum += (std::size_t(0) + ... + arrays.bytes()); };
   add(first_, around_, order_, strays_, awake_, asleep_blocks_, active_, idle_, listed_, integers_,
       asleep_, carried_, force_, velocity_, change_, ranges_, first_contact_, contacts_, motions_, cell_ranges_);

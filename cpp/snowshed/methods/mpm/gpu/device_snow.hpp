@@ -2,6 +2,7 @@
 // blocks, the contacts of new blocks and the decision which blocks sleep are the host's.
 #pragma once
 
+#include "snowshed/methods/mpm/gpu/device_average.hpp"
 #include "snowshed/methods/mpm/gpu/device_forces.hpp"
 #include "snowshed/methods/mpm/gpu/device_particles.hpp"
 #include "snowshed/methods/mpm/model.hpp"
@@ -57,6 +58,7 @@ class DeviceSnow {
   std::vector<CellRange> cell_ranges(const DeviceArray<std::int32_t>& blocks);
   void find_spin(Control& control);
   void launch_round();
+  void launch_average(const DeviceArray<std::int32_t>& list, bool asleep);
   void launch_particles(const char* kernel, const DeviceArray<std::int32_t>& list,
                         unsigned long long* integers);
   void launch_strays(const char* kernel, unsigned long long* integers);
@@ -70,6 +72,7 @@ class DeviceSnow {
   const Model<float, 3>& model_;
   DeviceParticles particles_;
   DeviceForces forces_;
+  DeviceAverage average_;
   DeviceArray<std::int32_t> first_, around_, order_, strays_;
   DeviceArray<std::int32_t> awake_, asleep_blocks_, active_, idle_, listed_;
   DeviceArray<unsigned long long> integers_, asleep_;

@@ -1,7 +1,7 @@
 // One particle in registers, and its part of a step (see kernels/particle_kernels.hpp).
 #pragma once
 
-#include "snowshed/methods/mpm/gpu/sums.cuh"
+#include "snowshed/methods/mpm/gpu/average.cuh"
 #include "snowshed/methods/mpm/kernels/stress.hpp"
 
 namespace snowshed::methods::mpm::gpu {
@@ -20,6 +20,7 @@ struct Variant {
 struct StepShares {
   float dt, dx, cells_per_speed, flip_ratio;  // s; m; dt/dx, s/m
   float overstress;                           // see CamClayLaw
+  float damping;                              // towards the average over a length
 
   __device__ StepShares(const Control& c, const Constants& k)
       : dt(float(c.dt)),
@@ -28,7 +29,8 @@ struct StepShares {
         flip_ratio(k.damping_rate >= 0 ? float(::exp(-double(k.damping_rate) * c.dt))
                                        : k.flip_ratio),
         overstress(k.relaxation_time > 0 ? float(k.relaxation_time / (c.dt + k.relaxation_time))
-                                         : 0.0f) {}
+                                         : 0.0f),
+        damping(damping_of(c, k)) {}
 };
 
 /// Returns the constants of a particle's snow.
@@ -173,6 +175,17 @@ struct Moved {
   Given<affine> given;
   bool sound;
 };
+
+/// Moves a particle of a block with its nodes, and damps it towards the average.
+template <class Variant>
+__device__ inline void move(ParticleState<Variant>& s, const NodeMeans<Variant::affine>& m,
+                            const AverageArrays& average, int block, const StepShares& step) {
+  if (!Variant::affine || !(step.damping > 0)) return s.move(m, step);
+  float change[3];
+  find_damping(average, block, step.damping, s.cell, s.velocity, change);
+  s.move(m, step);
+  for (int d = 0; d < 3; ++d) s.velocity[d] += change[d];
+}
 
 /// The largest values of the particles of a thread.
 struct Largest {

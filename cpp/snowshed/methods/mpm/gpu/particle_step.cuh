@@ -158,7 +158,7 @@ __device__ inline void step_block(const ParticleLaunch& l, Control* control, con
       }
       s.read_rest(l.particles, i);
       if (moves) {
-        s.move(means, step);
+        move(s, means, l.average, b, step);
         if (!in_tile(s.cell)) {
           add_stray(l.strays, control, i);
           continue;
@@ -212,7 +212,7 @@ __device__ inline void step_strays(const ParticleLaunch& l, std::int32_t block_c
                             around,
                             {from.lowest[0], from.lowest[1], from.lowest[2]}},
                   means);
-      s.move(means, step);
+      move(s, means, l.average, low, step);
       const auto moved = finish_particle(s, means, l.particles, i, k, step, control, largest);
       if (!moved.sound) continue;
       if (!may_move_on(s.cell)) control->must_sort = 1;

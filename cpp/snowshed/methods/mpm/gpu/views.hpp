@@ -67,6 +67,28 @@ struct ForceArrays {
 /// obstacle on the snow, N s.
 constexpr int recorded_values(int obstacles) { return 2 + 3 * obstacles; }
 
+/// Sums of a coarse node, over which velocities are averaged: mass and momentum (3).
+inline constexpr int average_sums = 4;
+
+/// The coarse nodes around a block of particles.
+struct AverageBlock {
+  float origin[3];        // of the block past the first node, in spacings
+  std::int32_t shift[3];  // the first node in the first coarse block
+  std::int32_t count[3];  // coarse blocks along each direction
+};
+
+/// The coarse grid; null pointers if there is none.
+struct AverageArrays {
+  const AverageBlock* blocks;     // one for each block of particles
+  const std::int32_t* around;     // the coarse blocks of each
+  std::int32_t around_size;       // room for those of a block
+  std::int32_t edge;              // coarse nodes around a block along each direction
+  float per_cell;                 // dx over the spacing
+  unsigned long long* integers;   // sums of the awake snow, as whole multiples of a unit
+  unsigned long long* asleep;     // of the snow that sleeps; null if none may
+  Quad* mean;                     // mean velocities
+};
+
 /// Arguments of the kernels of particles.
 struct ParticleLaunch {
   ParticleArrays particles;
@@ -75,6 +97,7 @@ struct ParticleLaunch {
   GridArrays grid;
   std::int32_t* strays;          // room for all particles
   unsigned long long* integers;  // sums to which the particles are added
+  AverageArrays average;
 };
 
 /// Sums over the particles of a block, by which the host decides whether the block sleeps.
@@ -107,7 +130,8 @@ struct Control {
   double time, dt, last_dt;  // s; of the step being tried, and of the last one
   double until;              // s, at which the host wants to look
   double smallest_dt;        // s
-  std::int64_t steps, rejected;
+  double undamped_time;  // s, of the steps since velocities were last damped over a length
+  std::int64_t steps, rejected, undamped_steps;
   Phase phase;
   std::int32_t repeated;         // whether the step being tried has been shortened
   std::int32_t steps_left;       // before the host must look
@@ -131,6 +155,7 @@ struct Constants {
   double elastic_limit, courant_factor, strain_limit, dx;
   double friction_memory, friction_reach;   // s, m
   double relaxation_time;                   // s, of stress beyond the yield surface
+  double average_rate, average_share;       // s^-1; 0: velocities are not damped over a length
   float gravity, flip_ratio, damping_rate;  // a negative rate: the ratio holds for each step
   float mass_unit, force_unit;              // kg, N
   MaterialConstants<float> snow;            // the only one

@@ -32,6 +32,8 @@ const snowshed::gpu::EmulatedDevice::Kernels& emulated_kernels() {
       {"scatter_strays_several", unpacked(scatter_strays_several)},
       {"scatter_strays_affine", unpacked(scatter_strays_affine)},
       {"scatter_strays_several_affine", unpacked(scatter_strays_several_affine)},
+      {"scatter_average", unpacked(scatter_average)},
+      {"average_nodes", unpacked(average_nodes)},
       {"find_spin", unpacked(find_spin)},
       {"count_moves", unpacked(count_moves)},
       {"find_order", unpacked(find_order)},

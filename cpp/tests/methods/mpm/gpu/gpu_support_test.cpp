@@ -26,7 +26,6 @@ TEST(GpuSupport, NamesEachSetting) {
       {[](Options& o) { o.settings.basis = Basis::cubic; }, "/numerics/basis"},
       {[](Options& o) { o.settings.contact = ContactRule::touch; }, "/numerics/contact"},
       {[](Options& o) { o.settings.fields = Fields::events; }, "/numerics/fields"},
-      {[](Options& o) { o.settings.damping_length = 0.01; }, "/numerics/damping_length"},
       {[](Options& o) { o.energy = true; }, "/output/energy"},
       {[](Options& o) {
          o.laws.body_force = [](std::int64_t, const double*, const double*, const double*, double,
