@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -35,7 +36,8 @@ class GpuSolver final : public Solver, public AdvancesUnwatched {
   GpuSolver(Options options, std::shared_ptr<snowshed::gpu::Device> device)
       : device_(std::move(device)),
         host_(std::make_unique<SolverImpl<float, 3>>(std::move(options))),
-        snow_(*device_, host_->model()) {}
+        snow_(*device_, host_->model()),
+        touch_(Basis::quadratic) {}
 
   using Method::add;
   void add(const std::vector<ParticleBatch>& batches, const StopRequest& stop) override {
@@ -113,6 +115,7 @@ class GpuSolver final : public Solver, public AdvancesUnwatched {
   void prepare();
   void record_forces(std::int64_t steps);
   void hold_sleeping_forces();
+  void update_touch();
   double end_of_batch(double until) const;
   Control begin_batch(double until, std::int32_t steps);
   void end_batch(const Control& control);
@@ -123,6 +126,7 @@ class GpuSolver final : public Solver, public AdvancesUnwatched {
   std::shared_ptr<snowshed::gpu::Device> device_;
   std::unique_ptr<SolverImpl<float, 3>> host_;
   gpu::DeviceSnow snow_;
+  Touch<float, 3> touch_;  // contact by touch, if the settings ask for it
   Control control_{};
   mutable bool device_is_ahead_ = false;  // whether its particles are newer than the host's
   bool device_has_snow_ = false;          // whether it has the snow of the host's state
@@ -143,6 +147,7 @@ void GpuSolver::prepare() {
   control_.phase = Phase::waiting;
   snow_.scatter(control_);
   if (state.forces) with_contacts([this] { hold_sleeping_forces(); });
+  if (host_->model().touches()) touch_.forget(host_->model(), state);
   since_sort_ = 0;
   until_sort_ = steps_until_sort(state.particles.size(), state.contacts.size());
 }
@@ -161,7 +166,11 @@ Control GpuSolver::begin_batch(double until, std::int32_t steps) {
   State<float, 3>& state = host_->state_for_device();
   if (host_->model().boundary.any_motion())
     with_contacts([&] { state.follow_obstacles(host_->model(), host_->model().max_threads); });
+  if (host_->model().touches()) update_touch();
   Control c = control_;
+  c.travel = 0;
+  c.travel_limit = std::numeric_limits<double>::infinity();
+  if (host_->model().touches()) c.travel_limit = touch_.reserve(state);
   c.time = time();
   c.until = end_of_batch(until);
   c.smallest_dt = counters().smallest_dt;
@@ -174,6 +183,21 @@ Control GpuSolver::begin_batch(double until, std::int32_t steps) {
   c.must_sort = 0;
   c.unsound = gpu::no_particle;
   return c;
+}
+
+/// Finds the contacts that act, where snow may have moved far enough. The particles of the blocks
+/// around obstacles come to the host.
+void GpuSolver::update_touch() {
+  const Model<float, 3>& model = host_->model();
+  State<float, 3>& state = host_->state_for_device();
+  const std::vector<std::int32_t> due = touch_.due_blocks(model, state);
+  if (due.empty()) return;
+  const std::vector<std::int32_t> touching = touch_.touching_blocks();
+  std::vector<std::int32_t> needed;
+  std::set_union(due.begin(), due.end(), touching.begin(), touching.end(),
+                 std::back_inserter(needed));
+  snow_.download_blocks(state, needed);
+  with_contacts([&] { touch_.measure(model, state, due, model.max_threads); });
 }
 
 void GpuSolver::take_steps(double until, std::int32_t steps) {
@@ -211,6 +235,7 @@ void GpuSolver::end_batch(const Control& c) {
   totals.counters.particle_updates += steps * awake;
   totals.slept_updates += steps * (std::int64_t(size()) - awake);
   record_forces(steps);
+  touch_.travel(c.travel);
   since_sort_ += int(steps);
   if (c.must_sort || since_sort_ >= until_sort_) since_sort_ = -1;
   if (c.phase == Phase::stuck || c.phase == Phase::unsound) fail(c);

@@ -1,8 +1,10 @@
 #include "snowshed/methods/mpm/gpu_support.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "snowshed/core/errors.hpp"
+#include "snowshed/methods/mpm/average_layout.hpp"
 #include "snowshed/methods/mpm/describe.hpp"
 
 namespace snowshed::methods::mpm {
@@ -20,7 +22,6 @@ std::vector<Unsupported> unsupported_on_gpu(const Options& o) {
   refuse(n.precision != Precision::float32, "/numerics/precision", "is \"double\"", "\"float\"");
   refuse(n.scheme != Scheme::thesis, "/numerics/scheme", "is \"objective\"", "\"thesis\"");
   refuse(n.basis != Basis::quadratic, "/numerics/basis", "is \"cubic\"", "\"quadratic\"");
-  refuse(n.contact != ContactRule::kernel, "/numerics/contact", "is \"touch\"", "\"kernel\"");
   refuse(n.fields != Fields::one, "/numerics/fields", "is \"events\"", "\"one\"");
   refuse(o.energy, "/output/energy", "is true", "false");
   const bool own_friction =
@@ -48,7 +49,7 @@ double bytes_on_gpu(const Settings& n, double particles) {
   constexpr double node = 2 * 64 + 3 * 16 + 8 + 0.4, nodes_per_particle = 0.8;
   double coarse_node = 0;  // for each node of the grid
   if (n.damps_over_length())
-    coarse_node = (2 * 32 + 16) * std::pow(AverageLayout<3>(n, 0).per_cell(), 3);
+    coarse_node = (2 * 32 + 16) * std::pow(AverageLayout<3>(n.damping_length, n.dx, n.basis, 1).per_cell(), 3);
   return particles * (state + indices + spare + (node + coarse_node) * nodes_per_particle);
 }
 

@@ -71,6 +71,11 @@ __device__ inline void clear_range(Control& c) {
   c.strain = 0;
 }
 
+/// The speed of the fastest snow in the last step, m/s.
+__device__ inline double largest_speed(const Control& c) {
+  return double(::sqrtf(c.speed_squared));
+}
+
 /// Records a step that was taken.
 __device__ inline void record_step(Control& c, const Constants& k) {
   if (k.average_share > 0) {
@@ -79,6 +84,7 @@ __device__ inline void record_step(Control& c, const Constants& k) {
     c.undamped_time = damped ? 0.0 : c.undamped_time + c.dt;
   }
   c.time += c.dt;
+  c.travel += largest_speed(c) * c.dt;
   c.last_dt = c.dt;
   c.smallest_dt = c.dt < c.smallest_dt ? c.dt : c.smallest_dt;
   ++c.steps;
@@ -93,10 +99,10 @@ __device__ inline void begin_step(Control& c, const Constants& k) {
   if (c.phase == Phase::too_long) {
     c.repeated = 1;
   } else {
-    if (!(c.time < c.until) || c.steps_left <= 0 || c.must_sort) return;
+    if (!(c.time < c.until) || c.steps_left <= 0 || c.must_sort || c.travel >= c.travel_limit)
+      return;
     c.repeated = 0;
-    c.dt =
-        next_time_step(k.elastic_limit, double(::sqrtf(c.speed_squared)), k.dx, k.courant_factor);
+    c.dt = next_time_step(k.elastic_limit, largest_speed(c), k.dx, k.courant_factor);
   }
   clear_range(c);
   c.phase = Phase::trying;

@@ -48,18 +48,36 @@ ParticleArrays DeviceParticles::view() const {
   return p;
 }
 
-void DeviceParticles::permute(const DeviceArray<std::int32_t>& order) {
+/// Gathers the values of an array in `spare_`: value i is that of particle order[i].
+void DeviceParticles::launch_permute(const Array& array, const DeviceArray<std::int32_t>& order,
+                                     std::size_t count) {
   constexpr unsigned threads = 256;
-  const snowshed::gpu::LaunchShape shape{(unsigned(size_) + threads - 1) / threads, threads};
+  const snowshed::gpu::LaunchShape shape{(unsigned(count) + threads - 1) / threads, threads};
+  const char* kernel = array.value_bytes == 4   ? "permute4"
+                       : array.value_bytes == 2 ? "permute2"
+                                                : "permute1";
+  spare_.resize(count * array.value_bytes);
+  launch(device_, kernel, shape, array.values.data(), spare_.data(), order.data(),
+         std::int32_t(count));
+}
+
+void DeviceParticles::permute(const DeviceArray<std::int32_t>& order) {
   for (Array& array : arrays_) {
-    const char* kernel = array.value_bytes == 4   ? "permute4"
-                         : array.value_bytes == 2 ? "permute2"
-                                                  : "permute1";
-    spare_.resize(array.values.size());
-    launch(device_, kernel, shape, array.values.data(), spare_.data(), order.data(),
-           std::int32_t(size_));
+    launch_permute(array, order, size_);
     array.values.swap(spare_);
   }
+}
+
+void DeviceParticles::download(HostParticles& particles, const std::vector<std::int32_t>& some) {
+  some_.upload(some);
+  std::size_t next = 0;
+  particles.for_each_array([&](const char*, auto& array) {
+    launch_permute(arrays_[next++], some_, some.size());
+    using Value = typename std::remove_reference_t<decltype(array)>::value_type;
+    std::vector<Value> values(some.size());
+    spare_.download(reinterpret_cast<std::uint8_t*>(values.data()));
+    for (std::size_t i = 0; i < some.size(); ++i) array[std::size_t(some[i])] = values[i];
+  });
 }
 
 }  // namespace snowshed::methods::mpm::gpu

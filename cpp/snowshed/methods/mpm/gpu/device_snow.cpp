@@ -151,6 +151,14 @@ void DeviceSnow::download(HostState& state) const {
   download_contacts(state);
 }
 
+void DeviceSnow::download_blocks(HostState& state, const std::vector<std::int32_t>& blocks) {
+  std::vector<std::int32_t> particles;
+  for (const std::int32_t b : blocks)
+    for (std::int32_t i = state.layout.first[b]; i < state.layout.first[b + 1]; ++i)
+      particles.push_back(i);
+  particles_.download(state.particles, particles);
+}
+
 void DeviceSnow::download_contacts(HostState& state) const {
   contacts_.download(state.contacts.all().data());
   forces_.download(state);

@@ -20,6 +20,8 @@ class DeviceSnow {
   void upload(HostState&);
   /// Brings the particles and the contacts of the host up to date.
   void download(HostState&) const;
+  /// Brings the particles of some blocks up to date.
+  void download_blocks(HostState&, const std::vector<std::int32_t>& blocks);
   /// Brings only the contacts up to date, with their forces.
   void download_contacts(HostState&) const;
   /// Uploads contacts that the host has changed.

@@ -13,7 +13,8 @@ using Strain = material::Sym<float, 3>;
 template <bool several_, bool affine_>
 struct Variant {
   static constexpr bool several = several_, affine = affine_;
-  using Law = material::CamClayLaw<float, several || affine>;
+  static constexpr bool regularised = several || affine;
+  using Law = material::CamClayLaw<float, regularised>;
 };
 
 /// Shares of a step that are the same for all particles.
@@ -152,7 +153,7 @@ struct ParticleState {
 
  private:
   static __device__ typename Variant::Law law_of(const MaterialConstants<float>& snow) {
-    if constexpr (Variant::several || affine)
+    if constexpr (Variant::regularised)
       return cam_clay_law<material::RegularisedCamClay>(snow);
     else
       return cam_clay_law<material::CamClay>(snow);

@@ -130,6 +130,8 @@ struct Control {
   double time, dt, last_dt;  // s; of the step being tried, and of the last one
   double until;              // s, at which the host wants to look
   double smallest_dt;        // s
+  double travel;         // m, by the fastest snow since the host looked
+  double travel_limit;   // m, after which the host must look
   double undamped_time;  // s, of the steps since velocities were last damped over a length
   std::int64_t steps, rejected, undamped_steps;
   Phase phase;

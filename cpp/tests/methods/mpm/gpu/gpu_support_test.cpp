@@ -24,7 +24,6 @@ TEST(GpuSupport, NamesEachSetting) {
       {[](Options& o) { o.dimension = 2; }, "/dimension"},
       {[](Options& o) { o.settings.precision = Precision::float64; }, "/numerics/precision"},
       {[](Options& o) { o.settings.basis = Basis::cubic; }, "/numerics/basis"},
-      {[](Options& o) { o.settings.contact = ContactRule::touch; }, "/numerics/contact"},
       {[](Options& o) { o.settings.fields = Fields::events; }, "/numerics/fields"},
       {[](Options& o) { o.energy = true; }, "/output/energy"},
       {[](Options& o) {
