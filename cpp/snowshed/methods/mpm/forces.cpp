@@ -260,8 +260,8 @@ void State<T, D>::follow_obstacles(const Model<T, D>& model, int threads) {
 }
 
 template <class T, int D>
-void State<T, D>::hold_sleeping_forces(
-    const Model<T, D>& model, const std::function<bool(std::int32_t)>& reached) noexcept {
+void State<T, D>::hold_sleeping_forces(const Model<T, D>& model,
+                                       const std::function<bool(std::int32_t)>& reached) noexcept {
   std::fill(forces->held.begin(), forces->held.end(), ContactImpulse());
   for (const std::int32_t g : sleep.idle()) {
     const int count = contacts.count(std::size_t(g));

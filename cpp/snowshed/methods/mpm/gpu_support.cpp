@@ -5,7 +5,6 @@
 
 #include "snowshed/core/errors.hpp"
 #include "snowshed/methods/mpm/average_layout.hpp"
-#include "snowshed/methods/mpm/describe.hpp"
 
 namespace snowshed::methods::mpm {
 std::vector<Unsupported> unsupported_on_gpu(const Options& o) {
@@ -20,7 +19,6 @@ std::vector<Unsupported> unsupported_on_gpu(const Options& o) {
   };
   refuse(o.dimension != 3, "/dimension", "is 2", "3");
   refuse(n.precision != Precision::float32, "/numerics/precision", "is \"double\"", "\"float\"");
-  refuse(n.scheme != Scheme::thesis, "/numerics/scheme", "is \"objective\"", "\"thesis\"");
   refuse(n.basis != Basis::quadratic, "/numerics/basis", "is \"cubic\"", "\"quadratic\"");
   refuse(n.fields != Fields::one, "/numerics/fields", "is \"events\"", "\"one\"");
   refuse(o.energy, "/output/energy", "is true", "false");
@@ -49,7 +47,8 @@ double bytes_on_gpu(const Settings& n, double particles) {
   constexpr double node = 2 * 64 + 3 * 16 + 8 + 0.4, nodes_per_particle = 0.8;
   double coarse_node = 0;  // for each node of the grid
   if (n.damps_over_length())
-    coarse_node = (2 * 32 + 16) * std::pow(AverageLayout<3>(n.damping_length, n.dx, n.basis, 1).per_cell(), 3);
+    coarse_node = (2 * 32 + 16) *
+                  std::pow(AverageLayout<3>(n.damping_length, n.dx, n.basis, 1).per_cell(), 3);
   return particles * (state + indices + spare + (node + coarse_node) * nodes_per_particle);
 }
 

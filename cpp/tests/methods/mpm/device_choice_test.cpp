@@ -78,8 +78,9 @@ TEST(DeviceChoice, ParticlesThatDoNotFitAreRefusedWithBothNumbers) {
             "fewer particles or a larger dx");
   Settings affine;
   affine.transfer = Transfer::affine_flip;
-  EXPECT_EQ(message_of<snowshed::gpu::Unavailable>([&] { require_memory(card, affine, 1e6); })
-                .find("1e+06 particles need 0.263 GB"),
+  EXPECT_EQ(message_of<snowshed::gpu::Unavailable>([&] {
+              require_memory(card, affine, 1e6);
+            }).find("1e+06 particles need 0.263 GB"),
             0u);
 }
 

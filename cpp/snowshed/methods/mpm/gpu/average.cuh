@@ -63,8 +63,8 @@ __device__ inline void find_damping(const AverageArrays& a, int block, float sha
 
 }  // namespace snowshed::methods::mpm::gpu
 
-/// Adds mass and momentum of the listed blocks to the sums of the coarse grid: of the awake snow, if
-/// the step damps, or of the sleeping snow.
+/// Adds mass and momentum of the listed blocks to the sums of the coarse grid: of the awake snow,
+/// if the step damps, or of the sleeping snow.
 extern "C" __global__ void __launch_bounds__(128)
     scatter_average(snowshed::methods::mpm::gpu::ParticleLaunch l, std::int32_t asleep,
                     const snowshed::methods::mpm::gpu::Control* control,

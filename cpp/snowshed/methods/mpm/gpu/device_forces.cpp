@@ -7,8 +7,7 @@ namespace snowshed::methods::mpm::gpu {
 DeviceForces::DeviceForces(snowshed::gpu::Device& device, std::size_t obstacles)
     : obstacles_(obstacles), contacts_(device), blocks_(device), steps_(device) {
   if (obstacles_ > 0)
-    steps_.resize(std::size_t(steps_between_sorts) *
-                  std::size_t(recorded_values(int(obstacles_))));
+    steps_.resize(std::size_t(steps_between_sorts) * std::size_t(recorded_values(int(obstacles_))));
 }
 
 void DeviceForces::upload(HostState& state) {

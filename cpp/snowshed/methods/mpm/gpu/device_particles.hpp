@@ -11,7 +11,8 @@ class DeviceParticles {
  public:
   using HostParticles = Particles<float, 3>;
 
-  explicit DeviceParticles(snowshed::gpu::Device& device) : device_(device), spare_(device), some_(device) {}
+  explicit DeviceParticles(snowshed::gpu::Device& device)
+      : device_(device), spare_(device), some_(device) {}
 
   void upload(const HostParticles&);
   /// Overwrites the values of as many particles in the same order.

@@ -229,8 +229,8 @@ void DeviceSnow::launch_round() {
            contacts(), std::int32_t(contacts_.size()), friction_shares_.data(),
            static_cast<const Control*>(control_.data()));
   launch(device_, "node_step", {unsigned(active_.size()), node_threads}, grid(),
-         static_cast<const std::int32_t*>(active_.data()), contacts(), forces_.view(), control_.data(),
-         constants_);
+         static_cast<const std::int32_t*>(active_.data()), contacts(), forces_.view(),
+         control_.data(), constants_);
   launch(device_, "probe", {unsigned(awake_.size()), particle_threads},
          launch_of(awake_, integers_.data()), control_.data(), constants_);
   launch(device_, "judge_step", {1, 1}, control_.data(), constants_);
@@ -311,7 +311,8 @@ std::size_t DeviceSnow::bytes() const {
   std::size_t sum = particles_.bytes() + forces_.bytes() + average_.bytes();
   const auto add = [&](const auto&... arrays) { sum += (std::size_t(0) + ... + arrays.bytes()); };
   add(first_, around_, order_, strays_, awake_, asleep_blocks_, active_, idle_, listed_, integers_,
-      asleep_, carried_, force_, velocity_, change_, ranges_, first_contact_, contacts_, motions_, cell_ranges_);
+      asleep_, carried_, force_, velocity_, change_, ranges_, first_contact_, contacts_, motions_,
+      cell_ranges_);
   return sum;
 }
 

@@ -26,9 +26,9 @@ struct StepMemory {
   };
   GivenArrays<chunk<affine>, affine> given;
   std::int32_t around[neighbours];
-  std::int32_t first[tile_cells];  // the first particle of each cell, or -1
+  std::int32_t first[tile_cells];    // the first particle of each cell, or -1
   std::int16_t next[chunk<affine>];  // the next particle of the cell, or -1
-  std::int16_t cells[tile_cells];  // those with particles
+  std::int16_t cells[tile_cells];    // those with particles
   std::int32_t cell_count;
   float fastest, spin;
 };
@@ -100,7 +100,8 @@ __device__ inline void add_tile(const StepMemory<affine>& m, unsigned long long*
 
 /// Gives the particles of a chunk to the nodes, after `enter_cell`.
 template <bool affine>
-__device__ inline void give_chunk(StepMemory<affine>& m, const Units& units, unsigned long long* integers) {
+__device__ inline void give_chunk(StepMemory<affine>& m, const Units& units,
+                                  unsigned long long* integers) {
   const int t = int(threadIdx.x), threads = int(blockDim.x);
   for (int i = t; i < node_sums * 2 * sum_size; i += threads) (&m.sums[0][0][0])[i] = 0;
   for (int c = t; c < tile_cells; c += threads) {

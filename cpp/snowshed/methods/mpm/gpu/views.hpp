@@ -17,7 +17,7 @@ inline constexpr unsigned particle_threads = 128, node_threads = nodes_of_block;
 /// Particles, sorted by blocks; see mpm::ParticleView.
 struct ParticleArrays {
   float *cell[3], *velocity[3], *affine[9], *be_minus_identity[6];  // affine: null with FLIP
-  float* plastic;  // null with elastic snow alone
+  float* plastic;                                                   // null with elastic snow alone
   const float* mass;
   const std::uint8_t* material_id;  // null with one snow
 };
@@ -63,8 +63,8 @@ struct ForceArrays {
   double* steps;                  // `recorded_values` of each step since the host looked
 };
 
-/// Values of a step in the record of forces: its end and its length (s), and the impulse (3) of each
-/// obstacle on the snow, N s.
+/// Values of a step in the record of forces: its end and its length (s), and the impulse (3) of
+/// each obstacle on the snow, N s.
 constexpr int recorded_values(int obstacles) { return 2 + 3 * obstacles; }
 
 /// Sums of a coarse node, over which velocities are averaged: mass and momentum (3).
@@ -79,14 +79,14 @@ struct AverageBlock {
 
 /// The coarse grid; null pointers if there is none.
 struct AverageArrays {
-  const AverageBlock* blocks;     // one for each block of particles
-  const std::int32_t* around;     // the coarse blocks of each
-  std::int32_t around_size;       // room for those of a block
-  std::int32_t edge;              // coarse nodes around a block along each direction
-  float per_cell;                 // dx over the spacing
-  unsigned long long* integers;   // sums of the awake snow, as whole multiples of a unit
-  unsigned long long* asleep;     // of the snow that sleeps; null if none may
-  Quad* mean;                     // mean velocities
+  const AverageBlock* blocks;    // one for each block of particles
+  const std::int32_t* around;    // the coarse blocks of each
+  std::int32_t around_size;      // room for those of a block
+  std::int32_t edge;             // coarse nodes around a block along each direction
+  float per_cell;                // dx over the spacing
+  unsigned long long* integers;  // sums of the awake snow, as whole multiples of a unit
+  unsigned long long* asleep;    // of the snow that sleeps; null if none may
+  Quad* mean;                    // mean velocities
 };
 
 /// Arguments of the kernels of particles.
@@ -130,9 +130,9 @@ struct Control {
   double time, dt, last_dt;  // s; of the step being tried, and of the last one
   double until;              // s, at which the host wants to look
   double smallest_dt;        // s
-  double travel;         // m, by the fastest snow since the host looked
-  double travel_limit;   // m, after which the host must look
-  double undamped_time;  // s, of the steps since velocities were last damped over a length
+  double travel;             // m, by the fastest snow since the host looked
+  double travel_limit;       // m, after which the host must look
+  double undamped_time;      // s, of the steps since velocities were last damped over a length
   std::int64_t steps, rejected, undamped_steps;
   Phase phase;
   std::int32_t repeated;         // whether the step being tried has been shortened

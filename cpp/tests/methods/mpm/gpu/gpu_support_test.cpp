@@ -41,11 +41,12 @@ TEST(GpuSupport, NamesEachSetting) {
 TEST(GpuSupport, IsRefusedWithAllReasons) {
   Options o;
   o.settings.adopt(Scheme::objective);
+  o.energy = true;
   try {
     require_supported_on_gpu(o);
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_EQ(error.where(), "/numerics/scheme");
+    EXPECT_EQ(error.where(), "/numerics/fields");
     for (const std::string& path : paths(o))
       EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << path;
     EXPECT_NE(std::string(error.what()).find("numerics.device \"cpu\""), std::string::npos);

@@ -99,13 +99,15 @@ TEST(GpuTransfer, HasTheSameBitsInWhateverOrderTheThreadsRun) {
 
 TEST(GpuTransfer, ResumesToTheSameBits) {
   Options o = affine_options();
-  o.settings.sleep_speed = 0.5;
+  o.settings.sleep_speed = 2;
   o.settings.sleep_time = 0.01;
   const auto ground = fixed(geometry::make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::sticky);
   const auto solver = make_emulated(o, {ground});
   solver->add(filled_box(3, Vec3(0.013, 0.007, 0.012), Vec3(0.213, 0.207, 0.112), dx / 2));
-  solver->add(falling_snow());
-  solver->advance(0.03);
+  ParticleBatch beside = falling_snow();
+  for (Vec3& x : beside.positions) x[0] += 1;
+  solver->add(beside);
+  solver->advance(0.06);
   EXPECT_GT(solver->slept_updates(), 0);
   while (!solver->at_safe_point()) solver->step();
   const auto fresh = make_emulated(o, {ground});
