@@ -19,7 +19,7 @@ namespace {
 using gpu::Control;
 using gpu::Phase;
 
-/// Which nodes beside their block the particles of a block touch, as BlockStats::reach.
+/// Nodes beside their block that the particles of a block touch, as BlockStats::reach.
 int reach_of(const gpu::CellRange& cells) {
   int reach = 0;
   for (int d = 0; d < 3; ++d) {

@@ -72,7 +72,7 @@ inline constexpr int average_sums = 4;
 
 /// The coarse nodes around a block of particles.
 struct AverageBlock {
-  float origin[3];        // of the block past the first node, in spacings
+  float origin[3];        // origin of the block past the first node, in spacings
   std::int32_t shift[3];  // the first node in the first coarse block
   std::int32_t count[3];  // coarse blocks along each direction
 };
@@ -85,7 +85,7 @@ struct AverageArrays {
   std::int32_t edge;             // coarse nodes around a block along each direction
   float per_cell;                // dx over the spacing
   unsigned long long* integers;  // sums of the awake snow, as whole multiples of a unit
-  unsigned long long* asleep;    // of the snow that sleeps; null if none may
+  unsigned long long* asleep;    // sums of the sleeping snow; null if none may sleep
   Quad* mean;                    // mean velocities
 };
 

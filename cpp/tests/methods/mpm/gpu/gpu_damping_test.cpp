@@ -32,7 +32,7 @@ SnowState fall(Solver& solver, double time) {
   return snow_state(solver);
 }
 
-TEST(GpuDamping, IsThatOfTheProcessorOverAnyLength) {
+TEST(GpuDamping, AgreesWithTheProcessorOverAnyLength) {
   std::vector<SnowState> states;
   for (const double length : {0.3 * dx, dx, 2.7 * dx}) {
     SCOPED_TRACE(length);

@@ -60,7 +60,7 @@ void expect_same_record(Solver& a, Solver& b, double share) {
   }
 }
 
-TEST(GpuForces, RestingSlabWeighsWhatItWeighs) {
+TEST(GpuForces, RestingSlabHasItsWeight) {
   for (const double sleep_speed : {0.0, 0.05}) {
     SCOPED_TRACE(sleep_speed);
     const auto solver = make_emulated(recording(sleep_speed), {ground()});
@@ -92,7 +92,7 @@ TEST(GpuForces, HasTheRecordOfTheProcessor) {
   }
 }
 
-TEST(GpuForces, SleepingSnowGoesOnPressing) {
+TEST(GpuForces, SleepingSnowStillPresses) {
   const auto cpu = make_solver(recording(0.2), ground_and_stone(Condition::separate));
   const auto gpu = make_emulated(recording(0.2), ground_and_stone(Condition::separate));
   for (Solver* s : {cpu.get(), gpu.get()}) {
@@ -133,7 +133,7 @@ TEST(GpuForces, HaveTheSameBitsInWhateverOrderTheThreadsRun) {
   }
 }
 
-TEST(GpuForces, AreThoseOfTheProcessorAfterACheckpoint) {
+TEST(GpuForces, AgreeWithTheProcessorAfterACheckpoint) {
   const auto gpu = make_emulated(recording(), ground_and_stone(Condition::slip));
   gpu->add(flying_block());
   run_steps(*gpu, 60);

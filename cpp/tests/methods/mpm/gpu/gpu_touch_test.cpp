@@ -31,7 +31,7 @@ SnowState fall(Solver& solver, double time) {
   return snow_state(solver);
 }
 
-TEST(GpuTouch, IsThatOfTheProcessor) {
+TEST(GpuTouch, AgreesWithTheProcessor) {
   const auto cpu = make_solver(touching_options(), slope_and_plate());
   const auto gpu = make_emulated(touching_options(), slope_and_plate());
   const SnowState a = fall(*cpu, 0.035), b = fall(*gpu, 0.035);
@@ -73,7 +73,7 @@ TEST(GpuTouch, FollowsObstaclesInMotion) {
   EXPECT_LT(largest_distance(cpu->state(), gpu->state()), 1e-5);
 }
 
-/// What the host reads between steps does not change them.
+/// Reading the snow between steps does not change it.
 TEST(GpuTouch, HasTheSameBitsInWhateverOrderTheThreadsRun) {
   SnowState states[2];
   for (const Turns turns : {Turns::forwards, Turns::backwards}) {
