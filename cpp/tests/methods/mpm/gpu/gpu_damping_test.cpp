@@ -16,18 +16,18 @@ Options damped_options(double length = dx) {
   return o;
 }
 
-Obstacle ground() {
+Obstacle rough_ground() {
   return fixed(geometry::make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::separate, 0.3);
 }
 
-ParticleBatch falling_snow() {
+ParticleBatch snow_to_damp() {
   ParticleBatch batch = filled_box(3, Vec3(-0.113, -0.021, 0.02), Vec3(0.087, 0.179, 0.17), dx / 2);
   batch.velocity = Vec3(2, 0, -4);
   return batch;
 }
 
-SnowState fall(Solver& solver, double time) {
-  solver.add(falling_snow());
+SnowState fall_and_damp(Solver& solver, double time) {
+  solver.add(snow_to_damp());
   solver.advance(time);
   return snow_state(solver);
 }
@@ -36,9 +36,9 @@ TEST(GpuDamping, AgreesWithTheProcessorOverAnyLength) {
   std::vector<SnowState> states;
   for (const double length : {0.3 * dx, dx, 2.7 * dx}) {
     SCOPED_TRACE(length);
-    const auto cpu = make_solver(damped_options(length), {ground()});
-    const auto gpu = make_emulated(damped_options(length), {ground()});
-    const SnowState a = fall(*cpu, 0.025), b = fall(*gpu, 0.025);
+    const auto cpu = make_solver(damped_options(length), {rough_ground()});
+    const auto gpu = make_emulated(damped_options(length), {rough_ground()});
+    const SnowState a = fall_and_damp(*cpu, 0.025), b = fall_and_damp(*gpu, 0.025);
     EXPECT_LT(largest_distance(a, b), 1e-5);
     EXPECT_NEAR(mean(a.pressures), mean(b.pressures), 1e-3 * std::abs(mean(a.pressures)) + 0.05);
     states.push_back(b);
@@ -48,14 +48,14 @@ TEST(GpuDamping, AgreesWithTheProcessorOverAnyLength) {
 }
 
 TEST(GpuDamping, CountsTheStepsOfACheckpoint) {
-  const auto gpu = make_emulated(damped_options(), {ground()});
-  gpu->add(falling_snow());
+  const auto gpu = make_emulated(damped_options(), {rough_ground()});
+  gpu->add(snow_to_damp());
   run_steps(*gpu, 30);  // two steps after a damping
   const std::string file = testing::TempDir() + "gpu_damping.snow";
   io::BinaryWriter out;
   gpu->save(out);
   out.save(file);
-  const auto cpu = make_solver(damped_options(), {ground()});
+  const auto cpu = make_solver(damped_options(), {rough_ground()});
   cpu->load(io::BinaryReader::load(file));
   for (Solver* s : {cpu.get(), gpu.get()}) run_steps(*s, 3);
   EXPECT_LT(largest_distance(cpu->state(), gpu->state()), 1e-7);
@@ -66,8 +66,8 @@ TEST(GpuDamping, SleepingSnowTakesPart) {
   Options o = damped_options(2 * dx);
   o.settings.sleep_speed = 2;
   o.settings.sleep_time = 0.01;
-  const auto gpu = make_emulated(o, {ground()});
-  const auto cpu = make_solver(o, {ground()});
+  const auto gpu = make_emulated(o, {rough_ground()});
+  const auto cpu = make_solver(o, {rough_ground()});
   for (Solver* s : {gpu.get(), cpu.get()}) {
     s->add(filled_box(3, Vec3(0.013, 0.007, 0.012), Vec3(0.213, 0.207, 0.187), dx / 2));
     s->advance(0.1);
@@ -102,8 +102,8 @@ TEST(GpuDamping, DoesNotSlowLoneParticles) {
 TEST(GpuDamping, HasTheSameBitsInWhateverOrderTheThreadsRun) {
   SnowState states[2];
   for (const Turns turns : {Turns::forwards, Turns::backwards}) {
-    const auto solver = make_emulated(damped_options(), {ground()}, turns);
-    states[turns == Turns::backwards] = fall(*solver, 0.025);
+    const auto solver = make_emulated(damped_options(), {rough_ground()}, turns);
+    states[turns == Turns::backwards] = fall_and_damp(*solver, 0.025);
   }
   expect_same_bits(states[0], states[1]);
 }

@@ -23,7 +23,7 @@ std::vector<Obstacle> slope_and_plate() {
 }
 
 /// Takes the steps to a time (s) at once, so that the card must wait for the host.
-SnowState fall(Solver& solver, double time) {
+SnowState fall_onto_plate(Solver& solver, double time) {
   ParticleBatch block = filled_box(3, Vec3(0.05, 0, 0.22), Vec3(0.25, 0.2, 0.37), dx / 2);
   block.velocity = Vec3(2, 0, -3);
   solver.add(block);
@@ -34,11 +34,11 @@ SnowState fall(Solver& solver, double time) {
 TEST(GpuTouch, AgreesWithTheProcessor) {
   const auto cpu = make_solver(touching_options(), slope_and_plate());
   const auto gpu = make_emulated(touching_options(), slope_and_plate());
-  const SnowState a = fall(*cpu, 0.035), b = fall(*gpu, 0.035);
+  const SnowState a = fall_onto_plate(*cpu, 0.035), b = fall_onto_plate(*gpu, 0.035);
   EXPECT_LT(largest_distance(a, b), 1e-4);
   Options kernel = touching_options();
   kernel.settings.contact = ContactRule::kernel;
-  const SnowState other = fall(*make_emulated(kernel, slope_and_plate()), 0.035);
+  const SnowState other = fall_onto_plate(*make_emulated(kernel, slope_and_plate()), 0.035);
   EXPECT_GT(largest_distance(b, other), 2e-3);
 }
 
@@ -78,7 +78,7 @@ TEST(GpuTouch, HasTheSameBitsInWhateverOrderTheThreadsRun) {
   SnowState states[2];
   for (const Turns turns : {Turns::forwards, Turns::backwards}) {
     const auto solver = make_emulated(touching_options(), slope_and_plate(), turns);
-    fall(*solver, 0.01);
+    fall_onto_plate(*solver, 0.01);
     if (turns == Turns::backwards) solver->state();
     solver->advance(0.025);
     states[turns == Turns::backwards] = snow_state(*solver);
