@@ -129,7 +129,7 @@ class KeepsForces {
   /// The record, or null if the method was made without one.
   virtual const ObstacleForces* forces() const = 0;
   /// Begins the record of an event: peaks are those of this event.
-  virtual void begin_force_event() noexcept = 0;
+  virtual void begin_force_event() = 0;
   /// The impulses up to now, and the pressed areas since the last sample `duration` seconds ago.
   virtual std::vector<ForceSample> sample_forces(double duration) = 0;
   /// The forces now, as means over the vibrations of the snow. `at_rest`: no snow moves, so that

@@ -95,6 +95,8 @@ bool PressureMap::half_is_over(double time) const {
   return time - half_began_ >= half_window - rounding;
 }
 
+double PressureMap::half_end() const { return half_began_ + half_window; }
+
 void PressureMap::end_half(double time) noexcept {
   const double length = time - half_began_, window = half_before_ + length;
   if (!(window > 0)) return;

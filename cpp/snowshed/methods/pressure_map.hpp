@@ -56,6 +56,7 @@ class PressureMap {
 
   /// Whether half a window has passed, so that `end_half` must be called.
   bool half_is_over(double time) const;
+  double half_end() const;  ///< s, the time from which on it is over, to rounding
   /// Ends a half of a window: all impulses up to `time` have been added.
   void end_half(double time) noexcept;
 

@@ -147,6 +147,8 @@ class Contacts {
   const ContactForce<T>* forces_of(std::size_t block) const {
     return forces_.empty() ? nullptr : forces_.data() + first_[block];
   }
+  /// The forces of all contacts, block by block.
+  std::vector<ContactForce<T>>& all_forces() { return forces_; }
   /// Finds the patch of each contact that has none.
   void find_patches(const Boundary<T, D>& boundary, double time, PressureMap& pressures);
   /// Adds the impulses of the step that was just taken to the sums of a block's contacts.

@@ -121,7 +121,8 @@ CostEstimate estimate_cost(const Settings& n, const SceneView& scene, const Scen
   const double voxels = std::max(filled, nodes);
   estimate.bytes = per_particle * estimate.total_particles + per_voxel * voxels +
                    surroundings_bytes(n, outline, voxels);
-  if (n.device != DeviceSetting::cpu) estimate.card_bytes = bytes_on_gpu(estimate.total_particles);
+  if (n.device != DeviceSetting::cpu)
+    estimate.card_bytes = bytes_on_gpu(n, estimate.total_particles);
   return estimate;
 }
 

@@ -251,38 +251,58 @@ void State<T, D>::collect_vanishing_forces(const Model<T, D>& model,
   }
 }
 
-/// Moves the contacts with the obstacles in motion.
 template <class T, int D>
-void SolverImpl<T, D>::follow_obstacles() {
-  if (!model_.boundary.any_motion()) return;
-  if (state_.forces) state_.collect_forces(model_);  // contacts may vanish
-  state_.contacts.follow(model_.boundary, time(), threads());
-  if (state_.forces)
-    state_.contacts.find_patches(model_.boundary, time(), state_.forces->forces.pressures());
+void State<T, D>::follow_obstacles(const Model<T, D>& model, int threads) {
+  if (!model.boundary.any_motion()) return;
+  if (forces) collect_forces(model);  // contacts may vanish
+  contacts.follow(model.boundary, totals.time, threads);
+  if (forces) contacts.find_patches(model.boundary, totals.time, forces->forces.pressures());
 }
 
-/// Finds the forces of the snow that sleeps from now on. Nodes that no snow reaches have none.
 template <class T, int D>
-void SolverImpl<T, D>::hold_sleeping_forces() noexcept {
-  std::fill(state_.forces->held.begin(), state_.forces->held.end(), ContactImpulse());
-  for (const std::int32_t g : state_.sleep.idle()) {
-    const int count = state_.contacts.count(std::size_t(g));
+void State<T, D>::hold_sleeping_forces(const Model<T, D>& model,
+                                       const std::function<bool(std::int32_t)>& reached) noexcept {
+  std::fill(forces->held.begin(), forces->held.end(), ContactImpulse());
+  for (const std::int32_t g : sleep.idle()) {
+    const int count = contacts.count(std::size_t(g));
     if (count == 0) continue;
-    const T* tiles[neighbour_count<D>];
-    const bool reached = workspace_.grid.tiles_reaching(state_.layout, std::size_t(g), tiles);
-    const BlockCoord<D> block = block_coord<D>(state_.layout.grid_blocks[g]);
-    const Contact<T>* contact = state_.contacts.of_block(std::size_t(g));
-    ContactForce<T>* force = state_.contacts.forces_of(std::size_t(g));
+    const bool has_snow = reached(g);
+    const BlockCoord<D> block = block_coord<D>(layout.grid_blocks[g]);
+    const Contact<T>* contact = contacts.of_block(std::size_t(g));
+    ContactForce<T>* force = contacts.forces_of(std::size_t(g));
     for (int k = 0; k < count; ++k) {
-      if (!reached) {
+      if (!has_snow) {  // and hence no force
         force[k].age = 0;
         std::fill_n(force[k].mean, D, T(0));
       } else if (force[k].age > T(0)) {
-        state_.forces->held[state_.forces->forces.name_of(contact[k].obstacle)] +=
-            mean_force<T, D>(block, contact[k], force[k], model_.options.settings.dx);
+        forces->held[forces->forces.name_of(contact[k].obstacle)] +=
+            mean_force<T, D>(block, contact[k], force[k], model.options.settings.dx);
       }
     }
   }
+}
+
+template <class T, int D>
+void State<T, D>::end_force_step(double time, double dt) noexcept {
+  if (sleep.awake().size() < sleep.states().size()) forces->slept = true;
+  for (std::size_t name = 0; name < forces->held.size(); ++name)
+    forces->forces.add_step(name, dt * forces->held[name].total());
+  forces->forces.end_step(time, dt);
+}
+
+template <class T, int D>
+void State<T, D>::end_pressure_half(const Model<T, D>& model) noexcept {
+  if (!forces->forces.pressures().half_is_over(totals.time)) return;
+  collect_forces(model);
+  forces->forces.pressures().end_half(totals.time);
+}
+
+template <class T, int D>
+void SolverImpl<T, D>::hold_sleeping_forces() noexcept {
+  state_.hold_sleeping_forces(model_, [this](std::int32_t g) {
+    const T* tiles[neighbour_count<D>];
+    return workspace_.grid.tiles_reaching(state_.layout, std::size_t(g), tiles);
+  });
 }
 
 /// Records the forces of a step that was taken.
@@ -290,7 +310,6 @@ template <class T, int D>
 void SolverImpl<T, D>::record_forces(double dt) noexcept {
   if (!state_.forces) return;
   ObstacleForces& forces = state_.forces->forces;
-  if (state_.sleep.awake().size() < state_.sleep.states().size()) state_.forces->slept = true;
   for (const std::int32_t g : state_.sleep.active()) {
     const std::int32_t only = state_.contacts.only_obstacle(std::size_t(g));
     if (only == -1 || !workspace_.grid.touched[g]) continue;
@@ -304,12 +323,8 @@ void SolverImpl<T, D>::record_forces(double dt) noexcept {
       forces.add_step(forces.name_of(state_.contacts.of_block(std::size_t(g))[k].obstacle),
                       -vector_of<D>(state_.contacts.forces_of(std::size_t(g))[k].impulse));
   }
-  for (std::size_t name = 0; name < state_.forces->held.size(); ++name)
-    forces.add_step(name, dt * state_.forces->held[name].total());
-  forces.end_step(time(), dt);
-  if (!forces.pressures().half_is_over(time())) return;
-  state_.collect_forces(model_);
-  forces.pressures().end_half(time());
+  state_.end_force_step(time(), dt);
+  state_.end_pressure_half(model_);
 }
 
 // --- samples -------------------------------------------------------------------------------------

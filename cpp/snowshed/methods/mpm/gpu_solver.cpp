@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -18,6 +19,16 @@ namespace {
 using gpu::Control;
 using gpu::Phase;
 
+/// Nodes beside their block that the particles of a block touch, as BlockStats::reach.
+int reach_of(const gpu::CellRange& cells) {
+  int reach = 0;
+  for (int d = 0; d < 3; ++d) {
+    if (cells.low[d] < 0) reach |= below(d);
+    if (cells.high[d] + support(Basis::quadratic) > gpu::edge) reach |= above(d);
+  }
+  return reach;
+}
+
 /// `host_` has the state in the form of all other calls; between them and the steps, the particles
 /// go to the device and back.
 class GpuSolver final : public Solver, public AdvancesUnwatched {
@@ -25,7 +36,8 @@ class GpuSolver final : public Solver, public AdvancesUnwatched {
   GpuSolver(Options options, std::shared_ptr<snowshed::gpu::Device> device)
       : device_(std::move(device)),
         host_(std::make_unique<SolverImpl<float, 3>>(std::move(options))),
-        snow_(*device_, host_->model()) {}
+        snow_(*device_, host_->model()),
+        touch_(Basis::quadratic) {}
 
   using Method::add;
   void add(const std::vector<ParticleBatch>& batches, const StopRequest& stop) override {
@@ -58,12 +70,17 @@ class GpuSolver final : public Solver, public AdvancesUnwatched {
   MotionSummary motion(double speed) const override { return current().motion(speed); }
   NamedEnergies energies() const override { return current().energies(); }
   const ObstacleForces* forces() const override { return host_->forces(); }
-  void begin_force_event() noexcept override { host_->begin_force_event(); }
+  void begin_force_event() override {
+    with_contacts([this] { host_->begin_force_event(); });
+  }
   std::vector<ForceSample> sample_forces(double duration) override {
-    return host_->sample_forces(duration);
+    std::vector<ForceSample> samples;
+    current();
+    with_contacts([&] { samples = host_->sample_forces(duration); });
+    return samples;
   }
   RestingForces resting_forces(bool at_rest) const override {
-    return host_->resting_forces(at_rest);
+    return current().resting_forces(at_rest);
   }
   std::int64_t sorts() const override { return host_->sorts(); }
   std::int64_t slept_updates() const override { return host_->slept_updates(); }
@@ -86,8 +103,20 @@ class GpuSolver final : public Solver, public AdvancesUnwatched {
     return solver;
   }
 
+  /// Calls f with the host's contacts up to date. The device adopts the changes by f.
+  template <class F>
+  void with_contacts(const F& f) {
+    if (device_has_snow_) snow_.download_contacts(host_->state_for_device());
+    f();
+    if (device_has_snow_) snow_.upload_contacts(host_->state_for_device());
+  }
+
   void take_steps(double until, std::int32_t steps);
   void prepare();
+  void record_forces(std::int64_t steps);
+  void hold_sleeping_forces();
+  void update_touch();
+  double end_of_batch(double until) const;
   Control begin_batch(double until, std::int32_t steps);
   void end_batch(const Control& control);
   [[noreturn]] void fail(Control control);
@@ -97,6 +126,7 @@ class GpuSolver final : public Solver, public AdvancesUnwatched {
   std::shared_ptr<snowshed::gpu::Device> device_;
   std::unique_ptr<SolverImpl<float, 3>> host_;
   gpu::DeviceSnow snow_;
+  Touch<float, 3> touch_;  // contact by touch, if the settings ask for it
   Control control_{};
   mutable bool device_is_ahead_ = false;  // whether its particles are newer than the host's
   bool device_has_snow_ = false;          // whether it has the snow of the host's state
@@ -116,6 +146,8 @@ void GpuSolver::prepare() {
   control_.speed_squared = float(state.totals.speed * state.totals.speed);
   control_.phase = Phase::waiting;
   snow_.scatter(control_);
+  if (state.forces) with_contacts([this] { hold_sleeping_forces(); });
+  if (host_->model().touches()) touch_.forget(host_->model(), state);
   since_sort_ = 0;
   until_sort_ = steps_until_sort(state.particles.size(), state.contacts.size());
 }
@@ -132,21 +164,40 @@ std::int32_t GpuSolver::steps_to_the_next_check() const {
 Control GpuSolver::begin_batch(double until, std::int32_t steps) {
   device_is_ahead_ = true;
   State<float, 3>& state = host_->state_for_device();
-  if (host_->model().boundary.any_motion()) {
-    snow_.download_contacts(state);
-    state.contacts.follow(host_->model().boundary, time(), host_->model().max_threads);
-    snow_.upload_contacts(state);
-  }
+  if (host_->model().boundary.any_motion())
+    with_contacts([&] { state.follow_obstacles(host_->model(), host_->model().max_threads); });
+  if (host_->model().touches()) update_touch();
   Control c = control_;
+  c.travel = 0;
+  c.travel_limit = std::numeric_limits<double>::infinity();
+  if (host_->model().touches()) c.travel_limit = touch_.reserve(state);
   c.time = time();
-  c.until = until;
+  c.until = end_of_batch(until);
   c.smallest_dt = counters().smallest_dt;
   c.steps = counters().steps;
   c.rejected = counters().rejected;
+  c.undamped_steps = state.totals.undamped_steps;
+  c.undamped_time = state.totals.undamped_time;
   c.steps_left = steps;
+  c.taken = 0;
   c.must_sort = 0;
   c.unsound = gpu::no_particle;
   return c;
+}
+
+/// Finds the contacts that act, where snow may have moved far enough. The particles of the blocks
+/// around obstacles come to the host.
+void GpuSolver::update_touch() {
+  const Model<float, 3>& model = host_->model();
+  State<float, 3>& state = host_->state_for_device();
+  const std::vector<std::int32_t> due = touch_.due_blocks(model, state);
+  if (due.empty()) return;
+  const std::vector<std::int32_t> touching = touch_.touching_blocks();
+  std::vector<std::int32_t> needed;
+  std::set_union(due.begin(), due.end(), touching.begin(), touching.end(),
+                 std::back_inserter(needed));
+  snow_.download_blocks(state, needed);
+  with_contacts([&] { touch_.measure(model, state, due, model.max_threads); });
 }
 
 void GpuSolver::take_steps(double until, std::int32_t steps) {
@@ -158,7 +209,7 @@ void GpuSolver::take_steps(double until, std::int32_t steps) {
     const std::int64_t before = counters().steps;
     control_ = begin_batch(until, batch);
     // All at once, unless the time is over before.
-    const double left = (until - time()) / std::max(control_.last_dt, 1e-12);
+    const double left = (control_.until - time()) / std::max(control_.last_dt, 1e-12);
     int rounds = int(std::min(double(batch), std::max(left + 1, 1.0)));
     do {
       snow_.run(control_, rounds);
@@ -179,20 +230,55 @@ void GpuSolver::end_batch(const Control& c) {
   totals.counters.steps = c.steps;
   if (c.phase != Phase::stuck) totals.counters.rejected = c.rejected;
   totals.counters.smallest_dt = c.smallest_dt;
+  totals.undamped_steps = c.undamped_steps;
+  totals.undamped_time = c.undamped_time;
   totals.counters.particle_updates += steps * awake;
   totals.slept_updates += steps * (std::int64_t(size()) - awake);
+  record_forces(steps);
+  touch_.travel(c.travel);
   since_sort_ += int(steps);
   if (c.must_sort || since_sort_ >= until_sort_) since_sort_ = -1;
   if (c.phase == Phase::stuck || c.phase == Phase::unsound) fail(c);
   update_sleep();
 }
 
+/// Returns the time at which the host must look, at the latest.
+double GpuSolver::end_of_batch(double until) const {
+  const std::optional<ForceRecord>& forces = host_->state_of_device().forces;
+  if (!forces) return until;
+  const double end = forces->forces.pressures().half_end();
+  return end > time() ? std::min(until, end) : until;
+}
+
+/// Gives the host's record the steps of a batch.
+void GpuSolver::record_forces(std::int64_t steps) {
+  State<float, 3>& state = host_->state_for_device();
+  if (!state.forces || steps == 0) return;
+  snow_.replay_forces(state, steps);
+  if (state.forces->forces.pressures().half_is_over(time()))
+    with_contacts([&] { state.end_pressure_half(host_->model()); });
+}
+
+void GpuSolver::hold_sleeping_forces() {
+  State<float, 3>& state = host_->state_for_device();
+  std::vector<gpu::CellRange> ranges;
+  if (!state.sleep.idle().empty()) ranges = snow_.cell_ranges_asleep();
+  state.hold_sleeping_forces(host_->model(), [&](std::int32_t g) {
+    const auto& around = state.layout.around_nodes[std::size_t(g)];
+    for (int k = 0; k < gpu::neighbours; ++k)
+      if (around[k] >= 0 &&
+          reaches<3>(reach_of(ranges[std::size_t(around[k])]), gpu::neighbours - 1 - k))
+        return true;
+    return false;
+  });
+}
+
 void GpuSolver::fail(Control c) {
   SolverImpl<float, 3>& solver = edited();
   control_ = {};
   if (c.phase == Phase::unsound) solver.fail_at(c.unsound);
-  for (Contact<float>& contact : solver.state_for_device().contacts.all())
-    contact.next_normal_impulse = contact.normal_impulse;
+  State<float, 3>& state = solver.state_for_device();
+  for (std::size_t g = 0; g < state.layout.grid_blocks.size(); ++g) state.contacts.reject(g);
   throw SimulationError(describe_stuck(c.dt, c.time, double(c.strain_of_step),
                                        solver.model().options.settings.strain_limit));
 }
@@ -224,12 +310,18 @@ void GpuSolver::update_sleep() {
   };
   probe.holds_its_snow = [&](std::int32_t b) { return motions[b].holds_its_snow != 0; };
   const std::int64_t awake = state.sleep.awake_particles();
+  const std::vector<std::int32_t> idle = state.sleep.idle();
   const std::vector<std::int32_t> asleep =
       state.sleep.update(state.layout, time(), steps_between_checks, time_step(), probe);
   if (asleep.empty() && awake == state.sleep.awake_particles()) return;
   snow_.stop(asleep);
   snow_.upload_sleep(state);
   if (since_sort_ >= 0) snow_.scatter(control_);
+  if (!state.forces || idle == state.sleep.idle()) return;
+  with_contacts([&] {
+    state.collect_forces(host_->model(), idle);
+    hold_sleeping_forces();
+  });
 }
 
 }  // namespace

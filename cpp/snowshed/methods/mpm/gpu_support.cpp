@@ -1,9 +1,10 @@
 #include "snowshed/methods/mpm/gpu_support.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "snowshed/core/errors.hpp"
-#include "snowshed/methods/mpm/describe.hpp"
+#include "snowshed/methods/mpm/average_layout.hpp"
 
 namespace snowshed::methods::mpm {
 std::vector<Unsupported> unsupported_on_gpu(const Options& o) {
@@ -18,17 +19,9 @@ std::vector<Unsupported> unsupported_on_gpu(const Options& o) {
   };
   refuse(o.dimension != 3, "/dimension", "is 2", "3");
   refuse(n.precision != Precision::float32, "/numerics/precision", "is \"double\"", "\"float\"");
-  refuse(n.scheme != Scheme::thesis, "/numerics/scheme", "is \"objective\"", "\"thesis\"");
-  refuse(n.transfer != Transfer::flip, "/numerics/transfer",
-         "is \"" + std::string(name_of(n.transfer)) + "\"", "\"flip\"");
   refuse(n.basis != Basis::quadratic, "/numerics/basis", "is \"cubic\"", "\"quadratic\"");
-  refuse(n.contact != ContactRule::kernel, "/numerics/contact", "is \"touch\"", "\"kernel\"");
   refuse(n.fields != Fields::one, "/numerics/fields", "is \"events\"", "\"one\"");
-  refuse(n.damps_over_length(), "/numerics/damping_length", "is a length", "0");
-  refuse(n.crack_band_length > 0, "/numerics/crack_band_length", "is a length", "0");
-  refuse(n.relaxation_time > 0, "/numerics/relaxation_time", "is a time", "0");
   refuse(o.energy, "/output/energy", "is true", "false");
-  refuse(o.forces, "/output/forces", "is true", "false");
   const bool own_friction =
       std::any_of(o.obstacles.begin(), o.obstacles.end(),
                   [](const Obstacle& obstacle) { return obstacle.law.coefficient != nullptr; });
@@ -48,10 +41,15 @@ void require_supported_on_gpu(const Options& options) {
 
 /// The state, the indices of strays and of the order, and a spare array; and the nodes, for blocks
 /// that are not quite full, of a slab that is five cells thick.
-double bytes_on_gpu(double particles) {
-  constexpr double state = 15 * 4 + 4 + 2 + 1, indices = 8, spare = 4;
+double bytes_on_gpu(const Settings& n, double particles) {
+  constexpr double indices = 8, spare = 4;
+  const double state = 15 * 4 + 4 + 2 + 1 + (n.has_affine() ? 9 * 4 : 0);
   constexpr double node = 2 * 64 + 3 * 16 + 8 + 0.4, nodes_per_particle = 0.8;
-  return particles * (state + indices + spare + node * nodes_per_particle);
+  double coarse_node = 0;  // for each node of the grid
+  if (n.damps_over_length())
+    coarse_node = (2 * 32 + 16) *
+                  std::pow(AverageLayout<3>(n.damping_length, n.dx, n.basis, 1).per_cell(), 3);
+  return particles * (state + indices + spare + (node + coarse_node) * nodes_per_particle);
 }
 
 snowshed::gpu::KernelProgram gpu_kernels() {

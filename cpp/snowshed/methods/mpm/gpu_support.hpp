@@ -21,7 +21,7 @@ std::vector<Unsupported> unsupported_on_gpu(const Options&);
 void require_supported_on_gpu(const Options&);
 
 /// Memory of a card that this many particles need with their grid, bytes.
-double bytes_on_gpu(double particles);
+double bytes_on_gpu(const Settings&, double particles);
 
 /// The kernels of a simulation.
 snowshed::gpu::KernelProgram gpu_kernels();

@@ -133,7 +133,7 @@ void SolverImpl<T, D>::scatter_block(const StepParameters<T>& step, const Partic
 /// First half of a step: the node sums and, in the same loop, the node velocities for a step of dt.
 template <class T, int D>
 void SolverImpl<T, D>::gather_and_update(double dt) {
-  follow_obstacles();
+  state_.follow_obstacles(model_, threads());
   if (model_.touches())
     workspace_.touch.update(model_, state_, state_.totals.speed * state_.totals.dt, threads());
   if (model_.boundary.any_slip()) state_.contacts.find_friction_shares(workspace_.friction_shares);
@@ -337,7 +337,7 @@ void SolverImpl<T, D>::g2p2g(double dt) {
 
 template <class T, int D>
 bool SolverImpl<T, D>::damps_next() const {
-  return workspace_.average && state_.totals.undamped_steps + 1 >= steps_between_averages;
+  return workspace_.average && damps_after(state_.totals.undamped_steps);
 }
 
 /// Averages the particles' velocities. The step of dt that follows damps them, and makes up for the
@@ -345,7 +345,7 @@ bool SolverImpl<T, D>::damps_next() const {
 template <class T, int D>
 void SolverImpl<T, D>::average_velocities(double dt) noexcept {
   const double rate = model_.options.settings.damping_rate.value_or(0.0);
-  const double share = -std::expm1(-rate * (state_.totals.undamped_time + dt));
+  const double share = damped_share(rate, state_.totals.undamped_time + dt);
   workspace_.average->update(model_.kernels, state_.particles.view(), state_.layout, state_.sleep,
                              share, threads());
 }

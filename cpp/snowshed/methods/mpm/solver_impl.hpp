@@ -113,7 +113,6 @@ class SolverImpl final : public Solver {
   void average_velocities(double dt) noexcept;
   void record_step(double dt) noexcept;
   void record_damping(double dt) noexcept;
-  void follow_obstacles();
   void record_forces(double dt) noexcept;
   void hold_sleeping_forces() noexcept;
   void update_sleep() noexcept;

@@ -112,6 +112,16 @@ struct State {
   /// Collects the impulses of contacts in blocks that are not among `next`.
   void collect_vanishing_forces(const Model<T, D>& model,
                                 const std::vector<BlockKey>& next) noexcept;
+  /// Moves the contacts with the obstacles in motion.
+  void follow_obstacles(const Model<T, D>& model, int threads);
+  /// Finds the forces of the snow that sleeps from now on. `reached` tells of an idle grid block
+  /// whether snow reaches its nodes.
+  void hold_sleeping_forces(const Model<T, D>& model,
+                            const std::function<bool(std::int32_t)>& reached) noexcept;
+  /// Records the forces of a step of dt that ended at `time`, after the impulses of awake snow.
+  void end_force_step(double time, double dt) noexcept;
+  /// Ends half a window of pressures if it is over.
+  void end_pressure_half(const Model<T, D>& model) noexcept;
   double kinetic_energy(const Model<T, D>& model) const;
   double gravitational_energy(const Model<T, D>& model) const;
   double elastic_energy(const Model<T, D>& model) const;

@@ -58,17 +58,39 @@ void Touch<T, D>::forget(const Model<T, D>& model, const State<T, D>& state) {
 }
 
 template <class T, int D>
-void Touch<T, D>::update(const Model<T, D>& model, State<T, D>& state, double moved, int threads) {
-  travel_ += moved;
+std::vector<std::int32_t> Touch<T, D>::due_blocks(const Model<T, D>& model,
+                                                  const State<T, D>& state) const {
   const bool all = !measured_ || model.boundary.any_motion();
-  std::vector<std::int32_t> due_blocks;
+  std::vector<std::int32_t> due;
   for (std::size_t b = 0; b < blocks_.size(); ++b)
     if (all || (travel_ >= blocks_[b].next && !state.sleep.states()[b].asleep))
-      due_blocks.push_back(std::int32_t(b));
-  if (due_blocks.empty()) return;
+      due.push_back(std::int32_t(b));
+  return due;
+}
+
+template <class T, int D>
+std::vector<std::int32_t> Touch<T, D>::touching_blocks() const {
+  std::vector<std::int32_t> touching;
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    if (!blocks_[b].touching_particles.empty()) touching.push_back(std::int32_t(b));
+  return touching;
+}
+
+template <class T, int D>
+double Touch<T, D>::reserve(const State<T, D>& state) const {
+  double next = geometry::infinity;
+  for (const std::int32_t b : state.sleep.awake())
+    next = std::min(next, blocks_[std::size_t(b)].next);
+  return next - travel_;
+}
+
+template <class T, int D>
+void Touch<T, D>::measure(const Model<T, D>& model, State<T, D>& state,
+                          const std::vector<std::int32_t>& blocks, int threads) {
+  if (blocks.empty()) return;
   measured_ = false;  // stays false if this throws
-  parallel_for_dynamic(std::ptrdiff_t(due_blocks.size()), threads, 4,
-                       [&](std::ptrdiff_t i) { measure(model, state, due_blocks[i]); });
+  parallel_for_dynamic(std::ptrdiff_t(blocks.size()), threads, 4,
+                       [&](std::ptrdiff_t i) { measure(model, state, blocks[std::size_t(i)]); });
   parallel_for_dynamic(std::ptrdiff_t(state.layout.grid_blocks.size()), threads, 16,
                        [&](std::ptrdiff_t g) { mark(model, state, std::int32_t(g)); });
   measured_ = true;

@@ -27,7 +27,24 @@ class Touch {
 
   /// Decides for each contact whether it acts. `moved` is the distance (m) by which the fastest
   /// snow has moved since the last call.
-  void update(const Model<T, D>& model, State<T, D>& state, double moved, int threads);
+  void update(const Model<T, D>& model, State<T, D>& state, double moved, int threads) {
+    travel(moved);
+    measure(model, state, due_blocks(model, state), threads);
+  }
+
+  // --- the parts of `update`, for particles in the memory of a device ---------------------------
+
+  void travel(double moved) { travel_ += moved; }
+  /// The blocks whose distances must be measured.
+  std::vector<std::int32_t> due_blocks(const Model<T, D>& model, const State<T, D>& state) const;
+  /// Blocks with particles that touch an obstacle.
+  std::vector<std::int32_t> touching_blocks() const;
+  /// Measures the listed blocks, and decides for each contact whether it acts. Looks at the
+  /// particles of these blocks and of the touching ones.
+  void measure(const Model<T, D>& model, State<T, D>& state,
+               const std::vector<std::int32_t>& blocks, int threads);
+  /// The distance (m) by which the fastest snow may move before a block must be measured.
+  double reserve(const State<T, D>& state) const;
 
  private:
   /// A particle that touches an obstacle.

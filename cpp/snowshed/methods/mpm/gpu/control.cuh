@@ -1,6 +1,7 @@
 // The course of a step, decided on the device: its length, whether it must be shorter, its end.
 #pragma once
 
+#include "snowshed/methods/mpm/average_rule.hpp"
 #include "snowshed/methods/mpm/gpu/views.hpp"
 #include "snowshed/methods/mpm/step_length.hpp"
 
@@ -27,12 +28,14 @@ __device__ inline float power_of_two_above(float x) {
 inline constexpr int unit_bits = 38;
 
 /// Returns the unit of the momentum of particles that a step moves. A particle's velocity becomes a
-/// mean of node velocities, and of its velocity before plus a mean of the nodes' changes.
+/// mean of node velocities, and of its velocity before plus a mean of the nodes' changes. The nodes
+/// had the velocities of particles and their affine velocities times an arm. (With its weight, the
+/// new affine velocity adds less than the fastest node.)
 __device__ inline float momentum_unit(const Control& c, const Constants& k) {
   float fastest = 0;
   for (int d = 0; d < 3; ++d)
     fastest = ::fmaxf(fastest, ::fmaxf(-from_ordered(c.low[d]), from_ordered(c.high[d])));
-  const float bound = 2 * (::sqrtf(c.speed_squared) + fastest);
+  const float bound = 2 * (::sqrtf(c.speed_squared) + fastest) + arm * c.spin * float(k.dx);
   return k.mass_unit * power_of_two_above(::fminf(::fmaxf(bound, 1e-12f), 1e12f));
 }
 
@@ -68,13 +71,25 @@ __device__ inline void clear_range(Control& c) {
   c.strain = 0;
 }
 
+/// The speed of the fastest snow in the last step, m/s.
+__device__ inline double largest_speed(const Control& c) {
+  return double(::sqrtf(c.speed_squared));
+}
+
 /// Records a step that was taken.
-__device__ inline void record_step(Control& c) {
+__device__ inline void record_step(Control& c, const Constants& k) {
+  if (k.average_share > 0) {
+    const bool damped = damps_after(c.undamped_steps);
+    c.undamped_steps = damped ? 0 : c.undamped_steps + 1;
+    c.undamped_time = damped ? 0.0 : c.undamped_time + c.dt;
+  }
   c.time += c.dt;
+  c.travel += largest_speed(c) * c.dt;
   c.last_dt = c.dt;
   c.smallest_dt = c.dt < c.smallest_dt ? c.dt : c.smallest_dt;
   ++c.steps;
   --c.steps_left;
+  ++c.taken;
   c.strays = 0;
   c.phase = c.unsound != no_particle ? Phase::unsound : Phase::waiting;
 }
@@ -84,10 +99,10 @@ __device__ inline void begin_step(Control& c, const Constants& k) {
   if (c.phase == Phase::too_long) {
     c.repeated = 1;
   } else {
-    if (!(c.time < c.until) || c.steps_left <= 0 || c.must_sort) return;
+    if (!(c.time < c.until) || c.steps_left <= 0 || c.must_sort || c.travel >= c.travel_limit)
+      return;
     c.repeated = 0;
-    c.dt =
-        next_time_step(k.elastic_limit, double(::sqrtf(c.speed_squared)), k.dx, k.courant_factor);
+    c.dt = next_time_step(k.elastic_limit, largest_speed(c), k.dx, k.courant_factor);
   }
   clear_range(c);
   c.phase = Phase::trying;
@@ -101,6 +116,7 @@ __device__ inline void judge(Control& c, const Constants& k) {
   if (strain <= k.strain_limit) {
     c.momentum_unit = momentum_unit(c, k);
     c.speed_squared = 0;
+    c.spin = 0;
     c.phase = Phase::accepted;
     return;
   }
@@ -116,7 +132,7 @@ __device__ inline void judge(Control& c, const Constants& k) {
 extern "C" __global__ void next_step(snowshed::methods::mpm::gpu::Control* control,
                                      snowshed::methods::mpm::gpu::Constants constants) {
   using namespace snowshed::methods::mpm::gpu;
-  if (control->phase == Phase::accepted) record_step(*control);
+  if (control->phase == Phase::accepted) record_step(*control, constants);
   if (control->phase == Phase::waiting || control->phase == Phase::too_long)
     begin_step(*control, constants);
 }

@@ -11,11 +11,15 @@ class DeviceParticles {
  public:
   using HostParticles = Particles<float, 3>;
 
-  explicit DeviceParticles(snowshed::gpu::Device& device) : device_(device), spare_(device) {}
+  explicit DeviceParticles(snowshed::gpu::Device& device)
+      : device_(device), spare_(device), some_(device) {}
 
   void upload(const HostParticles&);
   /// Overwrites the values of as many particles in the same order.
   void download(HostParticles&) const;
+
+  /// Overwrites the values of some particles, and leaves those of the others.
+  void download(HostParticles&, const std::vector<std::int32_t>& some);
 
   std::size_t size() const { return size_; }
   std::size_t bytes() const;
@@ -29,13 +33,15 @@ class DeviceParticles {
     std::size_t value_bytes;
     DeviceArray<std::uint8_t> values;
   };
+  void launch_permute(const Array&, const DeviceArray<std::int32_t>& order, std::size_t count);
   void* array(std::size_t& next) const { return arrays_[next++].values.data(); }
 
   snowshed::gpu::Device& device_;
   std::vector<Array> arrays_;  // in the order of Particles::for_each_array
   DeviceArray<std::uint8_t> spare_;
+  DeviceArray<std::int32_t> some_;
   std::size_t size_ = 0;
-  bool has_plastic_ = false, has_material_id_ = false;
+  bool has_affine_ = false, has_plastic_ = false, has_material_id_ = false;
 };
 
 }  // namespace snowshed::methods::mpm::gpu

@@ -28,6 +28,8 @@ DeviceSnow::DeviceSnow(snowshed::gpu::Device& device, const Model<float, 3>& mod
     : device_(device),
       model_(model),
       particles_(device),
+      forces_(device, model.options.forces ? model.boundary.size() : 0),
+      average_(device, model.options.settings),
       first_(device),
       around_(device),
       order_(device),
@@ -51,6 +53,7 @@ DeviceSnow::DeviceSnow(snowshed::gpu::Device& device, const Model<float, 3>& mod
       contacts_(device),
       snows_(device),
       motions_(device),
+      cell_ranges_(device),
       control_(device) {
   const Settings& n = model.options.settings;
   constants_.courant_factor = n.courant_factor;
@@ -58,8 +61,13 @@ DeviceSnow::DeviceSnow(snowshed::gpu::Device& device, const Model<float, 3>& mod
   constants_.dx = n.dx;
   constants_.friction_reach = friction_reach * n.dx;
   constants_.gravity = float(model.options.gravity);
-  constants_.flip_ratio = float(n.flip_ratio);
-  constants_.damping_rate = float(n.damping_rate.value_or(-1.0));
+  constants_.relaxation_time = n.relaxation_time;
+  constants_.average_rate = n.damping_rate.value_or(0.0);
+  constants_.average_share = average_.share_of_length();
+  // The share of FLIP does not depend on the step, unless there is a rate.
+  const bool has_rate = n.damping_rate && !n.damps_over_length() && n.transfer != Transfer::apic;
+  constants_.damping_rate = float(has_rate ? *n.damping_rate : -1.0);
+  constants_.flip_ratio = float(n.transfer == Transfer::apic ? 0.0 : n.flip_share(0.0));
   constants_.snow = model.constants.front();
   snows_.upload(model.constants);
   constants_.snows = snows_.data();
@@ -76,7 +84,7 @@ DeviceSnow::DeviceSnow(snowshed::gpu::Device& device, const Model<float, 3>& mod
   control_.resize(1);
 }
 
-void DeviceSnow::upload(const HostState& state) {
+void DeviceSnow::upload(HostState& state) {
   particles_.upload(state.particles);
   strays_.resize(particles_.size());
   find_units(state);
@@ -97,7 +105,7 @@ void DeviceSnow::find_units(const HostState& state) {
   constants_.friction_memory = state.friction_memory;
 }
 
-void DeviceSnow::upload_layout(const HostState& state) {
+void DeviceSnow::upload_layout(HostState& state) {
   const BlockLayout<3>& layout = state.layout;
   blocks_ = std::int32_t(layout.particle_blocks.size());
   first_.upload(layout.first);
@@ -109,11 +117,12 @@ void DeviceSnow::upload_layout(const HostState& state) {
   change_.resize(nodes);
   ranges_.resize(grid_blocks * 6);
   motions_.resize(std::size_t(blocks_));
+  average_.connect(state);
   upload_contacts(state);
   upload_sleep(state);
 }
 
-void DeviceSnow::upload_contacts(const HostState& state) {
+void DeviceSnow::upload_contacts(HostState& state) {
   std::vector<std::int32_t> first{0};
   std::vector<Contact<float>> all;
   for (std::size_t g = 0; g < state.layout.grid_blocks.size(); ++g) {
@@ -123,6 +132,7 @@ void DeviceSnow::upload_contacts(const HostState& state) {
   }
   first_contact_.upload(first);
   contacts_.upload(all);
+  forces_.upload(state);
 }
 
 void DeviceSnow::upload_sleep(const HostState& state) {
@@ -141,8 +151,17 @@ void DeviceSnow::download(HostState& state) const {
   download_contacts(state);
 }
 
+void DeviceSnow::download_blocks(HostState& state, const std::vector<std::int32_t>& blocks) {
+  std::vector<std::int32_t> particles;
+  for (const std::int32_t b : blocks)
+    for (std::int32_t i = state.layout.first[b]; i < state.layout.first[b + 1]; ++i)
+      particles.push_back(i);
+  particles_.download(state.particles, particles);
+}
+
 void DeviceSnow::download_contacts(HostState& state) const {
   contacts_.download(state.contacts.all().data());
+  forces_.download(state);
 }
 
 void DeviceSnow::sort(HostState& state) {
@@ -164,7 +183,9 @@ void DeviceSnow::sort(HostState& state) {
 }
 
 void DeviceSnow::scatter(Control& control) {
-  const double bound = std::max(2 * std::sqrt(double(control.speed_squared)), 1e-12);
+  if (model_.has_affine()) find_spin(control);
+  const double speed = 2 * std::sqrt(double(control.speed_squared));
+  const double bound = std::max(speed + arm * double(control.spin) * constants_.dx, 1e-12);
   control.momentum_unit = constants_.mass_unit * float(power_of_two_above(bound));
   control.strays = 0;
   control_.upload(&control, 1);
@@ -174,6 +195,24 @@ void DeviceSnow::scatter(Control& control) {
   if (asleep_.size() == 0) return;
   asleep_.clear();
   launch_particles("scatter", asleep_blocks_, asleep_.data());
+  if (!average_.exists()) return;
+  average_.clear_asleep();
+  launch_average(asleep_blocks_, true);
+}
+
+void DeviceSnow::launch_average(const DeviceArray<std::int32_t>& list, bool asleep) {
+  launch(device_, "scatter_average", {unsigned(list.size()), particle_threads},
+         launch_of(list, integers_.data()), std::int32_t(asleep),
+         static_cast<const Control*>(control_.data()), constants_);
+}
+
+void DeviceSnow::find_spin(Control& control) {
+  constexpr unsigned threads = 256;
+  control.spin = 0;
+  control_.upload(&control, 1);
+  launch(device_, "find_spin", {(unsigned(particles_.size()) + threads - 1) / threads, threads},
+         particles_.view(), std::int32_t(particles_.size()), control_.data());
+  control_.download(&control);
 }
 
 void DeviceSnow::run(Control& control, int rounds) {
@@ -190,17 +229,27 @@ void DeviceSnow::launch_round() {
            contacts(), std::int32_t(contacts_.size()), friction_shares_.data(),
            static_cast<const Control*>(control_.data()));
   launch(device_, "node_step", {unsigned(active_.size()), node_threads}, grid(),
-         static_cast<const std::int32_t*>(active_.data()), contacts(), control_.data(), constants_);
+         static_cast<const std::int32_t*>(active_.data()), contacts(), forces_.view(),
+         control_.data(), constants_);
   launch(device_, "probe", {unsigned(awake_.size()), particle_threads},
          launch_of(awake_, integers_.data()), control_.data(), constants_);
   launch(device_, "judge_step", {1, 1}, control_.data(), constants_);
+  launch(device_, "record_forces", {forces_.obstacles(), particle_threads},
+         static_cast<const std::int32_t*>(active_.data()), std::int32_t(active_.size()), contacts(),
+         forces_.view(), static_cast<const Control*>(control_.data()));
+  if (average_.exists()) {
+    launch_average(awake_, false);
+    launch(device_, "average_nodes", {average_.coarse_blocks(), node_threads}, average_.view(),
+           static_cast<const Control*>(control_.data()), constants_);
+  }
   launch_particles("particle_step", awake_, integers_.data());
   launch_strays("stray_step", integers_.data());
   launch(device_, "next_step", {1, 1}, control_.data(), constants_);
 }
 
 std::string DeviceSnow::named(const char* kernel) const {
-  return std::string(kernel) + (model_.material_per_particle ? "_several" : "");
+  return std::string(kernel) + (model_.material_per_particle ? "_several" : "") +
+         (model_.has_affine() ? "_affine" : "");
 }
 
 void DeviceSnow::launch_particles(const char* kernel, const DeviceArray<std::int32_t>& list,
@@ -231,10 +280,19 @@ std::vector<BlockMotion> DeviceSnow::motions(const Sleep<3>& sleep) {
   return motions_.download();
 }
 
+std::vector<CellRange> DeviceSnow::cell_ranges(const DeviceArray<std::int32_t>& blocks) {
+  cell_ranges_.resize(std::size_t(blocks_));
+  launch(device_, "find_cell_ranges", {unsigned(blocks.size()), node_threads},
+         launch_of(blocks, integers_.data()), cell_ranges_.data());
+  return cell_ranges_.download();
+}
+
 ParticleLaunch DeviceSnow::launch_of(const DeviceArray<std::int32_t>& list,
                                      unsigned long long* integers) const {
-  return {particles_.view(), {first_.data(), around_.data()}, list.data(), grid(), strays_.data(),
-          integers};
+  return {particles_.view(), {first_.data(), around_.data()},
+          list.data(),       grid(),
+          strays_.data(),    integers,
+          average_.view()};
 }
 
 GridArrays DeviceSnow::grid() const {
@@ -250,10 +308,11 @@ ContactArrays DeviceSnow::contacts() const {
 }
 
 std::size_t DeviceSnow::bytes() const {
-  std::size_t sum = particles_.bytes();
+  std::size_t sum = particles_.bytes() + forces_.bytes() + average_.bytes();
   const auto add = [&](const auto&... arrays) { sum += (std::size_t(0) + ... + arrays.bytes()); };
   add(first_, around_, order_, strays_, awake_, asleep_blocks_, active_, idle_, listed_, integers_,
-      asleep_, carried_, force_, velocity_, change_, ranges_, first_contact_, contacts_, motions_);
+      asleep_, carried_, force_, velocity_, change_, ranges_, first_contact_, contacts_, motions_,
+      cell_ranges_);
   return sum;
 }
 

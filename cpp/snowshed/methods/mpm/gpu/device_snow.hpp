@@ -2,6 +2,8 @@
 // blocks, the contacts of new blocks and the decision which blocks sleep are the host's.
 #pragma once
 
+#include "snowshed/methods/mpm/gpu/device_average.hpp"
+#include "snowshed/methods/mpm/gpu/device_forces.hpp"
 #include "snowshed/methods/mpm/gpu/device_particles.hpp"
 #include "snowshed/methods/mpm/model.hpp"
 #include "snowshed/methods/mpm/state.hpp"
@@ -15,13 +17,15 @@ class DeviceSnow {
   DeviceSnow(snowshed::gpu::Device& device, const Model<float, 3>& model);
 
   /// Uploads all of a state. `scatter` must follow before a step.
-  void upload(const HostState&);
+  void upload(HostState&);
   /// Brings the particles and the contacts of the host up to date.
   void download(HostState&) const;
-  /// Brings only the impulses of the contacts up to date.
+  /// Brings the particles of some blocks up to date.
+  void download_blocks(HostState&, const std::vector<std::int32_t>& blocks);
+  /// Brings only the contacts up to date, with their forces.
   void download_contacts(HostState&) const;
   /// Uploads contacts that the host has changed.
-  void upload_contacts(const HostState&);
+  void upload_contacts(HostState&);
   /// Uploads which blocks sleep.
   void upload_sleep(const HostState&);
 
@@ -42,13 +46,21 @@ class DeviceSnow {
   /// entries are undefined.
   std::vector<BlockMotion> motions(const Sleep<3>&);
 
+  /// Gives the host's record of forces the `count` steps of the last run.
+  void replay_forces(HostState& state, std::int64_t count) const { forces_.replay(state, count); }
+  /// Returns the ranges of the cells of sleeping blocks; the other entries are undefined.
+  std::vector<CellRange> cell_ranges_asleep() { return cell_ranges(asleep_blocks_); }
+
   /// Memory on the device.
   std::size_t bytes() const;
 
  private:
-  void upload_layout(const HostState&);
+  void upload_layout(HostState&);
   void find_units(const HostState&);
+  std::vector<CellRange> cell_ranges(const DeviceArray<std::int32_t>& blocks);
+  void find_spin(Control& control);
   void launch_round();
+  void launch_average(const DeviceArray<std::int32_t>& list, bool asleep);
   void launch_particles(const char* kernel, const DeviceArray<std::int32_t>& list,
                         unsigned long long* integers);
   void launch_strays(const char* kernel, unsigned long long* integers);
@@ -61,6 +73,8 @@ class DeviceSnow {
   snowshed::gpu::Device& device_;
   const Model<float, 3>& model_;
   DeviceParticles particles_;
+  DeviceForces forces_;
+  DeviceAverage average_;
   DeviceArray<std::int32_t> first_, around_, order_, strays_;
   DeviceArray<std::int32_t> awake_, asleep_blocks_, active_, idle_, listed_;
   DeviceArray<unsigned long long> integers_, asleep_;
@@ -71,6 +85,7 @@ class DeviceSnow {
   DeviceArray<Contact<float>> contacts_;
   DeviceArray<MaterialConstants<float>> snows_;
   DeviceArray<BlockMotion> motions_;
+  DeviceArray<CellRange> cell_ranges_;
   DeviceArray<Control> control_;
   Constants constants_{};
   std::int32_t blocks_ = 0;  // number of particle blocks

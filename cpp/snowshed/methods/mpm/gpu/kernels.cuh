@@ -2,6 +2,7 @@
 // told in docs/develop/gpu.md.
 #pragma once
 
+#include "snowshed/methods/mpm/gpu/forces.cuh"
 #include "snowshed/methods/mpm/gpu/node_step.cuh"
 #include "snowshed/methods/mpm/gpu/particle_step.cuh"
 #include "snowshed/methods/mpm/gpu/probe.cuh"

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "snowshed/methods/mpm/contact_rule.hpp"
+#include "snowshed/methods/mpm/gpu/forces.cuh"
 #include "snowshed/methods/mpm/gpu/sums.cuh"
 
 namespace snowshed::methods::mpm::gpu {
@@ -10,6 +11,7 @@ namespace snowshed::methods::mpm::gpu {
 struct NodeMemory {
   float velocity[3][nodes_of_block], mass[nodes_of_block];
   std::int32_t low[3], high[3];
+  double impulse[3][nodes_of_block];  // of the contacts of a thread
 };
 
 /// Reads the sums of a node. The first try of a step takes them from the whole numbers, and clears
@@ -56,9 +58,25 @@ __device__ inline void hold(const ContactArrays& contacts, Contact<float>& c, fl
   for (int d = 0; d < 3; ++d) m.velocity[d][c.node] = node[d];
 }
 
+/// Applies a contact and records its impulse.
+__device__ inline void hold_and_record(const ContactArrays& contacts, float mass,
+                                       const FrictionRates<float>& rates, bool first_try,
+                                       ContactForce<float>& force, Contact<float>& c,
+                                       NodeMemory& m) {
+  float impulse[3];
+  for (int d = 0; d < 3; ++d) impulse[d] = m.velocity[d][c.node];
+  hold(contacts, c, mass, rates, m);
+  for (int d = 0; d < 3; ++d) {
+    impulse[d] = mass * (m.velocity[d][c.node] - impulse[d]);
+    m.impulse[d][threadIdx.x] += double(impulse[d]);
+  }
+  record_impulse(force, impulse, first_try);
+}
+
 /// Applies the contacts of a block.
-__device__ inline void hold_block(const ContactArrays& contacts, int block, bool first_try,
-                                  const FrictionRates<float>& rates, NodeMemory& m) {
+__device__ inline void hold_block(const ContactArrays& contacts, const ForceArrays& forces,
+                                  int block, bool first_try, const FrictionRates<float>& rates,
+                                  NodeMemory& m) {
   const int end = contacts.first[block + 1];
   for (int begin = contacts.first[block]; begin < end;) {
     const int own = begin + int(threadIdx.x);
@@ -67,12 +85,19 @@ __device__ inline void hold_block(const ContactArrays& contacts, int block, bool
     if (same_obstacle) {
       Contact<float> c = contacts.contacts[own];
       if (first_try) c.normal_impulse = c.next_normal_impulse;  // the last step was taken
-      hold(contacts, c, m.mass[c.node], rates, m);
+      if (forces.contacts)
+        hold_and_record(contacts, m.mass[c.node], rates, first_try, forces.contacts[own], c, m);
+      else
+        hold(contacts, c, m.mass[c.node], rates, m);
       contacts.contacts[own].normal_impulse = c.normal_impulse;
       contacts.contacts[own].next_normal_impulse = c.next_normal_impulse;
     }
     begin += __syncthreads_count(same_obstacle);
   }
+  if (!forces.contacts) return;
+  sum_up(m.impulse);
+  if (threadIdx.x == 0)
+    for (int d = 0; d < 3; ++d) forces.blocks[block * 3 + d] = float(m.impulse[d][0]);
 }
 
 /// Records the range of the velocities of a block.
@@ -99,6 +124,7 @@ __device__ inline void record_range(const GridArrays& grid, int block, bool has_
 extern "C" __global__ void __launch_bounds__(64)
     node_step(snowshed::methods::mpm::gpu::GridArrays grid, const std::int32_t* list,
               snowshed::methods::mpm::gpu::ContactArrays contacts,
+              snowshed::methods::mpm::gpu::ForceArrays forces,
               snowshed::methods::mpm::gpu::Control* control,
               snowshed::methods::mpm::gpu::Constants k) {
   using namespace snowshed::methods::mpm;
@@ -125,12 +151,15 @@ extern "C" __global__ void __launch_bounds__(64)
     }
     now[2] -= dt * k.gravity;
   }
-  for (int d = 0; d < 3; ++d) m.velocity[d][t] = now[d];
+  for (int d = 0; d < 3; ++d) {
+    m.velocity[d][t] = now[d];
+    m.impulse[d][t] = 0;
+  }
   m.mass[t] = carried.x;
   __syncthreads();
   const FrictionRates<float> rates{float(::fmin(1.0, control->dt / k.friction_memory)),
                                    float(control->dt / k.friction_reach)};
-  hold_block(contacts, block, first_try, rates, m);
+  hold_block(contacts, forces, block, first_try, rates, m);
   if (has_snow)
     for (int d = 0; d < 3; ++d) now[d] = m.velocity[d][t];
   grid.velocity[n] = {now[0], now[1], now[2], now[0] - old[0]};

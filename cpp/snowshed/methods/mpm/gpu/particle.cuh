@@ -1,34 +1,89 @@
 // One particle in registers, and its part of a step (see kernels/particle_kernels.hpp).
 #pragma once
 
-#include "snowshed/methods/mpm/gpu/sums.cuh"
+#include "snowshed/methods/mpm/gpu/average.cuh"
 #include "snowshed/methods/mpm/kernels/stress.hpp"
 
 namespace snowshed::methods::mpm::gpu {
 
 using Strain = material::Sym<float, 3>;
 
+/// Variant of the kernels of particles: one snow or several; FLIP, or a transfer with an affine
+/// velocity. As on the processor, all but the simplest have the regularised law.
+template <bool several_, bool affine_>
+struct Variant {
+  static constexpr bool several = several_, affine = affine_;
+  static constexpr bool regularised = several || affine;
+  using Law = material::CamClayLaw<float, regularised>;
+};
+
 /// Shares of a step that are the same for all particles.
 struct StepShares {
-  float dt, cells_per_speed, flip_ratio;  // s; dt/dx, s/m
+  float dt, dx, cells_per_speed, flip_ratio;  // s; m; dt/dx, s/m
+  float overstress;                           // see CamClayLaw
+  float damping;                              // towards the average over a length
 
   __device__ StepShares(const Control& c, const Constants& k)
       : dt(float(c.dt)),
-        cells_per_speed(float(c.dt) / float(k.dx)),
+        dx(float(k.dx)),
+        cells_per_speed(dt / dx),
         flip_ratio(k.damping_rate >= 0 ? float(::exp(-double(k.damping_rate) * c.dt))
-                                       : k.flip_ratio) {}
+                                       : k.flip_ratio),
+        overstress(k.relaxation_time > 0 ? float(k.relaxation_time / (c.dt + k.relaxation_time))
+                                         : 0.0f),
+        damping(damping_of(c, k)) {}
 };
 
 /// Returns the constants of a particle's snow.
-template <bool several>
+template <class Variant>
 __device__ inline MaterialConstants<float> snow_of(const ParticleArrays& p, int i,
                                                    const Constants& k) {
-  if (several) return k.snows[p.material_id[i]];
+  if (Variant::several) return k.snows[p.material_id[i]];
   return k.snow;
 }
 
+/// The affine velocity of a particle, which FLIP does not have.
+template <bool affine>
+struct AffineVelocity {
+  float c[9];  // 1/s, row by row
+
+  __device__ void read(const ParticleArrays& p, int i) {
+#pragma unroll
+    for (int k = 0; k < 9; ++k) c[k] = p.affine[k][i];
+  }
+  __device__ void write(const ParticleArrays& p, int i) const {
+#pragma unroll
+    for (int k = 0; k < 9; ++k) p.affine[k][i] = c[k];
+  }
+  __device__ void take(const NodeMeans<true>& m, float dx) {
+    constexpr float inverse_inertia = 4;  // of the quadratic spline, see apic_inverse_inertia
+#pragma unroll
+    for (int k = 0; k < 9; ++k) c[k] = m.moment[k / 3][k % 3] * (inverse_inertia / dx);
+  }
+  __device__ void give(Given<true>& g, float mass, float dx) const {
+#pragma unroll
+    for (int k = 0; k < 9; ++k) g.moment[k] = mass * c[k] * dx;
+  }
+  __device__ float largest() const {
+    float all = 0;
+    for (int k = 0; k < 9; ++k) all = ::fmaxf(all, ::fabsf(c[k]));
+    return all;
+  }
+};
+template <>
+struct AffineVelocity<false> {
+  __device__ void read(const ParticleArrays&, int) {}
+  __device__ void write(const ParticleArrays&, int) const {}
+  __device__ void take(const NodeMeans<false>&, float) {}
+  __device__ void give(Given<false>&, float, float) const {}
+  __device__ float largest() const { return 0; }
+};
+
+template <class Variant>
 struct ParticleState {
+  static constexpr bool affine = Variant::affine;
   float cell[3], velocity[3], plastic, mass;
+  AffineVelocity<affine> spin;
   Strain be_minus_identity;
 
   __device__ void read_cell(const ParticleArrays& p, int i) {
@@ -38,6 +93,7 @@ struct ParticleState {
   __device__ void read_rest(const ParticleArrays& p, int i) {
 #pragma unroll
     for (int d = 0; d < 3; ++d) velocity[d] = p.velocity[d][i];
+    spin.read(p, i);
 #pragma unroll
     for (int k = 0; k < 6; ++k) be_minus_identity.c[k] = p.be_minus_identity[k][i];
     plastic = p.plastic ? p.plastic[i] : 0.0f;
@@ -49,13 +105,14 @@ struct ParticleState {
       p.cell[d][i] = cell[d];
       p.velocity[d][i] = velocity[d];
     }
+    spin.write(p, i);
 #pragma unroll
     for (int k = 0; k < 6; ++k) p.be_minus_identity[k][i] = be_minus_identity.c[k];
     if (p.plastic) p.plastic[i] = plastic;
   }
 
   /// Moves with the nodes, and takes their change of velocity (1.2.26).
-  __device__ void move(const NodeMeans& m, const StepShares& step) {
+  __device__ void move(const NodeMeans<affine>& m, const StepShares& step) {
     float gradient[3][3];  // dt grad v
 #pragma unroll
     for (int d = 0; d < 3; ++d) {
@@ -65,14 +122,16 @@ struct ParticleState {
 #pragma unroll
       for (int j = 0; j < 3; ++j) gradient[d][j] = m.gradient[d][j] * step.cells_per_speed;
     }
+    spin.take(m, step.dx);
     update_left_cauchy_green(be_minus_identity, gradient);
   }
 
   /// Returns the stress; first returns the strain to the yield surface, unless this has been done.
-  __device__ Stress<float, 3> stress(const MaterialConstants<float>& snow, bool committed) {
-    const auto law = cam_clay_law<material::CamClay>(snow);
+  __device__ Stress<float, 3> stress(const MaterialConstants<float>& snow, float overstress,
+                                     bool committed) {
+    const typename Variant::Law law = law_of(snow);
     return stress_of(be_minus_identity, law.elastic, [&](material::PQ<float>& pq) {
-      return !committed && law.return_map(pq, plastic);
+      return !committed && law.return_map(pq, plastic, overstress);
     });
   }
 
@@ -80,8 +139,9 @@ struct ParticleState {
     return velocity[0] * velocity[0] + velocity[1] * velocity[1] + velocity[2] * velocity[2];
   }
 
-  __device__ Given given(const Strain& tau, float specific_volume, float dx) const {
-    Given g;
+  __device__ Given<affine> given(const Strain& tau, float specific_volume, float dx) const {
+    Given<affine> g;
+    spin.give(g, mass, dx);
     g.mass = mass;
 #pragma unroll
     for (int d = 0; d < 3; ++d) g.momentum[d] = mass * velocity[d];
@@ -89,6 +149,14 @@ struct ParticleState {
 #pragma unroll
     for (int k = 0; k < 6; ++k) g.force[k] = scale * tau.c[k];
     return g;
+  }
+
+ private:
+  static __device__ typename Variant::Law law_of(const MaterialConstants<float>& snow) {
+    if constexpr (Variant::regularised)
+      return cam_clay_law<material::RegularisedCamClay>(snow);
+    else
+      return cam_clay_law<material::CamClay>(snow);
   }
 };
 
@@ -103,24 +171,45 @@ __device__ inline void add_stray(std::int32_t* strays, Control* control, int i) 
 }
 
 /// A particle after a step. Its nodes take it only if it is sound.
+template <bool affine>
 struct Moved {
-  Given given;
+  Given<affine> given;
   bool sound;
 };
 
+/// Moves a particle of a block with its nodes, and damps it towards the average.
+template <class Variant>
+__device__ inline void move(ParticleState<Variant>& s, const NodeMeans<Variant::affine>& m,
+                            const AverageArrays& average, int block, const StepShares& step) {
+  if (!Variant::affine || !(step.damping > 0)) return s.move(m, step);
+  float change[3];
+  find_damping(average, block, step.damping, s.cell, s.velocity, change);
+  s.move(m, step);
+  for (int d = 0; d < 3; ++d) s.velocity[d] += change[d];
+}
+
+/// The largest values of the particles of a thread.
+struct Largest {
+  float speed_squared = 0, spin = 0;
+};
+
 /// Takes a particle through a step whose node means are known, and writes it.
-template <bool several>
-__device__ inline Moved finish_particle(ParticleState& s, const NodeMeans& m,
-                                        const ParticleArrays& p, int i, const Constants& k,
-                                        Control* control, float& fastest) {
-  const MaterialConstants<float> snow = snow_of<several>(p, i, k);
-  const Stress<float, 3> stress = s.stress(snow, false);
+template <class Variant>
+__device__ inline Moved<Variant::affine> finish_particle(ParticleState<Variant>& s,
+                                                         const NodeMeans<Variant::affine>& m,
+                                                         const ParticleArrays& p, int i,
+                                                         const Constants& k, const StepShares& step,
+                                                         Control* control, Largest& largest) {
+  const MaterialConstants<float> snow = snow_of<Variant>(p, i, k);
+  const Stress<float, 3> stress = s.stress(snow, step.overstress, false);
   s.write(p, i);
   const float own = s.speed_squared(), u = m.value[0], v = m.value[1], w = m.value[2];
-  fastest = ::fmaxf(fastest, ::fmaxf(own, u * u + v * v + w * w));
+  largest.speed_squared = ::fmaxf(largest.speed_squared, ::fmaxf(own, u * u + v * v + w * w));
+  largest.spin = ::fmaxf(largest.spin, s.spin.largest());
   constexpr float limit = float(elastic_strain_limit * elastic_strain_limit);
-  Moved moved{s.given(stress.tau, snow.specific_volume, float(k.dx)),
-              stress.strain_squared + 0 * own <= limit};  // false if a value is not finite
+  Moved<Variant::affine> moved{
+      s.given(stress.tau, snow.specific_volume, step.dx),
+      stress.strain_squared + 0 * own <= limit};  // false if a value is not finite
   if (!moved.sound) atomicMin(&control->unsound, i);
   return moved;
 }

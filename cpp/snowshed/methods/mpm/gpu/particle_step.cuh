@@ -7,12 +7,15 @@
 
 namespace snowshed::methods::mpm::gpu {
 
-/// Particles that a thread block treats at a time.
-inline constexpr int chunk = 256;
+/// Particles that a thread block treats at a time. Those with an affine velocity need more of the
+/// shared memory, of which there are 48 kB.
+template <bool affine>
+inline constexpr int chunk = affine ? 128 : 256;
 
 /// Numbers along x in a tile of sums. The odd stride avoids conflicts in shared memory.
 inline constexpr int sum_stride = tile_edge * tile_edge + 3, sum_size = tile_edge * sum_stride;
 
+template <bool affine>
 struct StepMemory {
   union {
     struct {
@@ -21,16 +24,19 @@ struct StepMemory {
     } nodes;
     int sums[node_sums][2][sum_size];  // high and low parts
   };
-  GivenArrays<chunk> given;
+  GivenArrays<chunk<affine>, affine> given;
   std::int32_t around[neighbours];
-  std::int32_t first[tile_cells];  // the first particle of each cell, or -1
-  std::int16_t next[chunk];        // the next particle of the cell, or -1
-  std::int16_t cells[tile_cells];  // those with particles
-  std::int32_t cell_count, fastest;
+  std::int32_t first[tile_cells];    // the first particle of each cell, or -1
+  std::int16_t next[chunk<affine>];  // the next particle of the cell, or -1
+  std::int16_t cells[tile_cells];    // those with particles
+  std::int32_t cell_count;
+  float fastest, spin;
 };
+static_assert(sizeof(StepMemory<true>) <= 48 * 1024 && sizeof(StepMemory<false>) <= 48 * 1024);
 
 /// Puts the particles of a cell in ascending order, whatever the order in which threads came.
-__device__ inline void sort_cell(StepMemory& m, int cell) {
+template <bool affine>
+__device__ inline void sort_cell(StepMemory<affine>& m, int cell) {
   int sorted = -1;
   for (int q = m.first[cell], next; q >= 0; q = next) {
     next = m.next[q];
@@ -47,7 +53,9 @@ __device__ inline void sort_cell(StepMemory& m, int cell) {
   m.first[cell] = sorted;
 }
 
-__device__ inline void enter_cell(StepMemory& m, int q, const Place& place, const Given& given) {
+template <bool affine>
+__device__ inline void enter_cell(StepMemory<affine>& m, int q, const Place& place,
+                                  const Given<affine>& given) {
   m.given.set(q, place.fraction, given);
   const int cell =
       (place.lowest[0] * tile_cells_edge + place.lowest[1]) * tile_cells_edge + place.lowest[2];
@@ -55,7 +63,8 @@ __device__ inline void enter_cell(StepMemory& m, int q, const Place& place, cons
 }
 
 /// Sums the cells of a chunk into the tile, three cells to a warp.
-__device__ inline void sum_cells(StepMemory& m, const Units& units) {
+template <bool affine>
+__device__ inline void sum_cells(StepMemory<affine>& m, const Units& units) {
   const int warp = int(threadIdx.x) / 32, lane = int(threadIdx.x) % 32;
   const int cell_of_warp = lane / 9, line = lane % 9;
   if (cell_of_warp == 3) return;
@@ -77,7 +86,8 @@ __device__ inline void sum_cells(StepMemory& m, const Units& units) {
 }
 
 /// Adds the tile to the grid.
-__device__ inline void add_tile(const StepMemory& m, unsigned long long* integers) {
+template <bool affine>
+__device__ inline void add_tile(const StepMemory<affine>& m, unsigned long long* integers) {
   for (int t = int(threadIdx.x); t < tile_nodes; t += int(blockDim.x)) {
     const int at = (t >> 6) * sum_stride + (t & 63);
     if ((m.sums[0][0][at] | m.sums[0][1][at]) == 0) continue;  // no mass
@@ -89,7 +99,9 @@ __device__ inline void add_tile(const StepMemory& m, unsigned long long* integer
 }
 
 /// Gives the particles of a chunk to the nodes, after `enter_cell`.
-__device__ inline void give_chunk(StepMemory& m, const Units& units, unsigned long long* integers) {
+template <bool affine>
+__device__ inline void give_chunk(StepMemory<affine>& m, const Units& units,
+                                  unsigned long long* integers) {
   const int t = int(threadIdx.x), threads = int(blockDim.x);
   for (int i = t; i < node_sums * 2 * sum_size; i += threads) (&m.sums[0][0][0])[i] = 0;
   for (int c = t; c < tile_cells; c += threads) {
@@ -104,38 +116,40 @@ __device__ inline void give_chunk(StepMemory& m, const Units& units, unsigned lo
   __syncthreads();
 }
 
-__device__ inline void empty_cells(StepMemory& m) {
+template <bool affine>
+__device__ inline void empty_cells(StepMemory<affine>& m) {
   for (int c = int(threadIdx.x); c < tile_cells; c += int(blockDim.x)) m.first[c] = -1;
   if (threadIdx.x == 0) m.cell_count = 0;
 }
 
 /// Takes the particles of a block through a step. With `moves` false, only adds them to the sums.
-template <bool several, bool moves>
+template <class Variant, bool moves>
 __device__ inline void step_block(const ParticleLaunch& l, Control* control, const Constants& k,
-                                  StepMemory& m) {
+                                  StepMemory<Variant::affine>& m) {
   if (moves && control->phase != Phase::accepted) return;
   const int t = int(threadIdx.x), threads = int(blockDim.x), b = l.list[blockIdx.x];
   const int first = l.blocks.first[b], end = l.blocks.first[b + 1];
   if (t < neighbours) m.around[t] = l.blocks.around[b * neighbours + t];
-  if (t == 0) m.fastest = 0;
+  if (t == 0) m.fastest = m.spin = 0;
   const StepShares step(*control, k);
   const Units units(k, control->momentum_unit);
-  float fastest = 0;
+  Largest largest;
+  constexpr int size = chunk<Variant::affine>;
   __syncthreads();
-  for (int begin = first; begin < end; begin += chunk) {
+  for (int begin = first; begin < end; begin += size) {
     if (moves) load_tile(l.grid, m.around, m.nodes.velocity, m.nodes.change);
     empty_cells(m);
     __syncthreads();
-    const int count = end - begin < chunk ? end - begin : chunk;
+    const int count = end - begin < size ? end - begin : size;
     for (int q = t; q < count; q += threads) {
       const int i = begin + q;
-      ParticleState s;
+      ParticleState<Variant> s;
       s.read_cell(l.particles, i);
       if (!in_tile(s.cell)) {
         add_stray(l.strays, control, i);
         continue;
       }
-      NodeMeans means;
+      NodeMeans<Variant::affine> means;
       if (moves) {
         const Place from(s.cell);
         const int lowest =
@@ -145,16 +159,16 @@ __device__ inline void step_block(const ParticleLaunch& l, Control* control, con
       }
       s.read_rest(l.particles, i);
       if (moves) {
-        s.move(means, step);
+        move(s, means, l.average, b, step);
         if (!in_tile(s.cell)) {
           add_stray(l.strays, control, i);
           continue;
         }
-        const Moved moved = finish_particle<several>(s, means, l.particles, i, k, control, fastest);
+        const auto moved = finish_particle(s, means, l.particles, i, k, step, control, largest);
         if (moved.sound) enter_cell(m, q, Place(s.cell), moved.given);
       } else {
-        const MaterialConstants<float> snow = snow_of<several>(l.particles, i, k);
-        const Strain tau = s.stress(snow, true).tau;
+        const MaterialConstants<float> snow = snow_of<Variant>(l.particles, i, k);
+        const Strain tau = s.stress(snow, 0.0f, true).tau;
         enter_cell(m, q, Place(s.cell), s.given(tau, snow.specific_volume, float(k.dx)));
       }
     }
@@ -162,20 +176,23 @@ __device__ inline void step_block(const ParticleLaunch& l, Control* control, con
     give_chunk(m, units, l.integers);
   }
   if (!moves) return;
-  raise(reinterpret_cast<float*>(&m.fastest), fastest);
+  raise(&m.fastest, largest.speed_squared);
+  if (Variant::affine) raise(&m.spin, largest.spin);
   __syncthreads();
-  if (t == 0) atomicMax(reinterpret_cast<int*>(&control->speed_squared), m.fastest);
+  if (t > 0) return;
+  raise(&control->speed_squared, m.fastest);
+  if (Variant::affine) raise(&control->spin, m.spin);
 }
 
 /// Takes the strays through a step, a thread to a particle.
-template <bool several, bool moves>
+template <class Variant, bool moves>
 __device__ inline void step_strays(const ParticleLaunch& l, std::int32_t block_count,
                                    Control* control, const Constants& k) {
   if (moves && control->phase != Phase::accepted) return;
   const StepShares step(*control, k);
   const Units units(k, control->momentum_unit);
   const int threads = int(gridDim.x * blockDim.x);
-  float fastest = 0;
+  Largest largest;
   for (int n = int(blockIdx.x * blockDim.x + threadIdx.x); n < control->strays; n += threads) {
     const int i = l.strays[n];
     int low = 0, high = block_count;  // the block is in [low, high)
@@ -184,60 +201,80 @@ __device__ inline void step_strays(const ParticleLaunch& l, std::int32_t block_c
       (l.blocks.first[middle] <= i ? low : high) = middle;
     }
     const std::int32_t* around = l.blocks.around + low * neighbours;
-    ParticleState s;
+    ParticleState<Variant> s;
     s.read_cell(l.particles, i);
     s.read_rest(l.particles, i);
     if (moves) {
       const Place from(s.cell);
-      NodeMeans means;
+      NodeMeans<Variant::affine> means;
       interpolate(from.fraction,
                   GridNodes{l.grid.velocity,
                             l.grid.change,
                             around,
                             {from.lowest[0], from.lowest[1], from.lowest[2]}},
                   means);
-      s.move(means, step);
-      const Moved moved = finish_particle<several>(s, means, l.particles, i, k, control, fastest);
+      move(s, means, l.average, low, step);
+      const auto moved = finish_particle(s, means, l.particles, i, k, step, control, largest);
       if (!moved.sound) continue;
       if (!may_move_on(s.cell)) control->must_sort = 1;
       scatter_stray(Place(s.cell), moved.given, l.integers, around, units);
     } else {
-      const MaterialConstants<float> snow = snow_of<several>(l.particles, i, k);
-      const Strain tau = s.stress(snow, true).tau;
+      const MaterialConstants<float> snow = snow_of<Variant>(l.particles, i, k);
+      const Strain tau = s.stress(snow, 0.0f, true).tau;
       scatter_stray(Place(s.cell), s.given(tau, snow.specific_volume, float(k.dx)), l.integers,
                     around, units);
     }
   }
-  if (moves && fastest > 0) raise(&control->speed_squared, fastest);
+  if (moves && largest.speed_squared > 0) raise(&control->speed_squared, largest.speed_squared);
+  if (moves && largest.spin > 0) raise(&control->spin, largest.spin);
 }
 
 }  // namespace snowshed::methods::mpm::gpu
 
-// Kernels, each for one snow and for several.
-#define SNOWSHED_PARTICLE_KERNELS(suffix, several)                                               \
+/// Finds the largest component of an affine velocity.
+extern "C" __global__ void __launch_bounds__(256)
+    find_spin(snowshed::methods::mpm::gpu::ParticleArrays particles, std::int32_t count,
+              snowshed::methods::mpm::gpu::Control* control) {
+  using namespace snowshed::methods::mpm::gpu;
+  const int i = int(blockIdx.x * blockDim.x + threadIdx.x);
+  if (i >= count) return;
+  AffineVelocity<true> spin;
+  spin.read(particles, i);
+  const float largest = spin.largest();
+  if (largest > control->spin) raise(&control->spin, largest);
+}
+
+// Kernels, each for every variant.
+#define SNOWSHED_PARTICLE_KERNELS(suffix, several, affine)                                       \
   extern "C" __global__ void __launch_bounds__(128) particle_step##suffix(                       \
       snowshed::methods::mpm::gpu::ParticleLaunch l,                                             \
       snowshed::methods::mpm::gpu::Control* control, snowshed::methods::mpm::gpu::Constants k) { \
-    __shared__ snowshed::methods::mpm::gpu::StepMemory memory;                                   \
-    snowshed::methods::mpm::gpu::step_block<several, true>(l, control, k, memory);               \
+    using namespace snowshed::methods::mpm::gpu;                                                 \
+    __shared__ StepMemory<affine> memory;                                                        \
+    step_block<Variant<several, affine>, true>(l, control, k, memory);                           \
   }                                                                                              \
   extern "C" __global__ void __launch_bounds__(128) scatter##suffix(                             \
       snowshed::methods::mpm::gpu::ParticleLaunch l,                                             \
       snowshed::methods::mpm::gpu::Control* control, snowshed::methods::mpm::gpu::Constants k) { \
-    __shared__ snowshed::methods::mpm::gpu::StepMemory memory;                                   \
-    snowshed::methods::mpm::gpu::step_block<several, false>(l, control, k, memory);              \
+    using namespace snowshed::methods::mpm::gpu;                                                 \
+    __shared__ StepMemory<affine> memory;                                                        \
+    step_block<Variant<several, affine>, false>(l, control, k, memory);                          \
   }                                                                                              \
   extern "C" __global__ void __launch_bounds__(64) stray_step##suffix(                           \
       snowshed::methods::mpm::gpu::ParticleLaunch l, std::int32_t block_count,                   \
       snowshed::methods::mpm::gpu::Control* control, snowshed::methods::mpm::gpu::Constants k) { \
-    snowshed::methods::mpm::gpu::step_strays<several, true>(l, block_count, control, k);         \
+    using namespace snowshed::methods::mpm::gpu;                                                 \
+    step_strays<Variant<several, affine>, true>(l, block_count, control, k);                     \
   }                                                                                              \
   extern "C" __global__ void __launch_bounds__(64) scatter_strays##suffix(                       \
       snowshed::methods::mpm::gpu::ParticleLaunch l, std::int32_t block_count,                   \
       snowshed::methods::mpm::gpu::Control* control, snowshed::methods::mpm::gpu::Constants k) { \
-    snowshed::methods::mpm::gpu::step_strays<several, false>(l, block_count, control, k);        \
+    using namespace snowshed::methods::mpm::gpu;                                                 \
+    step_strays<Variant<several, affine>, false>(l, block_count, control, k);                    \
   }
 
-SNOWSHED_PARTICLE_KERNELS(, false)
-SNOWSHED_PARTICLE_KERNELS(_several, true)
+SNOWSHED_PARTICLE_KERNELS(, false, false)
+SNOWSHED_PARTICLE_KERNELS(_several, true, false)
+SNOWSHED_PARTICLE_KERNELS(_affine, false, true)
+SNOWSHED_PARTICLE_KERNELS(_several_affine, true, true)
 #undef SNOWSHED_PARTICLE_KERNELS

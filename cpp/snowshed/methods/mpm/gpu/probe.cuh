@@ -67,7 +67,7 @@ extern "C" __global__ void __launch_bounds__(128)
     float cell[3];
     for (int d = 0; d < 3; ++d) cell[d] = l.particles.cell[d][i];
     const Place from(cell);
-    NodeMeans means;
+    NodeMeans<false> means;
     if (in_tile(cell)) {
       const int lowest = (from.lowest[0] * tile_edge + from.lowest[1]) * tile_edge + from.lowest[2];
       interpolate(from.fraction, TileNodes{m.velocity + lowest, m.change + lowest}, means);

@@ -78,8 +78,11 @@ extern "C" __global__ void __launch_bounds__(64)
     stop_blocks(snowshed::methods::mpm::gpu::ParticleLaunch l) {
   using namespace snowshed::methods::mpm::gpu;
   const int b = l.list[blockIdx.x];
-  for (int i = l.blocks.first[b] + int(threadIdx.x); i < l.blocks.first[b + 1]; i += motion_threads)
+  for (int i = l.blocks.first[b] + int(threadIdx.x); i < l.blocks.first[b + 1];
+       i += motion_threads) {
     for (int d = 0; d < 3; ++d) l.particles.velocity[d][i] = 0;
+    for (int k = 0; k < 9 && l.particles.affine[0]; ++k) l.particles.affine[k][i] = 0;
+  }
 }
 
 /// Nodes that only sleeping snow touches are at rest.

@@ -85,8 +85,17 @@ struct GridNodes {
   }
 };
 
+/// Sums over a particle's nodes of the velocity times the distance of the node, in cells.
+template <bool affine>
+struct NodeMoments {
+  float moment[3][3];
+};
+template <>
+struct NodeMoments<false> {};
+
 /// Means over a particle's nodes: of the node values, and the gradient of the velocity, per cell.
-struct NodeMeans {
+template <bool affine>
+struct NodeMeans : NodeMoments<affine> {
   float value[taken_values], gradient[3][3];
 };
 
@@ -109,6 +118,11 @@ struct NodeLine {
     for (int v = 0; v < count; ++v)
       out[v] = second[v] + weights[0] * step[0][v] + weights[1] * step[1][v];
   }
+  /// The sum of the velocities with weights that add up to zero.
+  __device__ void moment(const float (&weights)[2], float (&out)[3]) const {
+#pragma unroll
+    for (int v = 0; v < 3; ++v) out[v] = weights[0] * step[0][v] + weights[1] * step[1][v];
+  }
   /// The derivative of the velocity, per cell.
   __device__ void slope(float weight, float (&out)[3]) const {
 #pragma unroll
@@ -116,9 +130,14 @@ struct NodeLine {
   }
 };
 
+/// The place of a node past that from which a particle's fraction counts, in cells.
+__device__ constexpr float node_offset(int node) {
+  return float(node) - float(base_offset(Basis::quadratic));
+}
+
 /// Weights of the steps between the nodes of a particle along each direction.
 struct StepWeights {
-  float value[3][2], slope[3];
+  float value[3][2], slope[3], moment[3][2];
 
   __device__ explicit StepWeights(const float (&fraction)[3]) {
 #pragma unroll
@@ -128,17 +147,28 @@ struct StepWeights {
       weights_of_steps(w, value[d]);
       weights_of_steps(g, r);
       slope[d] = r[1];
+#pragma unroll
+      for (int k = 0; k < 3; ++k) w[k] *= node_offset(k) - fraction[d];
+      weights_of_steps(w, moment[d]);
     }
   }
 };
 
-template <class Nodes>
-__device__ inline void interpolate(const float (&fraction)[3], const Nodes& nodes, NodeMeans& m) {
+__device__ inline void transpose(const float (&along)[3][3], float (&out)[3][3]) {
+#pragma unroll
+  for (int v = 0; v < 3; ++v)
+#pragma unroll
+    for (int d = 0; d < 3; ++d) out[v][d] = along[d][v];
+}
+
+template <bool affine, class Nodes>
+__device__ inline void interpolate(const float (&fraction)[3], const Nodes& nodes,
+                                   NodeMeans<affine>& m) {
   const StepWeights weights(fraction);
-  float plane[3][taken_values], along_y[3][3], along_z[3][3];
+  float plane[3][taken_values], along_y[3][3], along_z[3][3], moment_y[3][3], moment_z[3][3];
 #pragma unroll
   for (int i = 0; i < 3; ++i) {
-    float line[3][taken_values], line_z[3][3];
+    float line[3][taken_values], line_z[3][3], line_moment[3][3];
 #pragma unroll
     for (int j = 0; j < 3; ++j) {
       float node[3][taken_values];
@@ -147,11 +177,16 @@ __device__ inline void interpolate(const float (&fraction)[3], const Nodes& node
       const NodeLine<taken_values> of_z(node);
       of_z.mean(weights.value[2], line[j]);
       of_z.slope(weights.slope[2], line_z[j]);
+      if constexpr (affine) of_z.moment(weights.moment[2], line_moment[j]);
     }
     const NodeLine<taken_values> of_y(line);
     of_y.mean(weights.value[1], plane[i]);
     of_y.slope(weights.slope[1], along_y[i]);
     NodeLine<3>(line_z).mean(weights.value[1], along_z[i]);
+    if constexpr (affine) {
+      of_y.moment(weights.moment[1], moment_y[i]);
+      NodeLine<3>(line_moment).mean(weights.value[1], moment_z[i]);
+    }
   }
   const NodeLine<taken_values> of_x(plane);
   of_x.mean(weights.value[0], m.value);
@@ -159,10 +194,13 @@ __device__ inline void interpolate(const float (&fraction)[3], const Nodes& node
   of_x.slope(weights.slope[0], along[0]);
   NodeLine<3>(along_y).mean(weights.value[0], along[1]);
   NodeLine<3>(along_z).mean(weights.value[0], along[2]);
-#pragma unroll
-  for (int v = 0; v < 3; ++v)
-#pragma unroll
-    for (int d = 0; d < 3; ++d) m.gradient[v][d] = along[d][v];
+  transpose(along, m.gradient);
+  if constexpr (affine) {
+    of_x.moment(weights.moment[0], along[0]);
+    NodeLine<3>(moment_y).mean(weights.value[0], along[1]);
+    NodeLine<3>(moment_z).mean(weights.value[0], along[2]);
+    transpose(along, m.moment);
+  }
 }
 
 /// Copies the velocities of the nodes of a tile to shared memory.

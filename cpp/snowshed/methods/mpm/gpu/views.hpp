@@ -16,8 +16,8 @@ inline constexpr unsigned particle_threads = 128, node_threads = nodes_of_block;
 
 /// Particles, sorted by blocks; see mpm::ParticleView.
 struct ParticleArrays {
-  float *cell[3], *velocity[3], *be_minus_identity[6];
-  float* plastic;  // null with elastic snow alone
+  float *cell[3], *velocity[3], *affine[9], *be_minus_identity[6];  // affine: null with FLIP
+  float* plastic;                                                   // null with elastic snow alone
   const float* mass;
   const std::uint8_t* material_id;  // null with one snow
 };
@@ -56,6 +56,39 @@ struct ContactArrays {
   const float *friction, *friction_shares;  // one for each obstacle
 };
 
+/// The record of forces; null pointers if forces are not recorded.
+struct ForceArrays {
+  ContactForce<float>* contacts;  // one for each of the contacts
+  float* blocks;                  // impulses (3) of blocks of nodes with a single obstacle, N s
+  double* steps;                  // `recorded_values` of each step since the host looked
+};
+
+/// Values of a step in the record of forces: its end and its length (s), and the impulse (3) of
+/// each obstacle on the snow, N s.
+constexpr int recorded_values(int obstacles) { return 2 + 3 * obstacles; }
+
+/// Sums of a coarse node, over which velocities are averaged: mass and momentum (3).
+inline constexpr int average_sums = 4;
+
+/// The coarse nodes around a block of particles.
+struct AverageBlock {
+  float origin[3];        // origin of the block past the first node, in spacings
+  std::int32_t shift[3];  // the first node in the first coarse block
+  std::int32_t count[3];  // coarse blocks along each direction
+};
+
+/// The coarse grid; null pointers if there is none.
+struct AverageArrays {
+  const AverageBlock* blocks;    // one for each block of particles
+  const std::int32_t* around;    // the coarse blocks of each
+  std::int32_t around_size;      // room for those of a block
+  std::int32_t edge;             // coarse nodes around a block along each direction
+  float per_cell;                // dx over the spacing
+  unsigned long long* integers;  // sums of the awake snow, as whole multiples of a unit
+  unsigned long long* asleep;    // sums of the sleeping snow; null if none may sleep
+  Quad* mean;                    // mean velocities
+};
+
 /// Arguments of the kernels of particles.
 struct ParticleLaunch {
   ParticleArrays particles;
@@ -64,6 +97,7 @@ struct ParticleLaunch {
   GridArrays grid;
   std::int32_t* strays;          // room for all particles
   unsigned long long* integers;  // sums to which the particles are added
+  AverageArrays average;
 };
 
 /// Sums over the particles of a block, by which the host decides whether the block sleeps.
@@ -72,6 +106,11 @@ struct BlockMotion {
   double mass, carried, change[3];    // kg; of the nodes, see SleepingBlockMotion, times the mass
   float fastest;                      // m2/s2
   std::int32_t holds_its_snow;
+};
+
+/// The range of the cells in which the particles of a block lie, relative to the block.
+struct CellRange {
+  std::int32_t low[3], high[3];
 };
 
 enum class Phase : std::int32_t {
@@ -91,24 +130,34 @@ struct Control {
   double time, dt, last_dt;  // s; of the step being tried, and of the last one
   double until;              // s, at which the host wants to look
   double smallest_dt;        // s
-  std::int64_t steps, rejected;
+  double travel;             // m, by the fastest snow since the host looked
+  double travel_limit;       // m, after which the host must look
+  double undamped_time;      // s, of the steps since velocities were last damped over a length
+  std::int64_t steps, rejected, undamped_steps;
   Phase phase;
   std::int32_t repeated;         // whether the step being tried has been shortened
   std::int32_t steps_left;       // before the host must look
+  std::int32_t taken;            // steps since the host looked
   std::int32_t must_sort;        // whether a particle is close to the end of the nodes around it
   std::int32_t low[3], high[3];  // range of the node velocities, see `ordered`
   float strain;                  // s^-1, largest velocity gradient that the particles would see
   float speed_squared;           // m2/s2, of the fastest snow in the last step
+  float spin;                    // s^-1, largest component of an affine velocity in the last step
   float strain_of_step;          // strain in the step that failed
   std::int32_t unsound;          // the first particle that is not sound
   std::int32_t strays;           // particles whose nodes do not lie in the tile of their block
   float momentum_unit;           // kg m/s, of the sums of the last step
 };
 
+/// Sum of the largest distances of a node from a particle along the three directions, in cells.
+inline constexpr float arm = 4.5f;
+
 /// Constants of a run.
 struct Constants {
   double elastic_limit, courant_factor, strain_limit, dx;
   double friction_memory, friction_reach;   // s, m
+  double relaxation_time;                   // s, of stress beyond the yield surface
+  double average_rate, average_share;       // s^-1; 0: velocities are not damped over a length
   float gravity, flip_ratio, damping_rate;  // a negative rate: the ratio holds for each step
   float mass_unit, force_unit;              // kg, N
   MaterialConstants<float> snow;            // the only one

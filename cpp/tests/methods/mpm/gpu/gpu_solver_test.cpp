@@ -246,6 +246,30 @@ TEST(GpuSolver, SnowMayBeEditedBetweenSteps) {
   expect_close(*both.cpu, *both.gpu, 1e-5, 1e-3);
 }
 
+/// As reseeding between events does: other particles in the place of those that came to rest.
+TEST(GpuSolver, SnowMayBeReplacedBetweenEvents) {
+  Options o = options_on_gpu(dx);
+  o.forces = true;
+  o.settings.transfer = Transfer::affine_flip;
+  o.settings.damping_rate = 200;
+  o.settings.damping_length = dx;
+  BothSolvers both = make_both(o, {fixed(level_ground(), Condition::separate, 0.3)});
+  both.add(block_of_snow(0.01, Vec3(1, 0, -2)));
+  both.run(30);
+  ParticleBatch old_snow = filled_box(3, Vec3(0, 0, 0.01), Vec3(0.25, 0.2, 0.16), dx / 3);
+  ParticleBatch new_snow = block_of_snow(0.2, Vec3(0, 0, -3));
+  new_snow.event = 1;
+  for (Solver* s : {both.cpu.get(), both.gpu.get()}) {
+    s->replace({old_snow});
+    s->begin_force_event();
+    s->add(new_snow);
+  }
+  both.run(40);
+  expect_close(*both.cpu, *both.gpu, 1e-5, 1e-3);
+  const Vec3 force = both.cpu->forces()->forces()[0].means.peak(1);
+  EXPECT_LT((force - both.gpu->forces()->forces()[0].means.peak(1)).norm(), 2e-3 * force.norm());
+}
+
 TEST(GpuSolver, SaysThatATimeStepFellToZero) {
   Options o = options_on_gpu(dx);
   o.settings.strain_limit = 1e-12;
