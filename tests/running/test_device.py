@@ -27,7 +27,10 @@ def without_driver(monkeypatch):
 
 def scene(device):
     return Scene.preset("lab-50").update(
-        {"dimension": 2, "numerics.dx": 0.02, "numerics.device": device, "events.max_time": 0.06}
+        {
+            **{"dimension": 2, "numerics.dx": 0.02, "numerics.device": device},
+            **{"slab.thickness": 0.06, "events.max_time": 0.06},  # no note on a coarse slab
+        }
     )
 
 

@@ -301,7 +301,7 @@ AREAS = {
     *("material", "transfer", "contact", "time step", "sleep", "seeding", "events"),
     *("measures", "post-processing", "scheme", "clearance", "plants", "forces"),
     "laws of one's own",
-    "graphics card",
+    *("graphics card", "threads"),
 }
 
 
