@@ -7,6 +7,7 @@
 
 #include "io/temporary_folder.hpp"
 #include "snowshed/core/angles.hpp"
+#include "snowshed/core/errors.hpp"
 #include "snowshed/io/binary_archive.hpp"
 
 namespace snowshed::methods {
