@@ -172,28 +172,25 @@ def notes_after(table: pd.DataFrame, scene: Mapping[str, Any]) -> list[str]:
     >>> notes_after(pd.DataFrame({"mass_kg": [0.0], "on_panel_kg": [2.0]}), {"panel": {}})
     ['nothing slid: the snow stays on the panel; there is no stack to measure']
     """
-    notes = _notes_on_records(table, scene)
-    last = table.iloc[-1]
+    return [*_notes_on_records(table, scene), *_notes_on_snow_that_stays(table.iloc[-1], scene)]
+
+
+def _notes_on_snow_that_stays(last: pd.Series[Any], scene: Mapping[str, Any]) -> list[str]:
+    """Return a note if much of the snow lies on the panel or on structures after the last event."""
     held = last["on_panel_kg"] + last.get("on_structures_kg", 0.0)
     if held <= 0.0:
-        return notes
+        return []
     holders = [("the panel", "panel" in scene), ("structures", bool(scene.get("obstacles")))]
     where = " or on ".join(name for name, given in holders if given)
     slides = "slid" if "panel" in scene else "fell"
     part = held / (held + last["mass_kg"])
     if last["mass_kg"] == 0.0:
-        return [
-            *notes,
-            f"nothing {slides}: the snow stays on {where}; there is no stack to measure",
-        ]
+        return [f"nothing {slides}: the snow stays on {where}; there is no stack to measure"]
     if part >= NEARLY_ALL:
-        return [
-            *notes,
-            f"next to nothing {slides}: {100 * part:.1f} % of the snow stays on {where}",
-        ]
+        return [f"next to nothing {slides}: {100 * part:.1f} % of the snow stays on {where}"]
     if part >= 1.0 - NEARLY_ALL:
-        return [*notes, f"{100 * part:.0f} % of the snow stays on {where}"]
-    return notes
+        return [f"{100 * part:.0f} % of the snow stays on {where}"]
+    return []
 
 
 def _notes_on_records(table: pd.DataFrame, scene: Mapping[str, Any]) -> list[str]:

@@ -29,9 +29,6 @@ inline constexpr int block_nodes = block_edge<D> * block_edge<D> * (D == 3 ? blo
 ///             (FLIP, affine FLIP) or the new velocity again (APIC).
 inline constexpr int node_values = 8;
 
-/// Inverse of APIC's inertia D = sum_i w_i (x_i - x)^2, per cell squared.
-constexpr double apic_inverse_inertia(Basis basis) { return basis == Basis::quadratic ? 4.0 : 3.0; }
-
 /// Nodes along one edge of a block's tile: the block's own nodes, the nodes outside the block that
 /// its particles reach, and one more node on either side. Particles may thus stray by a cell before
 /// they must be sorted again.

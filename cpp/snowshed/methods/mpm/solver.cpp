@@ -353,10 +353,7 @@ void SolverImpl<T, D>::average_velocities(double dt) noexcept {
 template <class T, int D>
 void SolverImpl<T, D>::record_damping(double dt) noexcept {
   if (!workspace_.average) return;
-  StepTotals& p = state_.totals;
-  const bool damped = damps_next();
-  p.undamped_steps = damped ? 0 : p.undamped_steps + 1;
-  p.undamped_time = damped ? 0.0 : p.undamped_time + dt;
+  count_undamped(state_.totals.undamped_steps, state_.totals.undamped_time, dt);
 }
 
 /// Throws if a particle is not sound any more. The step cannot be taken back: the particles have

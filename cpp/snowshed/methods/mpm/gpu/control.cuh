@@ -78,11 +78,7 @@ __device__ inline double largest_speed(const Control& c) {
 
 /// Records a step that was taken.
 __device__ inline void record_step(Control& c, const Constants& k) {
-  if (k.average_share > 0) {
-    const bool damped = damps_after(c.undamped_steps);
-    c.undamped_steps = damped ? 0 : c.undamped_steps + 1;
-    c.undamped_time = damped ? 0.0 : c.undamped_time + c.dt;
-  }
+  if (k.average_share > 0) count_undamped(c.undamped_steps, c.undamped_time, c.dt);
   c.time += c.dt;
   c.travel += largest_speed(c) * c.dt;
   c.last_dt = c.dt;

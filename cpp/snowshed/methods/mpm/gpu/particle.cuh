@@ -56,7 +56,7 @@ struct AffineVelocity {
     for (int k = 0; k < 9; ++k) p.affine[k][i] = c[k];
   }
   __device__ void take(const NodeMeans<true>& m, float dx) {
-    constexpr float inverse_inertia = 4;  // of the quadratic spline, see apic_inverse_inertia
+    constexpr float inverse_inertia = float(apic_inverse_inertia(Basis::quadratic));
 #pragma unroll
     for (int k = 0; k < 9; ++k) c[k] = m.moment[k / 3][k % 3] * (inverse_inertia / dx);
   }

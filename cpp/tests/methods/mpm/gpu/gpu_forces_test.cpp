@@ -104,11 +104,9 @@ TEST(GpuForces, SleepingSnowStillPresses) {
 }
 
 TEST(GpuForces, FollowObstaclesInMotion) {
-  Obstacle lift = named("lift", geometry::make_box(Vec3(0.25, 0.15, -0.15), Vec3(0.9, 0.7, 0.3)),
-                        Condition::separate, 0.3);
-  geometry::MotionSpec motion;
-  motion.velocity = Vec3(0.5, 0, 0.8);
-  lift.motion.emplace(motion);
+  const Obstacle lift =
+      rising(named("lift", geometry::make_box(Vec3(0.25, 0.15, -0.15), Vec3(0.9, 0.7, 0.3)),
+                   Condition::separate, 0.3));
   const auto cpu = make_solver(recording(), {lift});
   const auto gpu = make_emulated(recording(), {lift});
   for (Solver* s : {cpu.get(), gpu.get()}) {

@@ -115,11 +115,8 @@ TEST(GpuCheckpoint, ResumesToTheSameBitsFromASafePoint) {
 }
 
 TEST(GpuObstacle, MovesTheSnowAsTheProcessorDoes) {
-  Obstacle lift = fixed(geometry::make_box(Vec3(0.25, 0.15, -0.15), Vec3(0.9, 0.7, 0.3)),
-                        Condition::separate, 0.3);
-  geometry::MotionSpec motion;
-  motion.velocity = Vec3(0.5, 0, 0.8);
-  lift.motion.emplace(motion);
+  const Obstacle lift = rising(fixed(
+      geometry::make_box(Vec3(0.25, 0.15, -0.15), Vec3(0.9, 0.7, 0.3)), Condition::separate, 0.3));
   const Options o = sleepy_options();
   const auto gpu = make_emulated(o, {lift});
   const auto cpu = make_solver(o, {lift});

@@ -30,6 +30,14 @@ inline std::unique_ptr<Solver> make_emulated(
   return make_gpu_solver(std::move(o), emulated_card(turns));
 }
 
+/// The obstacle, on its way up and along x.
+inline Obstacle rising(Obstacle obstacle) {
+  geometry::MotionSpec motion;
+  motion.velocity = Vec3(0.5, 0, 0.8);
+  obstacle.motion.emplace(motion);
+  return obstacle;
+}
+
 /// The largest distance between the particles of two states, m.
 inline double largest_distance(const ParticleState& a, const ParticleState& b) {
   double largest = 0;

@@ -59,11 +59,8 @@ TEST(GpuTouch, HostLooksRarelyAtSnowThatRests) {
 }
 
 TEST(GpuTouch, FollowsObstaclesInMotion) {
-  Obstacle lift = fixed(geometry::make_box(Vec3(0.15, 0.1, -0.15), Vec3(0.9, 0.7, 0.3)),
-                        Condition::separate, 0.3);
-  geometry::MotionSpec motion;
-  motion.velocity = Vec3(0.5, 0, 0.8);
-  lift.motion.emplace(motion);
+  const Obstacle lift = rising(fixed(
+      geometry::make_box(Vec3(0.15, 0.1, -0.15), Vec3(0.9, 0.7, 0.3)), Condition::separate, 0.3));
   const auto cpu = make_solver(touching_options(), {lift});
   const auto gpu = make_emulated(touching_options(), {lift});
   for (Solver* s : {cpu.get(), gpu.get()}) {
