@@ -18,8 +18,10 @@ from snowshed import (
     SnowshedNote,
     Study,
 )
+from snowshed.analysis.clearance import SnowRanges
 from snowshed.base.notes import record_notes
 from snowshed.running.ageing.ageing import Ageing, Interval
+from snowshed.scene import single_panel, wall
 from snowshed.season import SeasonSettings, snow_balance
 from snowshed.snow import follow_path
 from snowshed.study import Factor, remeasure
@@ -128,6 +130,20 @@ def test_pauses_that_change_nothing_are_told(tiny, tmp_path):
 def test_unusual_settings_of_a_season_are_told(values):
     with pytest.warns(SnowshedNote, match="is unusual; most values are"):
         SeasonSettings(**values)
+
+
+def test_unusual_ranges_of_a_clearance_are_told():
+    with pytest.warns(SnowshedNote, match=r"adhesion: 0 to 0\.15 is unusual; most values are 0\.2"):
+        SnowRanges({"adhesion": (0.0, 0.15)})
+    with record_notes() as notes:
+        SnowRanges()
+    assert notes == []
+
+
+def test_a_structure_behind_the_edge_is_told():
+    panel = single_panel(height=1.5, length=3.0, tilt=50.0, snow=0.2, dx=0.05)
+    with pytest.warns(SnowshedNote, match="distance: -1 m is behind the edge, where the wall"):
+        wall(panel, distance=-1.0, height=1.2)
 
 
 def test_a_tilt_in_radians_outside_a_scene_is_told():

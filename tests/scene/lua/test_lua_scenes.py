@@ -9,6 +9,7 @@ from helpers.paths import ROOT
 from lua_helpers import error_of, load
 
 from snowshed import InputError, Scene, Simulation, SnowshedNote
+from snowshed.base.notes import record_notes
 from snowshed.scene import load_lua
 
 EXAMPLES = ROOT / "lua_compat" / "examples"
@@ -391,4 +392,17 @@ def test_scripts_have_variables_of_their_own(tmp_path):
 def test_a_name_without_a_value_is_noted_because_its_setting_is_left_out(tmp_path, name):
     script = f"preset 'lab-50'\npanel {{ condition = {name} }}"
     with pytest.warns(SnowshedNote, match=f"init.lua:2: {name} has no value"):
+        load(tmp_path, script)
+
+
+def test_a_variable_with_a_default_is_not_noted(tmp_path):
+    with record_notes() as notes:
+        data = scene_of(tmp_path, "tilt = tilt or 30\npreset 'lab-50'", "panel { tilt = tilt }")
+    assert data["panel"]["tilt"] == 30
+    assert not any("has no value" in note for note in notes)
+
+
+def test_a_local_variable_that_hides_a_word_is_noted(tmp_path):
+    script = "preset 'lab-50'\n-- local slab = {}\nlocal tilt, panel = 30, { tilt = 20 }"
+    with pytest.warns(SnowshedNote, match="init.lua:3: the local variable panel hides the word"):
         load(tmp_path, script)

@@ -13,7 +13,7 @@ namespace snowshed::methods::mpm {
 template <int D>
 class AverageLayout {
  public:
-  static constexpr int edge = 4;  // nodes along each direction of a block of the coarse grid
+  static constexpr int edge = D == 3 ? 4 : 8;  // nodes of a coarse block along each direction
   static constexpr int block_nodes = D == 3 ? edge * edge * edge : edge * edge;
   using Coord = std::array<std::int32_t, D>;
 

@@ -10,22 +10,16 @@
 namespace snowshed::methods::mpm {
 namespace {
 
-/// Smallest mass (kg) of a field at a node that counts. Nodes that a field barely reaches do not
-/// show where its surface is.
-constexpr double min_shared_mass = 1e-12;
-
-/// Returns the flat index in an array with `edge` elements along each direction, whose indices
-/// begin at `low`.
-template <int D>
-int flat_index(const std::array<int, D>& index, int edge, int low = 0) {
-  int flat = 0;
-  for (int d = 0; d < D; ++d) flat = flat * edge + index[d] - low;
-  return flat;
-}
-
 template <class T>
 bool by_key(const EventContact<T>* a, const EventContact<T>* b) {
   return a->key() < b->key();
+}
+
+template <class T, int D>
+bool share_a_node(const T* first, const T* second) {
+  for (int k = 0; k < block_nodes<D> * node_values; k += node_values)
+    if (double(first[k]) > min_shared_mass && double(second[k]) > min_shared_mass) return true;
+  return false;
 }
 
 }  // namespace
@@ -33,6 +27,7 @@ bool by_key(const EventContact<T>* a, const EventContact<T>* b) {
 template <class T, int D>
 void EventContacts<T, D>::forget(const Model<T, D>& model, const State<T, D>& state, int threads) {
   measured_ = false;
+  travel_.clear();
   radius_.clear();
   if (overlap_count(state.layout) == 0) return;
   radius_.resize(state.particles.size());
@@ -44,21 +39,26 @@ void EventContacts<T, D>::forget(const Model<T, D>& model, const State<T, D>& st
 
 template <class T, int D>
 void EventContacts<T, D>::update(const Model<T, D>& model, State<T, D>& state, Grid<T, D>& grid,
-                                 double moved, int threads) {
-  since_measured_ += moved;
-  if (measured_ && since_measured_ < contact_tolerance * model.options.settings.dx) return;
+                                 int threads) {
+  const std::ptrdiff_t overlaps = overlap_count(state.layout);
+  find_due(model, state, grid);
+  if (std::find(due_.begin(), due_.end(), 1) == due_.end()) return;
   const std::vector<EventContact<T>>& before = state.event_contacts;
   SortedContacts contacts_by_key;
   for (const EventContact<T>& c : before) contacts_by_key.push_back(&c);
-  std::sort(contacts_by_key.begin(), contacts_by_key.end(), by_key<T>);
-  std::vector<std::vector<EventContact<T>>> by_overlap(overlap_count(state.layout));
-  parallel_for_dynamic(overlap_count(state.layout), threads, 1, [&](std::ptrdiff_t overlap) {
-    const std::int32_t block = state.layout.overlap_blocks[state.layout.overlap_first[overlap]];
-    if (measured_ && !state.sleep.is_active(block))  // nothing has moved there
-      by_overlap[overlap].assign(before.begin() + first_[overlap],
-                                 before.begin() + first_[overlap + 1]);
-    else
-      measure(model, state, grid, contacts_by_key, overlap, by_overlap[overlap]);
+  // Contacts of the same layout are in order already.
+  if (!measured_) std::sort(contacts_by_key.begin(), contacts_by_key.end(), by_key<T>);
+  std::vector<std::vector<EventContact<T>>> by_overlap(overlaps);
+  parallel_for_dynamic(overlaps, threads, 1, [&](std::ptrdiff_t overlap) {
+    const auto begin = contacts_by_key.data() + (measured_ ? first_[overlap] : 0);
+    const auto end = measured_ ? contacts_by_key.data() + first_[overlap + 1]
+                               : contacts_by_key.data() + contacts_by_key.size();
+    if (due_[overlap]) {
+      measure(model, state, grid, begin, end, overlap, by_overlap[overlap]);
+      travel_[overlap] = 0;
+    } else {
+      for (auto c = begin; c != end; ++c) by_overlap[overlap].push_back(**c);
+    }
   });
   std::vector<EventContact<T>> next;
   std::vector<std::int32_t> first{0};
@@ -68,8 +68,35 @@ void EventContacts<T, D>::update(const Model<T, D>& model, State<T, D>& state, G
   }
   state.event_contacts = std::move(next);
   first_ = std::move(first);
-  since_measured_ = 0;
   measured_ = true;
+}
+
+/// Finds the overlaps in which snow may have moved far enough to change the contacts.
+template <class T, int D>
+void EventContacts<T, D>::find_due(const Model<T, D>& model, const State<T, D>& state,
+                                   const Grid<T, D>& grid) {
+  const double tolerance = contact_tolerance * model.options.settings.dx;
+  const std::ptrdiff_t overlaps = overlap_count(state.layout);
+  due_.assign(overlaps, std::uint8_t(!measured_));
+  travel_.resize(overlaps);
+  if (!measured_) return;
+  for (std::ptrdiff_t overlap = 0; overlap < overlaps; ++overlap) {
+    travel_[overlap] += fastest_around(state, grid, overlap) * state.totals.dt;
+    due_[overlap] = travel_[overlap] >= tolerance;
+  }
+}
+
+/// The speed (m/s) of the fastest snow that can reach the nodes of an overlap.
+template <class T, int D>
+double EventContacts<T, D>::fastest_around(const State<T, D>& state, const Grid<T, D>& grid,
+                                           std::ptrdiff_t overlap) const {
+  const BlockLayout<D>& layout = state.layout;
+  double squared = 0;
+  for (auto k = layout.overlap_first[overlap]; k < layout.overlap_first[overlap + 1]; ++k)
+    for (const std::int32_t b : layout.around_nodes[layout.overlap_blocks[k]])
+      if (b >= 0 && !state.sleep.states()[b].asleep)
+        squared = std::max(squared, grid.block_stats[b].max_speed_squared);
+  return std::sqrt(squared);
 }
 
 /// The sums of a block of nodes, or null if no snow reaches it. `buffer` holds them if the block
@@ -87,14 +114,13 @@ const T* EventContacts<T, D>::sums_of(const State<T, D>& state, Grid<T, D>& grid
 }
 
 template <class T, int D>
-typename EventContacts<T, D>::Masses EventContacts<T, D>::masses_of(const State<T, D>& state,
-                                                                    Grid<T, D>& grid,
-                                                                    const Kernels<T>& kernels,
-                                                                    std::int32_t g) const {
-  Masses masses(padded_nodes, T(0));
+std::vector<T> EventContacts<T, D>::masses_of(const State<T, D>& state, Grid<T, D>& grid,
+                                              const Kernels<T>& kernels, std::int32_t g) const {
+  constexpr int margin = NormalSmoothing<D>::margin, edge = NormalSmoothing<D>::edge;
+  std::vector<T> masses(NormalSmoothing<D>::size, T(0));
   std::vector<T> buffer;
   const BlockKey key = state.layout.grid_blocks[g];
-  for_each_index(filled(-1), filled(2), [&](const std::array<int, D>& offset) {
+  for_each_index(filled<D>(-1), filled<D>(2), [&](const std::array<int, D>& offset) {
     BlockCoord<D> coord = block_coord<D>(key);
     std::array<int, D> begin, end;
     for (int d = 0; d < D; ++d) {
@@ -110,93 +136,47 @@ typename EventContacts<T, D>::Masses EventContacts<T, D>::masses_of(const State<
     for_each_index(begin, end, [&](const std::array<int, D>& node) {
       std::array<int, D> padded;
       for (int d = 0; d < D; ++d) padded[d] = node[d] + offset[d] * B;
-      masses[flat_index<D>(padded, padded_edge, -margin)] =
+      masses[flat_index<D>(padded, edge, -margin)] =
           sums[flat_index<D>(node, B) * node_values];
     });
   });
   return masses;
 }
 
-/// The normal of a node is the direction of the gradient of the difference of the two masses,
-/// smoothed over the nodes around it. Without smoothing its direction is arbitrary at the corners
-/// of a body, and it would push the body forward.
-template <class T, int D>
-void EventContacts<T, D>::find_normals(const Masses& a, const Masses& b, Nodes& nodes) {
-  struct WeightedNormal {
-    std::array<int, D> node;
-    VecD<D> normal;  // unit normal times the product of the masses, kg2
-  };
-  std::vector<WeightedNormal> around;
-  const auto shared = [&](int node_index) {
-    return double(a[node_index]) > min_shared_mass && double(b[node_index]) > min_shared_mass;
-  };
-  for_each_index(filled(-smoothing), filled(B + smoothing), [&](const std::array<int, D>& node) {
-    const int k = flat_index<D>(node, padded_edge, -margin);
-    if (!shared(k)) return;
-    VecD<D> gradient;
-    for (int d = D - 1, stride = 1; d >= 0; --d, stride *= padded_edge)
-      gradient[d] = (double(b[k + stride]) - double(b[k - stride])) -
-                    (double(a[k + stride]) - double(a[k - stride]));
-    const double length = gradient.norm();
-    if (length > 0) around.push_back({node, double(a[k]) * double(b[k]) / length * gradient});
-  });
-  if (around.empty()) return;
-  for_each_index(filled(0), filled(B), [&](const std::array<int, D>& node) {
-    if (!shared(flat_index<D>(node, padded_edge, -margin))) return;
-    VecD<D> sum = VecD<D>::Zero();
-    for (const WeightedNormal& other : around) {
-      int tent = 1;
-      for (int d = 0; d < D; ++d) tent *= std::max(margin - std::abs(other.node[d] - node[d]), 0);
-      if (tent > 0) sum += double(tent) * other.normal;
-    }
-    const double length = sum.norm();
-    if (!(length > 0)) return;
-    const int k = flat_index<D>(node, B);
-    nodes.shared |= std::uint64_t(1) << k;
-    for (int d = 0; d < D; ++d) {
-      nodes.normal[k][d] = T(sum[d] / length);
-      nodes.begin[d] = std::min(nodes.begin[d], node[d]);
-      nodes.end[d] = std::max(nodes.end[d], node[d] + 1);
-    }
-    nodes.first[k] = T(-1e9);
-    nodes.second[k] = T(1e9);
-  });
-}
-
-/// Finds how far the particles of a field, with their radius, reach along the normals of the nodes.
-/// Only particles that have weight at a node count.
+/// Finds how far the particles of a field reach along the normals of the nodes of block g.
 template <class T, int D>
 void EventContacts<T, D>::find_reach(const Model<T, D>& model, const State<T, D>& state,
-                                     std::int32_t g, bool first, Nodes& nodes) const {
+                                     Grid<T, D>& grid, std::int32_t g,
+                                     const SharedNodes<T, D>& nodes, ReachMap<T, D>& reach) const {
   const Particles<T, D>& p = state.particles;
   const BlockCoord<D> block = block_coord<D>(state.layout.grid_blocks[g]);
   const T offset = T(base_offset(model.options.settings.basis));
-  for (const std::int32_t b : state.layout.around_nodes[g]) {
-    if (b < 0) continue;
+  const T* tiles[neighbour_count<D>];
+  grid.tiles_reaching(state.layout, g, tiles);
+  for (int around = 0; around < neighbour_count<D>; ++around) {
+    if (!tiles[around]) continue;
+    const std::int32_t b = state.layout.around_nodes[g][around];
     const BlockCoord<D> from = block_coord<D>(state.layout.particle_blocks[b]);
+    T shift[D], low[D], high[D];  // a particle from `low` to `high` has weight at the shared nodes
+    for (int d = 0; d < D; ++d) {
+      shift[d] = T((from[d] - block[d]) * B);
+      low[d] = T(nodes.begin[d] - support_ + 1);
+      high[d] = T(nodes.end[d]);
+    }
     for (std::int32_t i = state.layout.first[b]; i < state.layout.first[b + 1]; ++i) {
       T x[D];
-      std::array<int, D> begin, end;
       bool near = true;
       for (int d = 0; d < D; ++d) {
-        const T cell = p.cell[d][i] + T((from[d] - block[d]) * B);
-        const int lowest = int(std::floor(cell));
-        x[d] = cell + offset;
-        begin[d] = std::max(lowest, nodes.begin[d]);
-        end[d] = std::min(lowest + support_, nodes.end[d]);
-        near = near && begin[d] < end[d];
+        x[d] = p.cell[d][i] + shift[d];
+        near = near && x[d] >= low[d] && x[d] < high[d];
       }
       if (!near) continue;
-      for_each_index(begin, end, [&](const std::array<int, D>& node) {
-        const int k = flat_index<D>(node, B);
-        if (!(nodes.shared >> k & 1)) return;
-        T along = 0;
-        for (int d = 0; d < D; ++d) along += x[d] * nodes.normal[k][d];
-        if (first)
-          nodes.first[k] = std::max(nodes.first[k], along + radius_[i]);
-        else
-          nodes.second[k] = std::min(nodes.second[k], along - radius_[i]);
-      });
+      std::array<int, D> lowest;
+      for (int d = 0; d < D; ++d) {
+        lowest[d] = int(x[d]) - (x[d] < T(int(x[d])));  // std::floor would be a call
+        x[d] += offset;
+      }
+      reach.add(x, lowest, support_, radius_[i]);
     }
   }
 }
@@ -205,42 +185,50 @@ void EventContacts<T, D>::find_reach(const Model<T, D>& model, const State<T, D>
 /// separated stays a contact until friction has used up its stored impulse.
 template <class T, int D>
 void EventContacts<T, D>::measure(const Model<T, D>& model, const State<T, D>& state,
-                                  Grid<T, D>& grid, const SortedContacts& before,
-                                  std::ptrdiff_t overlap,
+                                  Grid<T, D>& grid, const EventContact<T>* const* before_begin,
+                                  const EventContact<T>* const* before_end, std::ptrdiff_t overlap,
                                   std::vector<EventContact<T>>& contacts) const {
   const auto begin = state.layout.overlap_blocks.begin() + state.layout.overlap_first[overlap];
   const auto end = state.layout.overlap_blocks.begin() + state.layout.overlap_first[overlap + 1];
-  std::vector<T> buffer;
-  std::vector<std::int32_t> reached;
+  struct Field {
+    std::int32_t block;
+    const T* sums;
+    std::vector<T> masses;  // once they are needed
+  };
+  std::vector<Field> fields;
+  std::vector<std::vector<T>> buffers(std::size_t(end - begin));
   for (auto g = begin; g != end; ++g)
-    if (sums_of(state, grid, model.kernels, *g, buffer)) reached.push_back(*g);
-  if (reached.size() < 2) return;
-  std::vector<Masses> masses;
-  for (const std::int32_t g : reached) masses.push_back(masses_of(state, grid, model.kernels, g));
-  for (std::size_t a = 0; a < reached.size(); ++a)
-    for (std::size_t b = a + 1; b < reached.size(); ++b) {
-      Nodes nodes;
-      find_normals(masses[a], masses[b], nodes);
-      if (!nodes.shared) continue;
-      find_reach(model, state, reached[a], true, nodes);
-      find_reach(model, state, reached[b], false, nodes);
-      for (int k = 0; k < block_nodes<D>; ++k) {
-        if (!(nodes.shared >> k & 1)) continue;
-        EventContact<T> c{state.layout.grid_blocks[reached[a]],
-                          state.layout.grid_blocks[reached[b]],
+    if (const T* sums = sums_of(state, grid, model.kernels, *g, buffers[std::size_t(g - begin)]))
+      fields.push_back({*g, sums, {}});
+  for (std::size_t a = 0; a < fields.size(); ++a)
+    for (std::size_t b = a + 1; b < fields.size(); ++b) {
+      if (!share_a_node<T, D>(fields[a].sums, fields[b].sums)) continue;
+      for (Field* field : {&fields[a], &fields[b]})
+        if (field->masses.empty())
+          field->masses = masses_of(state, grid, model.kernels, field->block);
+      const SharedNodes<T, D> nodes =
+          find_shared_nodes<T, D>(fields[a].masses, fields[b].masses);
+      ReachMap<T, D> first(nodes, T(1)), second(nodes, T(-1));  // towards each other
+      find_reach(model, state, grid, fields[a].block, nodes, first);
+      find_reach(model, state, grid, fields[b].block, nodes, second);
+      for_each_index(nodes.begin, nodes.end, [&](const std::array<int, D>& node) {
+        const int k = flat_index<D>(node, B);
+        if (!nodes.contains(k)) return;
+        EventContact<T> c{state.layout.grid_blocks[fields[a].block],
+                          state.layout.grid_blocks[fields[b].block],
                           k,
-                          reached[a],
-                          reached[b],
-                          nodes.first[k] >= nodes.second[k],
+                          fields[a].block,
+                          fields[b].block,
+                          first.at(node) >= -second.at(node),
                           {},
                           0,
                           0};
         for (int d = 0; d < D; ++d) c.normal[d] = nodes.normal[k][d];
-        const auto old = std::lower_bound(before.begin(), before.end(), &c, by_key<T>);
-        if (old != before.end() && (*old)->key() == c.key())
+        const auto old = std::lower_bound(before_begin, before_end, &c, by_key<T>);
+        if (old != before_end && (*old)->key() == c.key())
           c.impulse = c.next_impulse = (*old)->next_impulse;
         if (c.touches || c.impulse > T(0)) contacts.push_back(c);
-      }
+      });
     }
 }
 

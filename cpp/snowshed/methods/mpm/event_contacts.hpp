@@ -9,10 +9,10 @@
 // pair with opposite signs. Three or more fields interact in pairs.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
+#include "snowshed/methods/mpm/event_reach.hpp"
 #include "snowshed/methods/mpm/grid.hpp"
 #include "snowshed/methods/mpm/state.hpp"
 
@@ -27,11 +27,9 @@ class EventContacts {
   /// the particles.
   void forget(const Model<T, D>& model, const State<T, D>& state, int threads);
 
-  /// Finds the contacts between the fields if snow may have moved far enough to change them.
-  /// `moved` is the distance (m) by which the fastest snow has moved since the last call. The sums
-  /// of active blocks must be up to date.
-  void update(const Model<T, D>& model, State<T, D>& state, Grid<T, D>& grid, double moved,
-              int threads);
+  /// Finds the contacts of the overlaps in which snow may have moved far enough to change them, in
+  /// the last step and before. The sums of active blocks must be up to date.
+  void update(const Model<T, D>& model, State<T, D>& state, Grid<T, D>& grid, int threads);
 
   std::ptrdiff_t overlap_count(const BlockLayout<D>& layout) const {
     return std::ptrdiff_t(layout.overlap_first.size()) - 1;
@@ -43,26 +41,6 @@ class EventContacts {
 
  private:
   static constexpr int B = block_edge<D>;
-  /// Number of nodes on either side over which normals are smoothed. With fewer nodes the roughness
-  /// of two layers of particles brakes sliding snow. In three dimensions a smaller number suffices,
-  /// because it covers more nodes.
-  static constexpr int smoothing = D == 2 ? 6 : 3;
-  static constexpr int margin = smoothing + 1;  // nodes around a block whose masses are needed
-  static constexpr int padded_edge = B + 2 * margin;
-  static constexpr int padded_nodes = padded_edge * padded_edge * (D == 3 ? padded_edge : 1);
-  using Masses = std::vector<T>;  // masses of a field at the nodes of a block and around it
-  static std::array<int, D> filled(int value) {
-    std::array<int, D> index;
-    index.fill(value);
-    return index;
-  }
-  struct Nodes {               // nodes of a block that two fields share
-    std::uint64_t shared = 0;  // a bit for each node
-    std::array<int, D> begin = filled(B), end = filled(0);  // box around these
-    T normal[64][3];                                        // from the first field to the second
-    T first[64], second[64];  // reach of the fields along the normal, towards each other, cells
-  };
-
   struct Impulses {  // impulses of a step at a node, N s
     T push;          // from the first field to the second, along the normal
     T friction;      // friction that is due
@@ -71,16 +49,18 @@ class EventContacts {
   };
   using SortedContacts = std::vector<const EventContact<T>*>;  // in the order of their keys
 
+  void find_due(const Model<T, D>& model, const State<T, D>& state, const Grid<T, D>& grid);
+  double fastest_around(const State<T, D>& state, const Grid<T, D>& grid,
+                        std::ptrdiff_t overlap) const;
   const T* sums_of(const State<T, D>& state, Grid<T, D>& grid, const Kernels<T>& kernels,
                    std::int32_t block, std::vector<T>& buffer) const;
-  Masses masses_of(const State<T, D>& state, Grid<T, D>& grid, const Kernels<T>& kernels,
-                   std::int32_t block) const;
-  static void find_normals(const Masses& a, const Masses& b, Nodes& nodes);
-  void find_reach(const Model<T, D>& model, const State<T, D>& state, std::int32_t block,
-                  bool first, Nodes& nodes) const;
+  std::vector<T> masses_of(const State<T, D>& state, Grid<T, D>& grid, const Kernels<T>& kernels,
+                           std::int32_t block) const;
+  void find_reach(const Model<T, D>& model, const State<T, D>& state, Grid<T, D>& grid,
+                  std::int32_t block, const SharedNodes<T, D>& nodes, ReachMap<T, D>& reach) const;
   void measure(const Model<T, D>& model, const State<T, D>& state, Grid<T, D>& grid,
-               const SortedContacts& before, std::ptrdiff_t overlap,
-               std::vector<EventContact<T>>& contacts) const;
+               const EventContact<T>* const* before_begin, const EventContact<T>* const* before_end,
+               std::ptrdiff_t overlap, std::vector<EventContact<T>>& contacts) const;
   void exchange(const StepParameters<T>& step, T friction, Grid<T, D>& grid, EventContact<T>* begin,
                 EventContact<T>* end) const;
   Impulses impulses_at(const StepParameters<T>& step, T friction, const T* const (&sums)[2],
@@ -89,7 +69,8 @@ class EventContacts {
   int support_;
   std::vector<T> radius_;               // radius of each particle, cells
   std::vector<std::int32_t> first_{0};  // first contact of each overlap
-  double since_measured_ = 0;           // distance (m) that the fastest snow has moved
+  std::vector<double> travel_;          // m, of the snow at each overlap since it was measured
+  std::vector<std::uint8_t> due_;       // whether each overlap must be measured
   bool measured_ = false;
 };
 

@@ -7,22 +7,19 @@
 namespace snowshed::methods::mpm {
 
 /// Calls f(index) for all indices in [begin, end) along each direction. The last direction changes
-/// fastest. An index is an array of integers.
+/// fastest. An index is an array of two or three integers.
 template <class Index, class F>
 void for_each_index(const Index& begin, const Index& end, F f) {
   constexpr int dimension = int(std::tuple_size<Index>::value);
-  for (int d = 0; d < dimension; ++d)
-    if (begin[d] >= end[d]) return;
-  Index at = begin;
-  while (true) {
-    f(at);
-    int d = dimension - 1;
-    while (d >= 0 && ++at[d] == end[d]) {
-      at[d] = begin[d];
-      --d;
+  static_assert(dimension == 2 || dimension == 3);
+  Index at{};
+  for (at[0] = begin[0]; at[0] < end[0]; ++at[0])
+    for (at[1] = begin[1]; at[1] < end[1]; ++at[1]) {
+      if constexpr (dimension == 2)
+        f(at);
+      else
+        for (at[2] = begin[2]; at[2] < end[2]; ++at[2]) f(at);
     }
-    if (d < 0) return;
-  }
 }
 
 }  // namespace snowshed::methods::mpm

@@ -1,6 +1,7 @@
 #include "snowshed/methods/mpm/velocity_average.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "snowshed/core/parallel.hpp"
 
@@ -14,7 +15,7 @@ constexpr double slack = 1;
 
 template <class T, int D>
 VelocityAverage<T, D>::VelocityAverage(double length, double dx, Basis basis)
-    : layout_(length, dx, basis, slack) {
+    : layout_(length, dx, basis, slack), offset_(base_offset(basis)) {
   const int tile_edge = layout_.tile_edge();
   tile_size_ = tile_edge * tile_edge * (D == 3 ? tile_edge : 1) * average_values;
 }
@@ -30,6 +31,7 @@ void VelocityAverage<T, D>::find_tiles() {
   const std::size_t blocks = layout_.size();
   tiles_.resize(blocks * std::size_t(tile_size_));
   tiles_of_.resize(blocks);
+  boxes_.resize(blocks);
   settled_.resize(blocks);
   for (std::size_t b = 0; b < blocks; ++b) {
     AverageTile<T>& tile = tiles_of_[b];
@@ -46,7 +48,31 @@ void VelocityAverage<T, D>::find_tiles() {
   needed_.reserve(coarse_blocks);
 }
 
-/// Calls row(node of the coarse block, node of the tile, length) for each run of nodes they share.
+template <class T, int D>
+typename VelocityAverage<T, D>::Box VelocityAverage<T, D>::reached_box(
+    const ParticleView<T>& view, const BlockLayout<D>& layout, std::int32_t b) const {
+  constexpr double rounding = 1e-3;  // of the kernel's positions, in spacings; generous
+  const int last = layout_.tile_edge() - support(Basis::quadratic);
+  Box box;
+  for (int d = 0; d < D; ++d) {
+    const T* const cell = view.cell[d];
+    T low = cell[layout.first[b]], high = low;
+    for (std::int32_t i = layout.first[b] + 1; i < layout.first[b + 1]; ++i) {
+      low = std::min(low, cell[i]);
+      high = std::max(high, cell[i]);
+    }
+    const auto lowest_node = [&](double at) {
+      return (at + offset_) * layout_.per_cell() + layout_.origin(std::size_t(b))[d] - 0.5;
+    };
+    box.begin[d] = std::clamp(int(std::floor(lowest_node(low) - rounding)), 0, last);
+    box.end[d] = std::clamp(int(std::floor(lowest_node(high) + rounding)), 0, last) +
+                 support(Basis::quadratic);
+  }
+  return box;
+}
+
+/// Calls row(node of the coarse block, node of the tile, length) for each run of nodes they share
+/// and the particles of the tile reach.
 template <class T, int D>
 template <class Row>
 void VelocityAverage<T, D>::for_each_shared_row(std::int32_t coarse_block, std::int32_t block,
@@ -56,8 +82,9 @@ void VelocityAverage<T, D>::for_each_shared_row(std::int32_t coarse_block, std::
   for (int d = 0; d < D; ++d) {
     const int k = d + 3 - D;
     shift[k] = layout_.coarse_blocks()[coarse_block][d] * edge - layout_.first_node(block)[d];
-    low[k] = std::max(0, -shift[k]);
-    high[k] = std::min(edge, layout_.tile_edge() - shift[k]);
+    low[k] = std::max(0, boxes_[block].begin[d] - shift[k]);
+    high[k] = std::min(edge, boxes_[block].end[d] - shift[k]);
+    if (low[k] >= high[k]) return;
   }
   for (int i = low[0]; i < high[0]; ++i)
     for (int j = low[1]; j < high[1]; ++j)
@@ -70,7 +97,17 @@ void VelocityAverage<T, D>::for_each_shared_row(std::int32_t coarse_block, std::
 template <class T, int D>
 void VelocityAverage<T, D>::scatter(const Kernels<T>& kernels, const ParticleView<T>& view,
                                     const BlockLayout<D>& layout, std::int32_t b) noexcept {
-  std::fill_n(tiles_of_[b].values, tile_size_, T(0));
+  boxes_[b] = reached_box(view, layout, b);
+  int begin[3] = {0, 0, 0}, end[3] = {1, 1, 1};
+  for (int d = 0; d < D; ++d) {
+    begin[d + 3 - D] = boxes_[b].begin[d];
+    end[d + 3 - D] = boxes_[b].end[d];
+  }
+  const int row = layout_.tile_edge();
+  for (int i = begin[0]; i < end[0]; ++i)
+    for (int j = begin[1]; j < end[1]; ++j)
+      std::fill_n(tiles_of_[b].values + ((i * row + j) * row + begin[2]) * average_values,
+                  (end[2] - begin[2]) * average_values, T(0));
   kernels.scatter_average(view, layout.first[b], layout.first[b + 1] - layout.first[b],
                           tiles_of_[b]);
 }

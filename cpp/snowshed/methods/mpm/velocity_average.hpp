@@ -7,6 +7,7 @@
 // of sleeping blocks, which do not change, outlive a step.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -40,7 +41,13 @@ class VelocityAverage {
   static constexpr int edge = AverageLayout<D>::edge;
   static constexpr int block_size = AverageLayout<D>::block_nodes * average_values;
 
+  /// The nodes of a block's tile that its particles reach.
+  struct Box {
+    std::array<int, D> begin, end;
+  };
+
   void find_tiles();
+  Box reached_box(const ParticleView<T>& view, const BlockLayout<D>& layout, std::int32_t b) const;
   void scatter(const Kernels<T>& kernels, const ParticleView<T>& view, const BlockLayout<D>& layout,
                std::int32_t block) noexcept;
   void gather(std::int32_t coarse_block) noexcept;
@@ -49,7 +56,9 @@ class VelocityAverage {
 
   AverageLayout<D> layout_;
   int tile_size_;
+  double offset_;                         // cells from a particle to its place on the grid
   std::vector<AverageTile<T>> tiles_of_;  // one per particle block
+  std::vector<Box> boxes_;                // one per particle block, valid where its sums are
   std::vector<std::uint8_t> settled_;  // one per particle block: whether its tile's sums stay valid
   std::vector<std::int32_t> needed_;
   std::vector<std::uint8_t> is_needed_;

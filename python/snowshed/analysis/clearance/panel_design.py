@@ -15,6 +15,7 @@ from snowshed.analysis.clearance.grid_error import MIN_CELLS
 from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
 from snowshed.base.callers import argument
+from snowshed.base.notes import issue_note
 from snowshed.scene.components import Ground, Panel, Slab
 from snowshed.scene.scene import ResolvedScene, Scene
 from snowshed.season.rows import SINGLE_ROW, PanelRows
@@ -45,6 +46,8 @@ class UncertainParameter:
         Default range; None: the parameter does not vary by default.
     is_factor
         Whether it is a factor; its logarithm is then drawn evenly, not its value.
+    usual
+        Range of most values; others than 0 are noted.
     """
 
     name: str
@@ -52,23 +55,47 @@ class UncertainParameter:
     unit: str = ""
     default: Optional[Span] = None
     is_factor: bool = False
+    usual: Optional[Span] = None
 
     @property
     def label(self) -> str:
         """The name with the unit."""
         return f"{self.name}, {self.unit}" if self.unit else self.name
 
+    def check(self, name: str, span: Span) -> None:
+        """Raise InputError if a range is not allowed; note unusual values.
+
+        Examples
+        --------
+        >>> UNCERTAIN["catch"].check("catch", (0.5, 2.0))
+        Traceback (most recent call last):
+        snowshed._core.InputError: catch: 0.5 to 2 is not allowed; needed: two values, the smaller \
+first, from 0 to 1
+        """
+        low, high = span
+        smallest, largest = self.limits
+        if not (math.isfinite(low) and math.isfinite(high) and smallest <= low <= high <= largest):
+            raise InputError(
+                f"{name}: {low:g} to {high:g} is not allowed; needed: two values, the smaller "
+                f"first, from {smallest:g} to {largest:g}"
+            )
+        if self.usual and any(value and not self.usual[0] <= value <= self.usual[1] for value in span):
+            issue_note(
+                f"{name}: {low:g} to {high:g} is unusual; most values are {self.usual[0]:g} to "
+                f"{self.usual[1]:g}{f' ({self.unit})' if self.unit else ''}, so check the unit"
+            )
+
 
 #: The uncertain parameters by name.
 UNCERTAIN: Mapping[str, UncertainParameter] = {
     "friction": UncertainParameter(
-        "static friction of snow on the panel", (0.0, 10.0), default=(0.3, 0.7)
+        "static friction of snow on the panel", (0.0, 10.0), default=(0.3, 0.7), usual=(0.01, 2.0)
     ),
     "adhesion": UncertainParameter(
-        "adhesion of snow to the panel", (0.0, 1e5), "Pa", default=(0.0, 150.0)
+        "adhesion of snow to the panel", (0.0, 1e5), "Pa", default=(0.0, 150.0), usual=(0.2, 1e4)
     ),
     "sliding_friction": UncertainParameter(
-        "friction of sliding snow", (0.0, 10.0), default=(0.1, 0.4)
+        "friction of sliding snow", (0.0, 10.0), default=(0.1, 0.4), usual=(0.01, 2.0)
     ),
     "strength": UncertainParameter(
         "strength of the snow",
@@ -76,6 +103,7 @@ UNCERTAIN: Mapping[str, UncertainParameter] = {
         "as a multiple of that for its density",
         default=(0.5, 2.0),
         is_factor=True,
+        usual=(0.1, 10.0),
     ),
     "melt_factor": UncertainParameter(
         "melt of snow on panel, ground and stack",
@@ -83,6 +111,7 @@ UNCERTAIN: Mapping[str, UncertainParameter] = {
         "mm of water per day and degree above 0 °C",
         default=(2.0, 8.0),
         is_factor=True,
+        usual=(0.5, 20.0),
     ),
     "catch": UncertainParameter("share of the snowfall that the panel catches", (0.0, 1.0)),
 }
@@ -159,12 +188,7 @@ class SnowRanges:
         for name, (low, high) in self.spans.items():
             if name not in UNCERTAIN:
                 raise InputError(f"range of {name!r}; allowed: {', '.join(UNCERTAIN)}")
-            least, most = UNCERTAIN[name].limits
-            if not (math.isfinite(low) and math.isfinite(high) and least <= low <= high <= most):
-                raise InputError(
-                    f"{name}: {low:g} to {high:g} is not allowed; needed: two values, the smaller "
-                    f"first, from {least:g} to {most:g}"
-                )
+            UNCERTAIN[name].check(name, (low, high))
 
     def draws_of(self, winters: int) -> int:
         """Return the number of simulations of each winter.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from snowshed.base.arguments import checked
+from snowshed.base.notes import issue_note
 from snowshed.methods.registry import resolution_of
 from snowshed.scene.builders.panels import separate_part
 from snowshed.scene.builders.slope import check_positive, check_resolved, upright_box
@@ -23,7 +24,7 @@ def lower_roof(
     scene
         A scene with a panel, which is changed.
     distance
-        Horizontal distance from the panel's lower edge to the roof, m.
+        Horizontal distance from the panel's lower edge to the roof, m; negative: behind the edge.
     width
         Width of the roof in the slide direction, m.
     height
@@ -56,7 +57,7 @@ def wall(scene: Scene, distance: float, height: float, thickness: float = 0.2) -
     scene
         A scene with a panel, which is changed.
     distance
-        Horizontal distance from the panel's lower edge to the wall, m.
+        Horizontal distance from the panel's lower edge to the wall, m; negative: behind the edge.
     height
         Height above the ground at the wall, m.
     thickness
@@ -90,7 +91,7 @@ def post(scene: Scene, distance: float, height: float, size: float = 0.2) -> Sce
     scene
         A scene with a panel, which is changed.
     distance
-        Horizontal distance from the panel's lower edge to the post, m.
+        Horizontal distance from the panel's lower edge to the post, m; negative: behind the edge.
     height
         Height above the ground at the post, m.
     size
@@ -124,6 +125,8 @@ def _add_box(
 ) -> Scene:
     """Add a box between two heights: above the ground at the edge, or at the box."""
     data = scene.resolve().data
+    if distance + width <= 0:
+        issue_note(f"distance: {distance:g} m is behind the edge, where the {name} meets no snow")
     check_resolved(name, min(width, heights[1] - heights[0]), resolution_of(data))
     x = panel_edge(data).x + distance + 0.5 * width
     at = x if on_ground else panel_edge(data).x

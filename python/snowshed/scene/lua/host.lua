@@ -275,11 +275,14 @@ local function guard_names()
       vocabulary[name], env[name] = env[name], nil
     end
   end
+  local function reading(name)
+    local script, line = place()
+    return format("%d:%d:%s", script, line, sub(name, 1, limits.line_length))
+  end
   setmetatable(env, {
     __index = function(_, name)
       if vocabulary[name] == nil and type(name) == "string" and #unset < limits.printed_lines then
-        local script, line = place()
-        unset[#unset + 1] = format("%d:%d:%s", script, line, sub(name, 1, limits.line_length))
+        unset[#unset + 1] = reading(name)
       end
       return vocabulary[name]
     end,
@@ -287,6 +290,8 @@ local function guard_names()
       if vocabulary[name] then
         error(format("%s = ... sets nothing; call %s, without the equals sign", name, name), 0)
       end
+      -- `x = x or 3` gives x a default.
+      if type(name) == "string" and unset[#unset] == reading(name) then unset[#unset] = nil end
       rawset(variables, name, value)
     end,
   })

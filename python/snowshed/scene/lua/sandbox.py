@@ -22,6 +22,7 @@ START_SECONDS = 60.0  # time to start and answer on a very busy machine, s
 MAX_MESSAGE = 500
 OUR_OWN_PLACE = re.compile(r"^(?:host|plain_data):\d+: ")
 SCRIPT_PLACE = re.compile(r"^script(\d+):(\d+): ")
+LOCAL_NAMES = re.compile(r"^\s*local\s+([\w\s,]+?)\s*(?:=|$)")
 
 
 @dataclass(frozen=True)
@@ -112,6 +113,8 @@ def run_sandboxed(
             echo(_printable(line))
     if "error" in answer:
         raise _failure(answer["error"], names, limits)
+    for script_text in (*scripts, *modules):
+        _note_hidden_words(script_text, {*functions, *shapes})
     for script, line, name in answer["unset"]:
         place = f"{names[int(script) - 1]}:{line}"
         issue_note(
@@ -121,6 +124,18 @@ def run_sandboxed(
         Call(word, arguments, ScriptLine(names[script - 1], line))
         for word, script, line, arguments in answer["calls"]
     ]
+
+
+def _note_hidden_words(script: Script, words: set[str]) -> None:
+    """Note local variables that hide a word: ``local panel = {...}`` describes no panel."""
+    for number, line in enumerate(script.text.splitlines(), start=1):
+        match = LOCAL_NAMES.match(line.partition("--")[0])
+        for name in re.split(r"[\s,]+", match[1]) if match else ():
+            if name in words:
+                issue_note(
+                    f"{ScriptLine(script.name, number)}: the local variable {name} hides the word "
+                    f"{name}; {name} {{...}} without \"local\" and \"=\" describes it"
+                )
 
 
 def _ask(request: str, names: list[str], limits: LuaLimits) -> dict[str, Any]:

@@ -1,0 +1,59 @@
+// Nodes of a block that the snow of two events shares, and the normals between them there (equation
+// S6 of docs/methods/mpm-scheme.md).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "snowshed/methods/mpm/block_layout.hpp"
+
+namespace snowshed::methods::mpm {
+
+template <int D>
+struct NormalSmoothing {
+  /// Number of nodes on either side over which normals are smoothed. With fewer nodes the roughness
+  /// of two layers of particles brakes sliding snow. In three dimensions a smaller number suffices,
+  /// because it covers more nodes.
+  static constexpr int reach = D == 2 ? 6 : 3;
+  static constexpr int margin = reach + 1;  // nodes around a block whose masses are needed
+  static constexpr int edge = block_edge<D> + 2 * margin;
+  static constexpr int size = edge * edge * (D == 3 ? edge : 1);
+};
+
+/// Smallest mass (kg) of a field at a node that counts. Nodes that a field barely reaches do not
+/// show where its surface is.
+inline constexpr double min_shared_mass = 1e-12;
+
+/// An index with the same value along each direction.
+template <int D>
+constexpr std::array<int, D> filled(int value) {
+  std::array<int, D> index{};
+  for (int d = 0; d < D; ++d) index[d] = value;
+  return index;
+}
+
+/// Returns the flat index in an array with `edge` elements along each direction, whose indices
+/// begin at `low`.
+template <int D>
+int flat_index(const std::array<int, D>& index, int edge, int low = 0) {
+  int flat = 0;
+  for (int d = 0; d < D; ++d) flat = flat * edge + index[d] - low;
+  return flat;
+}
+
+template <class T, int D>
+struct SharedNodes {
+  std::uint64_t mask = 0;  // a bit for each node of the block
+  std::array<int, D> begin = filled<D>(block_edge<D>), end = filled<D>(0);  // box around these
+  T normal[block_nodes<D>][3] = {};  // from the first field to the second
+
+  bool contains(int node) const { return mask >> node & 1; }
+};
+
+/// Finds the nodes that two fields share. `first` and `second` are their masses (kg) at the nodes
+/// of the block and of the margin around it.
+template <class T, int D>
+SharedNodes<T, D> find_shared_nodes(const std::vector<T>& first, const std::vector<T>& second);
+
+}  // namespace snowshed::methods::mpm
