@@ -10,10 +10,6 @@
 namespace snowshed::methods::mpm {
 namespace {
 
-/// Smallest mass (kg) of a field at a node that counts. Nodes that a field barely reaches do not
-/// show where its surface is.
-constexpr double min_shared_mass = 1e-12;
-
 /// Returns the flat index in an array with `edge` elements along each direction, whose indices
 /// begin at `low`.
 template <int D>
@@ -117,37 +113,31 @@ typename EventContacts<T, D>::Masses EventContacts<T, D>::masses_of(const State<
   return masses;
 }
 
-/// The normal of a node is the direction of the gradient of the difference of the two masses,
-/// smoothed over the nodes around it. Without smoothing its direction is arbitrary at the corners
-/// of a body, and it would push the body forward.
+/// Finds the normals of the nodes, smoothed over the nodes around each. Without smoothing its
+/// direction is arbitrary at the corners of a body, and it would push the body forward.
 template <class T, int D>
 void EventContacts<T, D>::find_normals(const Masses& a, const Masses& b, Nodes& nodes) {
   struct WeightedNormal {
     std::array<int, D> node;
-    VecD<D> normal;  // unit normal times the product of the masses, kg2
+    double normal[D];  // see find_weighted_normal
   };
   std::vector<WeightedNormal> around;
-  const auto shared = [&](int node_index) {
-    return double(a[node_index]) > min_shared_mass && double(b[node_index]) > min_shared_mass;
-  };
+  const auto shared = [&](int k) { return is_shared(a[k], b[k]); };
   for_each_index(filled(-smoothing), filled(B + smoothing), [&](const std::array<int, D>& node) {
     const int k = flat_index<D>(node, padded_edge, -margin);
-    if (!shared(k)) return;
-    VecD<D> gradient;
-    for (int d = D - 1, stride = 1; d >= 0; --d, stride *= padded_edge)
-      gradient[d] = (double(b[k + stride]) - double(b[k - stride])) -
-                    (double(a[k + stride]) - double(a[k - stride]));
-    const double length = gradient.norm();
-    if (length > 0) around.push_back({node, double(a[k]) * double(b[k]) / length * gradient});
+    WeightedNormal weighted{node, {}};
+    if (shared(k) && find_weighted_normal(a.data() + k, b.data() + k, padded_edge, weighted.normal))
+      around.push_back(weighted);
   });
   if (around.empty()) return;
   for_each_index(filled(0), filled(B), [&](const std::array<int, D>& node) {
     if (!shared(flat_index<D>(node, padded_edge, -margin))) return;
     VecD<D> sum = VecD<D>::Zero();
     for (const WeightedNormal& other : around) {
-      int tent = 1;
-      for (int d = 0; d < D; ++d) tent *= std::max(margin - std::abs(other.node[d] - node[d]), 0);
-      if (tent > 0) sum += double(tent) * other.normal;
+      int distance[D];
+      for (int d = 0; d < D; ++d) distance[d] = other.node[d] - node[d];
+      const double weight = smoothing_weight(distance);
+      for (int d = 0; d < D; ++d) sum[d] += weight * other.normal[d];
     }
     const double length = sum.norm();
     if (!(length > 0)) return;
@@ -269,21 +259,20 @@ void EventContacts<T, D>::exchange(const StepParameters<T>& step, T friction, Gr
   }
   const T* const sums[2] = {grid.sum(begin->first), grid.sum(begin->second)};
   T* const velocities[2] = {grid.velocity(begin->first), grid.velocity(begin->second)};
-  Impulses impulses[block_nodes<D>];
+  EventImpulses<T, D> impulses[block_nodes<D>];
   T excess = 0, capacity = 0;  // N s
   for (EventContact<T>* c = begin; c != end; ++c) {
-    Impulses& i = impulses[c - begin];
+    EventImpulses<T, D>& i = impulses[c - begin];
     i = impulses_at(step, friction, sums, velocities, *c);
-    excess += std::max(i.friction - i.stopping, T(0));
-    capacity += std::max(i.stopping - i.friction, T(0));
+    excess += i.excess();
+    capacity += i.capacity();
   }
-  const T used_share = excess > 0 && capacity > 0 ? std::min(excess / capacity, T(1)) : T(0);
+  const T share = used_share(excess, capacity);
   NodeStats& stats = grid.node_stats[begin->first];
   for (const EventContact<T>* c = begin; c != end; ++c) {
-    const Impulses& i = impulses[c - begin];
-    if (i.push == T(0) && i.stopping == T(0)) continue;
-    const T rubbing =
-        i.friction < i.stopping ? i.friction + used_share * (i.stopping - i.friction) : i.stopping;
+    const EventImpulses<T, D>& i = impulses[c - begin];
+    if (!i.any()) continue;
+    const T rubbing = i.rubbing(share);
     for (int field = 0; field < 2; ++field) {
       const T* const sum = sums[field] + c->node * node_values;
       T* const node = velocities[field] + c->node * node_values;
@@ -302,35 +291,15 @@ void EventContacts<T, D>::exchange(const StepParameters<T>& step, T friction, Gr
 }
 
 template <class T, int D>
-typename EventContacts<T, D>::Impulses EventContacts<T, D>::impulses_at(
-    const StepParameters<T>& step, T friction, const T* const (&sums)[2], T* const (&velocities)[2],
-    EventContact<T>& c) const {
-  Impulses i{};
+EventImpulses<T, D> EventContacts<T, D>::impulses_at(const StepParameters<T>& step, T friction,
+                                                     const T* const (&sums)[2],
+                                                     T* const (&velocities)[2],
+                                                     EventContact<T>& c) const {
   const int at = c.node * node_values;
-  const T first = sums[0][at], second = sums[1][at];
-  if (!(double(first) > min_shared_mass && double(second) > min_shared_mass)) {
-    c.next_impulse = 0;
-    return i;
-  }
-  const T reduced = first * (second / (first + second));
-  T difference[D], along = 0, squared = 0;
-  for (int d = 0; d < D; ++d) {
-    difference[d] = velocities[0][at + d] - velocities[1][at + d];
-    along += difference[d] * c.normal[d];
-  }
-  for (int d = 0; d < D; ++d) {
-    i.slip[d] = difference[d] - along * c.normal[d];
-    squared += i.slip[d] * i.slip[d];
-  }
-  const T speed = std::sqrt(squared);
-  for (T& component : i.slip) component = speed > T(0) ? component / speed : T(0);
-  const T decayed = c.touches ? c.impulse * decay_share(step, speed) : c.impulse;
-  const T left = c.impulse - decayed;
-  i.push = c.touches ? std::max(reduced * along, -left) : T(0);
-  i.friction = friction * decayed;
-  i.stopping = reduced * speed;
-  c.next_impulse = left + i.push;
-  return i;
+  T difference[D];
+  for (int d = 0; d < D; ++d) difference[d] = velocities[0][at + d] - velocities[1][at + d];
+  const FrictionRates<T> rates{step.friction_rate, step.friction_rate_per_speed};
+  return event_impulses(rates, friction, sums[0][at], sums[1][at], difference, c);
 }
 
 template class EventContacts<float, 2>;

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "snowshed/methods/mpm/event_rule.hpp"
 #include "snowshed/methods/mpm/grid.hpp"
 #include "snowshed/methods/mpm/state.hpp"
 
@@ -43,11 +44,8 @@ class EventContacts {
 
  private:
   static constexpr int B = block_edge<D>;
-  /// Number of nodes on either side over which normals are smoothed. With fewer nodes the roughness
-  /// of two layers of particles brakes sliding snow. In three dimensions a smaller number suffices,
-  /// because it covers more nodes.
-  static constexpr int smoothing = D == 2 ? 6 : 3;
-  static constexpr int margin = smoothing + 1;  // nodes around a block whose masses are needed
+  static constexpr int smoothing = normal_smoothing<D>;
+  static constexpr int margin = normal_margin<D>;
   static constexpr int padded_edge = B + 2 * margin;
   static constexpr int padded_nodes = padded_edge * padded_edge * (D == 3 ? padded_edge : 1);
   using Masses = std::vector<T>;  // masses of a field at the nodes of a block and around it
@@ -63,12 +61,6 @@ class EventContacts {
     T first[64], second[64];  // reach of the fields along the normal, towards each other, cells
   };
 
-  struct Impulses {  // impulses of a step at a node, N s
-    T push;          // from the first field to the second, along the normal
-    T friction;      // friction that is due
-    T stopping;      // impulse that ends the slip
-    T slip[D];       // direction of the slip
-  };
   using SortedContacts = std::vector<const EventContact<T>*>;  // in the order of their keys
 
   const T* sums_of(const State<T, D>& state, Grid<T, D>& grid, const Kernels<T>& kernels,
@@ -83,8 +75,9 @@ class EventContacts {
                std::vector<EventContact<T>>& contacts) const;
   void exchange(const StepParameters<T>& step, T friction, Grid<T, D>& grid, EventContact<T>* begin,
                 EventContact<T>* end) const;
-  Impulses impulses_at(const StepParameters<T>& step, T friction, const T* const (&sums)[2],
-                       T* const (&velocities)[2], EventContact<T>& contact) const;
+  EventImpulses<T, D> impulses_at(const StepParameters<T>& step, T friction,
+                                  const T* const (&sums)[2], T* const (&velocities)[2],
+                                  EventContact<T>& contact) const;
 
   int support_;
   std::vector<T> radius_;               // radius of each particle, cells
