@@ -9,7 +9,7 @@
 namespace snowshed::scene {
 namespace {
 
-std::vector<std::string> notes_of(const Scene& scene) {
+std::vector<std::string> effect_notes_of(const Scene& scene) {
   std::vector<std::string> notes;
   add_notes_on_effects(scene, build_obstacles(scene, "", nullptr), notes);
   return notes;
@@ -26,24 +26,24 @@ Scene scene_with_ball(double x, double z) {
 }
 
 void expect_note(const Scene& scene, const std::string& text) {
-  const auto notes = notes_of(scene);
+  const auto notes = effect_notes_of(scene);
   ASSERT_EQ(notes.size(), 1u);
   EXPECT_NE(notes[0].find(text), std::string::npos) << notes[0];
 }
 
 TEST(EffectNotes, ThePresetsHaveNoNotesOnEffects) {
   for (const std::string& name : scene_preset_names())
-    EXPECT_TRUE(notes_of(preset_scene(name)).empty()) << name;
+    EXPECT_TRUE(effect_notes_of(preset_scene(name)).empty()) << name;
 }
 
 TEST(EffectNotes, FrictionOfAStickyPartIsNotUsed) {
   Scene scene = panel_scene(40);
   scene.ground = Ground{};
-  EXPECT_TRUE(notes_of(scene).empty());
+  EXPECT_TRUE(effect_notes_of(scene).empty());
   scene.ground->friction = 0.5;
   expect_note(scene, "/ground/friction: 0.5 is not used");
   scene.ground->condition = methods::Condition::separate;
-  EXPECT_TRUE(notes_of(scene).empty());
+  EXPECT_TRUE(effect_notes_of(scene).empty());
 }
 
 TEST(EffectNotes, IntervalsOfRecordsThatAreNotKeptAreNotUsed) {
@@ -51,14 +51,14 @@ TEST(EffectNotes, IntervalsOfRecordsThatAreNotKeptAreNotUsed) {
   scene.output.force_interval = 0.1;
   expect_note(scene, "/output/force_interval: 0.1 s is not used");
   scene.output.forces = true;
-  EXPECT_TRUE(notes_of(scene).empty());
+  EXPECT_TRUE(effect_notes_of(scene).empty());
   scene.output.film = false;
   scene.output.film_interval = 0.2;
   expect_note(scene, "/output/film_interval: 0.2 s is not used");
 }
 
 TEST(EffectNotes, ObstaclesThatNoSnowMeetsAreNoted) {
-  EXPECT_TRUE(notes_of(scene_with_ball(1.5, 0.05)).empty());
+  EXPECT_TRUE(effect_notes_of(scene_with_ball(1.5, 0.05)).empty());
   expect_note(scene_with_ball(1.5, -0.2), "/obstacles/0: it lies below the ground");
   expect_note(scene_with_ball(1500, 0.05), "/obstacles/0: it lies");
 }
@@ -66,7 +66,7 @@ TEST(EffectNotes, ObstaclesThatNoSnowMeetsAreNoted) {
 TEST(EffectNotes, AnObstacleThatMovesMayComeNear) {
   Scene scene = scene_with_ball(1500, 0.05);
   scene.obstacles[0].motion = geometry::MotionSpec{};
-  EXPECT_TRUE(notes_of(scene).empty());
+  EXPECT_TRUE(effect_notes_of(scene).empty());
 }
 
 TEST(EffectNotes, MotionsThatBeginAfterTheRunAreNoted) {
@@ -75,7 +75,7 @@ TEST(EffectNotes, MotionsThatBeginAfterTheRunAreNoted) {
   scene.events.max_time = 10;
   scene.obstacles[0].motion = geometry::MotionSpec{};
   scene.obstacles[0].motion->start = 19;
-  EXPECT_TRUE(notes_of(scene).empty());
+  EXPECT_TRUE(effect_notes_of(scene).empty());
   scene.obstacles[0].motion->start = 20;
   expect_note(scene, "/obstacles/0/motion/start: 20 s is after the end of the run");
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "snowshed/methods/mpm/index_box.hpp"
 
@@ -17,16 +16,6 @@ int nodes_of_tile(int block_cells, double slack, double per_cell) {
   // begins anywhere between coarse nodes.
   return int(std::ceil((block_cells + 2 * slack) * per_cell)) + 4;
 }
-
-/// A particle block that shares a coarse block. Fields share none.
-template <int D>
-struct BlockShare {
-  int field;
-  typename AverageLayout<D>::Coord coarse;
-  std::int32_t block;
-  auto key() const { return std::tie(field, coarse, block); }
-  bool operator<(const BlockShare& other) const { return key() < other.key(); }
-};
 
 }  // namespace
 
@@ -48,7 +37,7 @@ bool AverageLayout<D>::connect(const std::vector<BlockKey>& particle_blocks) {
   keys_ = particle_blocks;
   first_nodes_.resize(blocks);
   origins_.resize(blocks);
-  std::vector<BlockShare<D>> pairs;
+  std::vector<BlockShare> pairs;
   for (std::size_t b = 0; b < blocks; ++b) {
     const BlockCoord<D> c = block_coord<D>(keys_[b]);
     Coord begin{}, end{};

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 #include "snowshed/methods/mpm/block_layout.hpp"
@@ -45,6 +46,15 @@ class AverageLayout {
   const std::vector<std::int32_t>& sharing() const { return sharing_; }
 
  private:
+  /// A particle block that shares a coarse block. Fields share none.
+  struct BlockShare {
+    int field;
+    Coord coarse;
+    std::int32_t block;
+    auto key() const { return std::tie(field, coarse, block); }
+    bool operator<(const BlockShare& other) const { return key() < other.key(); }
+  };
+
   double per_cell_, share_of_length_;
   double slack_;  // cells from the block's first node down to its lowest particle
   int tile_edge_, around_size_;

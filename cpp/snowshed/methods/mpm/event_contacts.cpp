@@ -11,14 +11,14 @@ namespace snowshed::methods::mpm {
 namespace {
 
 template <class T>
-bool by_key(const EventContact<T>* a, const EventContact<T>* b) {
+bool is_before(const EventContact<T>* a, const EventContact<T>* b) {
   return a->key() < b->key();
 }
 
 template <class T, int D>
 bool share_a_node(const T* first, const T* second) {
   for (int k = 0; k < block_nodes<D> * node_values; k += node_values)
-    if (double(first[k]) > min_shared_mass && double(second[k]) > min_shared_mass) return true;
+    if (is_shared(first[k], second[k])) return true;
   return false;
 }
 
@@ -44,20 +44,21 @@ void EventContacts<T, D>::update(const Model<T, D>& model, State<T, D>& state, G
   find_due(model, state, grid);
   if (std::find(due_.begin(), due_.end(), 1) == due_.end()) return;
   const std::vector<EventContact<T>>& before = state.event_contacts;
-  SortedContacts contacts_by_key;
-  for (const EventContact<T>& c : before) contacts_by_key.push_back(&c);
-  // Contacts of the same layout are in order already.
-  if (!measured_) std::sort(contacts_by_key.begin(), contacts_by_key.end(), by_key<T>);
+  std::vector<const EventContact<T>*> by_key;
+  for (const EventContact<T>& c : before) by_key.push_back(&c);
+  // Contacts of the same layout are in order already, overlap by overlap.
+  if (!measured_) std::sort(by_key.begin(), by_key.end(), is_before<T>);
   std::vector<std::vector<EventContact<T>>> by_overlap(overlaps);
   parallel_for_dynamic(overlaps, threads, 1, [&](std::ptrdiff_t overlap) {
-    const auto begin = contacts_by_key.data() + (measured_ ? first_[overlap] : 0);
-    const auto end = measured_ ? contacts_by_key.data() + first_[overlap + 1]
-                               : contacts_by_key.data() + contacts_by_key.size();
+    const SortedContacts earlier =
+        measured_ ? SortedContacts{by_key.data() + first_[overlap],
+                                   by_key.data() + first_[overlap + 1]}
+                  : SortedContacts{by_key.data(), by_key.data() + by_key.size()};
     if (due_[overlap]) {
-      measure(model, state, grid, begin, end, overlap, by_overlap[overlap]);
+      measure(model, state, grid, earlier, overlap, by_overlap[overlap]);
       travel_[overlap] = 0;
     } else {
-      for (auto c = begin; c != end; ++c) by_overlap[overlap].push_back(**c);
+      for (auto c = earlier.begin; c != earlier.end; ++c) by_overlap[overlap].push_back(**c);
     }
   });
   std::vector<EventContact<T>> next;
@@ -69,6 +70,13 @@ void EventContacts<T, D>::update(const Model<T, D>& model, State<T, D>& state, G
   state.event_contacts = std::move(next);
   first_ = std::move(first);
   measured_ = true;
+}
+
+template <class T, int D>
+const EventContact<T>* EventContacts<T, D>::SortedContacts::find(
+    const EventContact<T>& contact) const {
+  const auto at = std::lower_bound(begin, end, &contact, is_before<T>);
+  return at != end && (*at)->key() == contact.key() ? *at : nullptr;
 }
 
 /// Finds the overlaps in which snow may have moved far enough to change the contacts.
@@ -116,8 +124,8 @@ const T* EventContacts<T, D>::sums_of(const State<T, D>& state, Grid<T, D>& grid
 template <class T, int D>
 std::vector<T> EventContacts<T, D>::masses_of(const State<T, D>& state, Grid<T, D>& grid,
                                               const Kernels<T>& kernels, std::int32_t g) const {
-  constexpr int margin = NormalSmoothing<D>::margin, edge = NormalSmoothing<D>::edge;
-  std::vector<T> masses(NormalSmoothing<D>::size, T(0));
+  constexpr int margin = normal_margin<D>;
+  std::vector<T> masses(padded_nodes<D>, T(0));
   std::vector<T> buffer;
   const BlockKey key = state.layout.grid_blocks[g];
   for_each_index(filled<D>(-1), filled<D>(2), [&](const std::array<int, D>& offset) {
@@ -136,7 +144,7 @@ std::vector<T> EventContacts<T, D>::masses_of(const State<T, D>& state, Grid<T, 
     for_each_index(begin, end, [&](const std::array<int, D>& node) {
       std::array<int, D> padded;
       for (int d = 0; d < D; ++d) padded[d] = node[d] + offset[d] * B;
-      masses[flat_index<D>(padded, edge, -margin)] =
+      masses[flat_index<D>(padded, padded_edge<D>, -margin)] =
           sums[flat_index<D>(node, B) * node_values];
     });
   });
@@ -185,8 +193,8 @@ void EventContacts<T, D>::find_reach(const Model<T, D>& model, const State<T, D>
 /// separated stays a contact until friction has used up its stored impulse.
 template <class T, int D>
 void EventContacts<T, D>::measure(const Model<T, D>& model, const State<T, D>& state,
-                                  Grid<T, D>& grid, const EventContact<T>* const* before_begin,
-                                  const EventContact<T>* const* before_end, std::ptrdiff_t overlap,
+                                  Grid<T, D>& grid, const SortedContacts& before,
+                                  std::ptrdiff_t overlap,
                                   std::vector<EventContact<T>>& contacts) const {
   const auto begin = state.layout.overlap_blocks.begin() + state.layout.overlap_first[overlap];
   const auto end = state.layout.overlap_blocks.begin() + state.layout.overlap_first[overlap + 1];
@@ -224,9 +232,8 @@ void EventContacts<T, D>::measure(const Model<T, D>& model, const State<T, D>& s
                           0,
                           0};
         for (int d = 0; d < D; ++d) c.normal[d] = nodes.normal[k][d];
-        const auto old = std::lower_bound(before_begin, before_end, &c, by_key<T>);
-        if (old != before_end && (*old)->key() == c.key())
-          c.impulse = c.next_impulse = (*old)->next_impulse;
+        if (const EventContact<T>* old = before.find(c))
+          c.impulse = c.next_impulse = old->next_impulse;
         if (c.touches || c.impulse > T(0)) contacts.push_back(c);
       });
     }
@@ -257,21 +264,20 @@ void EventContacts<T, D>::exchange(const StepParameters<T>& step, T friction, Gr
   }
   const T* const sums[2] = {grid.sum(begin->first), grid.sum(begin->second)};
   T* const velocities[2] = {grid.velocity(begin->first), grid.velocity(begin->second)};
-  Impulses impulses[block_nodes<D>];
+  EventImpulses<T, D> impulses[block_nodes<D>];
   T excess = 0, capacity = 0;  // N s
   for (EventContact<T>* c = begin; c != end; ++c) {
-    Impulses& i = impulses[c - begin];
+    EventImpulses<T, D>& i = impulses[c - begin];
     i = impulses_at(step, friction, sums, velocities, *c);
-    excess += std::max(i.friction - i.stopping, T(0));
-    capacity += std::max(i.stopping - i.friction, T(0));
+    excess += i.excess();
+    capacity += i.capacity();
   }
-  const T used_share = excess > 0 && capacity > 0 ? std::min(excess / capacity, T(1)) : T(0);
+  const T share = used_share(excess, capacity);
   NodeStats& stats = grid.node_stats[begin->first];
   for (const EventContact<T>* c = begin; c != end; ++c) {
-    const Impulses& i = impulses[c - begin];
-    if (i.push == T(0) && i.stopping == T(0)) continue;
-    const T rubbing =
-        i.friction < i.stopping ? i.friction + used_share * (i.stopping - i.friction) : i.stopping;
+    const EventImpulses<T, D>& i = impulses[c - begin];
+    if (!i.any()) continue;
+    const T rubbing = i.rubbing(share);
     for (int field = 0; field < 2; ++field) {
       const T* const sum = sums[field] + c->node * node_values;
       T* const node = velocities[field] + c->node * node_values;
@@ -290,35 +296,15 @@ void EventContacts<T, D>::exchange(const StepParameters<T>& step, T friction, Gr
 }
 
 template <class T, int D>
-typename EventContacts<T, D>::Impulses EventContacts<T, D>::impulses_at(
-    const StepParameters<T>& step, T friction, const T* const (&sums)[2], T* const (&velocities)[2],
-    EventContact<T>& c) const {
-  Impulses i{};
+EventImpulses<T, D> EventContacts<T, D>::impulses_at(const StepParameters<T>& step, T friction,
+                                                     const T* const (&sums)[2],
+                                                     T* const (&velocities)[2],
+                                                     EventContact<T>& c) const {
   const int at = c.node * node_values;
-  const T first = sums[0][at], second = sums[1][at];
-  if (!(double(first) > min_shared_mass && double(second) > min_shared_mass)) {
-    c.next_impulse = 0;
-    return i;
-  }
-  const T reduced = first * (second / (first + second));
-  T difference[D], along = 0, squared = 0;
-  for (int d = 0; d < D; ++d) {
-    difference[d] = velocities[0][at + d] - velocities[1][at + d];
-    along += difference[d] * c.normal[d];
-  }
-  for (int d = 0; d < D; ++d) {
-    i.slip[d] = difference[d] - along * c.normal[d];
-    squared += i.slip[d] * i.slip[d];
-  }
-  const T speed = std::sqrt(squared);
-  for (T& component : i.slip) component = speed > T(0) ? component / speed : T(0);
-  const T decayed = c.touches ? c.impulse * decay_share(step, speed) : c.impulse;
-  const T left = c.impulse - decayed;
-  i.push = c.touches ? std::max(reduced * along, -left) : T(0);
-  i.friction = friction * decayed;
-  i.stopping = reduced * speed;
-  c.next_impulse = left + i.push;
-  return i;
+  T difference[D];
+  for (int d = 0; d < D; ++d) difference[d] = velocities[0][at + d] - velocities[1][at + d];
+  const FrictionRates<T> rates{step.friction_rate, step.friction_rate_per_speed};
+  return event_impulses(rates, friction, sums[0][at], sums[1][at], difference, c);
 }
 
 template class EventContacts<float, 2>;

@@ -41,13 +41,13 @@ class EventContacts {
 
  private:
   static constexpr int B = block_edge<D>;
-  struct Impulses {  // impulses of a step at a node, N s
-    T push;          // from the first field to the second, along the normal
-    T friction;      // friction that is due
-    T stopping;      // impulse that ends the slip
-    T slip[D];       // direction of the slip
+  /// Earlier contacts in the order of their keys.
+  struct SortedContacts {
+    const EventContact<T>* const* begin;
+    const EventContact<T>* const* end;
+    /// The contact with the same key, or null.
+    const EventContact<T>* find(const EventContact<T>& contact) const;
   };
-  using SortedContacts = std::vector<const EventContact<T>*>;  // in the order of their keys
 
   void find_due(const Model<T, D>& model, const State<T, D>& state, const Grid<T, D>& grid);
   double fastest_around(const State<T, D>& state, const Grid<T, D>& grid,
@@ -59,12 +59,13 @@ class EventContacts {
   void find_reach(const Model<T, D>& model, const State<T, D>& state, Grid<T, D>& grid,
                   std::int32_t block, const SharedNodes<T, D>& nodes, ReachMap<T, D>& reach) const;
   void measure(const Model<T, D>& model, const State<T, D>& state, Grid<T, D>& grid,
-               const EventContact<T>* const* before_begin, const EventContact<T>* const* before_end,
-               std::ptrdiff_t overlap, std::vector<EventContact<T>>& contacts) const;
+               const SortedContacts& before, std::ptrdiff_t overlap,
+               std::vector<EventContact<T>>& contacts) const;
   void exchange(const StepParameters<T>& step, T friction, Grid<T, D>& grid, EventContact<T>* begin,
                 EventContact<T>* end) const;
-  Impulses impulses_at(const StepParameters<T>& step, T friction, const T* const (&sums)[2],
-                       T* const (&velocities)[2], EventContact<T>& contact) const;
+  EventImpulses<T, D> impulses_at(const StepParameters<T>& step, T friction,
+                                  const T* const (&sums)[2], T* const (&velocities)[2],
+                                  EventContact<T>& contact) const;
 
   int support_;
   std::vector<T> radius_;               // radius of each particle, cells

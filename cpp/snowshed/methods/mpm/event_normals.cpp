@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
-#include "snowshed/core/vec.hpp"
 #include "snowshed/methods/mpm/index_box.hpp"
 
 namespace snowshed::methods::mpm {
@@ -13,39 +11,31 @@ namespace {
 template <int D>
 struct WeightedNormal {
   std::array<int, D> node;
-  VecD<D> normal;  // unit normal times the product of the masses, kg2
+  double normal[D];  // see find_weighted_normal
 };
 
-/// Whether two fields share a node. Its index is that in the block, or in the margin around it.
-template <class T, int D>
-bool is_shared(const std::vector<T>& first, const std::vector<T>& second,
-               const std::array<int, D>& node) {
-  const int k = flat_index<D>(node, NormalSmoothing<D>::edge, -NormalSmoothing<D>::margin);
-  return double(first[k]) > min_shared_mass && double(second[k]) > min_shared_mass;
+/// Index of a node of the block, or of the margin around it, in an array of masses.
+template <int D>
+int padded_index(const std::array<int, D>& node) {
+  return flat_index<D>(node, padded_edge<D>, -normal_margin<D>);
 }
 
-/// The normals at the shared nodes in a box and around it, as far as the smoothing reaches: the
-/// directions of the gradient of the difference of the two masses.
+/// The normals at the shared nodes in a box and around it, as far as the smoothing reaches.
 template <class T, int D>
 std::vector<WeightedNormal<D>> normals_around(const std::vector<T>& first,
                                               const std::vector<T>& second,
                                               std::array<int, D> begin, std::array<int, D> end) {
-  constexpr int edge = NormalSmoothing<D>::edge;
   for (int d = 0; d < D; ++d) {
-    begin[d] -= NormalSmoothing<D>::reach;
-    end[d] += NormalSmoothing<D>::reach;
+    begin[d] -= normal_smoothing<D>;
+    end[d] += normal_smoothing<D>;
   }
   std::vector<WeightedNormal<D>> normals;
   for_each_index(begin, end, [&](const std::array<int, D>& node) {
-    if (!is_shared<T, D>(first, second, node)) return;
-    const int k = flat_index<D>(node, edge, -NormalSmoothing<D>::margin);
-    VecD<D> gradient;
-    for (int d = D - 1, stride = 1; d >= 0; --d, stride *= edge)
-      gradient[d] = (double(second[k + stride]) - double(second[k - stride])) -
-                    (double(first[k + stride]) - double(first[k - stride]));
-    const double length = gradient.norm();
-    if (length > 0)
-      normals.push_back({node, double(first[k]) * double(second[k]) / length * gradient});
+    const T* const a = first.data() + padded_index<D>(node);
+    const T* const b = second.data() + padded_index<D>(node);
+    WeightedNormal<D> weighted{node, {}};
+    if (is_shared(*a, *b) && find_weighted_normal(a, b, padded_edge<D>, weighted.normal))
+      normals.push_back(weighted);
   });
   return normals;
 }
@@ -65,8 +55,8 @@ std::vector<double> smoothed(const std::vector<double>& values, int before, Span
     for (int node = to.begin; node < to.end; ++node) {
       double* const sum = sums.data() + (i * to.size() + node - to.begin) * after;
       for (int other = from.begin; other < from.end; ++other) {
-        const int tent = NormalSmoothing<D>::margin - std::abs(other - node);
-        if (tent <= 0) continue;
+        const int tent = smoothing_tent<D>(other - node);
+        if (tent == 0) continue;
         const double* const value = values.data() + (i * from.size() + other - from.begin) * after;
         for (int k = 0; k < after; ++k) sum[k] += tent * value[k];
       }
@@ -92,7 +82,7 @@ std::vector<double> smoothed(const std::vector<WeightedNormal<D>>& normals,
   for (const WeightedNormal<D>& n : normals) {
     int k = 0;
     for (int d = 0; d < D; ++d) k = k * (high[d] - low[d]) + n.node[d] - low[d];
-    std::copy_n(n.normal.data(), D, sums.data() + k * D);
+    std::copy_n(n.normal, D, sums.data() + k * D);
   }
   for (int d = 0, before = 1, after = size; d < D; ++d) {
     after /= high[d] - low[d];
@@ -108,7 +98,7 @@ template <class T, int D>
 SharedNodes<T, D> find_shared_nodes(const std::vector<T>& first, const std::vector<T>& second) {
   SharedNodes<T, D> nodes;
   for_each_index(filled<D>(0), filled<D>(block_edge<D>), [&](const std::array<int, D>& node) {
-    if (!is_shared<T, D>(first, second, node)) return;
+    if (!is_shared(first[padded_index<D>(node)], second[padded_index<D>(node)])) return;
     nodes.mask |= std::uint64_t(1) << flat_index<D>(node, block_edge<D>);
     for (int d = 0; d < D; ++d) {
       nodes.begin[d] = std::min(nodes.begin[d], node[d]);

@@ -7,23 +7,15 @@
 #include <vector>
 
 #include "snowshed/methods/mpm/block_layout.hpp"
+#include "snowshed/methods/mpm/event_rule.hpp"
 
 namespace snowshed::methods::mpm {
 
+/// Nodes along each direction of a block with the margin around it, and all of them.
 template <int D>
-struct NormalSmoothing {
-  /// Number of nodes on either side over which normals are smoothed. With fewer nodes the roughness
-  /// of two layers of particles brakes sliding snow. In three dimensions a smaller number suffices,
-  /// because it covers more nodes.
-  static constexpr int reach = D == 2 ? 6 : 3;
-  static constexpr int margin = reach + 1;  // nodes around a block whose masses are needed
-  static constexpr int edge = block_edge<D> + 2 * margin;
-  static constexpr int size = edge * edge * (D == 3 ? edge : 1);
-};
-
-/// Smallest mass (kg) of a field at a node that counts. Nodes that a field barely reaches do not
-/// show where its surface is.
-inline constexpr double min_shared_mass = 1e-12;
+inline constexpr int padded_edge = block_edge<D> + 2 * normal_margin<D>;
+template <int D>
+inline constexpr int padded_nodes = padded_edge<D> * padded_edge<D> * (D == 3 ? padded_edge<D> : 1);
 
 /// An index with the same value along each direction.
 template <int D>

@@ -145,7 +145,9 @@ void GpuSolver::prepare() {
   ++state.totals.sorts;
   control_.speed_squared = float(state.totals.speed * state.totals.speed);
   control_.phase = Phase::waiting;
+  control_.event_travel = 0;
   snow_.scatter(control_);
+  snow_.find_event_contacts();
   if (state.forces) with_contacts([this] { hold_sleeping_forces(); });
   if (host_->model().touches()) touch_.forget(host_->model(), state);
   since_sort_ = 0;
@@ -279,6 +281,7 @@ void GpuSolver::fail(Control c) {
   if (c.phase == Phase::unsound) solver.fail_at(c.unsound);
   State<float, 3>& state = solver.state_for_device();
   for (std::size_t g = 0; g < state.layout.grid_blocks.size(); ++g) state.contacts.reject(g);
+  for (EventContact<float>& c : state.event_contacts) c.next_impulse = c.impulse;
   throw SimulationError(describe_stuck(c.dt, c.time, double(c.strain_of_step),
                                        solver.model().options.settings.strain_limit));
 }

@@ -20,7 +20,6 @@ std::vector<Unsupported> unsupported_on_gpu(const Options& o) {
   refuse(o.dimension != 3, "/dimension", "is 2", "3");
   refuse(n.precision != Precision::float32, "/numerics/precision", "is \"double\"", "\"float\"");
   refuse(n.basis != Basis::quadratic, "/numerics/basis", "is \"cubic\"", "\"quadratic\"");
-  refuse(n.fields != Fields::one, "/numerics/fields", "is \"events\"", "\"one\"");
   refuse(o.energy, "/output/energy", "is true", "false");
   const bool own_friction =
       std::any_of(o.obstacles.begin(), o.obstacles.end(),
@@ -49,7 +48,13 @@ double bytes_on_gpu(const Settings& n, double particles) {
   if (n.damps_over_length())
     coarse_node = (2 * 32 + 16) *
                   std::pow(AverageLayout<3>(n.damping_length, n.dx, n.basis, 1).per_cell(), 3);
-  return particles * (state + indices + spare + (node + coarse_node) * nodes_per_particle);
+  double radius = 0, event_node = 0;
+  if (n.fields == Fields::events) {
+    radius = 4;
+    event_node = 24 + 2 * 27 * 4 / 64.0;  // a contact; the blocks around those of a pair
+  }
+  return particles * (state + indices + spare + radius +
+                      (node + coarse_node + event_node) * nodes_per_particle);
 }
 
 snowshed::gpu::KernelProgram gpu_kernels() {

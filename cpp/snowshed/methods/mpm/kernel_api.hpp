@@ -90,13 +90,6 @@ struct StepParameters {
   int own_numbers = 0;                        // for each particle, see UserLaws
 };
 
-/// Returns the share of its stored normal impulse for which a contact exerts friction in a step.
-/// `speed` is the sliding speed, m/s.
-template <class T>
-SNOWSHED_INLINE T decay_share(const StepParameters<T>& step, T speed) {
-  return FrictionRates<T>{step.friction_rate, step.friction_rate_per_speed}.decay_share(speed);
-}
-
 /// Bits of `BlockStats::reach`: nodes below a block, or above it, along a direction.
 constexpr int below(int direction) { return 1 << (2 * direction); }
 constexpr int above(int direction) { return 2 << (2 * direction); }

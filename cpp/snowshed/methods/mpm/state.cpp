@@ -8,6 +8,7 @@
 #include "snowshed/core/errors.hpp"
 #include "snowshed/geometry/bounds.hpp"
 #include "snowshed/material/sym_tensor.hpp"
+#include "snowshed/methods/mpm/contact_radius.hpp"
 
 namespace snowshed::methods::mpm {
 namespace {
@@ -15,9 +16,6 @@ namespace {
 /// Memory of the contacts' friction, in elastic time steps of the slowest snow: longer than the
 /// vibration of a slab a few cells thick.
 constexpr double friction_memory_steps = 40;
-
-/// Largest volume ratio (current over initial) of loose snow that counts in contacts.
-constexpr double max_expansion = 1.5;
 
 /// Largest number of velocity fields. If there are more events, the oldest ones share a field.
 constexpr int fields_at_once = 8;
@@ -159,15 +157,14 @@ double State<T, D>::volume_ratio(const Model<T, D>& model, std::size_t i) const 
   material::Sym<double, D> a;
   for (int k = 0; k < a.size; ++k) a.c[k] = double(particles.be_minus_identity[k][i]);
   const double plastic = particles.has_plastic ? double(particles.plastic[i]) : 0.0;
-  return std::exp(material::trace(material::hencky_strain(a)) + plastic -
-                  material_of(model, i).initial_plastic_strain);
+  return mpm::volume_ratio<D>(a, plastic, material_of(model, i).initial_plastic_strain);
 }
 
 template <class T, int D>
 double State<T, D>::contact_radius(const Model<T, D>& model, std::size_t i) const {
-  const double volume = double(particles.mass[i]) / material_of(model, i).density *
-                        std::min(volume_ratio(model, i), max_expansion);
-  return 0.5 * model.options.settings.contact_radius * std::pow(volume, 1.0 / D);
+  return mpm::contact_radius<D>(model.options.settings.contact_radius,
+                                double(particles.mass[i]) / material_of(model, i).density,
+                                volume_ratio(model, i));
 }
 
 template <class T, int D>
@@ -175,7 +172,7 @@ double State<T, D>::largest_contact_radius(const Model<T, D>& model) const {
   double volume = 0;
   for (std::size_t i = 0; i < particles.size(); ++i)
     volume = std::max(volume, double(particles.mass[i]) / material_of(model, i).density);
-  return 0.5 * model.options.settings.contact_radius * std::pow(volume * max_expansion, 1.0 / D);
+  return mpm::contact_radius<D>(model.options.settings.contact_radius, volume, max_expansion);
 }
 
 template <class T, int D>

@@ -30,6 +30,7 @@ DeviceSnow::DeviceSnow(snowshed::gpu::Device& device, const Model<float, 3>& mod
       particles_(device),
       forces_(device, model.options.forces ? model.boundary.size() : 0),
       average_(device, model.options.settings),
+      events_(device, model),
       first_(device),
       around_(device),
       order_(device),
@@ -62,6 +63,7 @@ DeviceSnow::DeviceSnow(snowshed::gpu::Device& device, const Model<float, 3>& mod
   constants_.friction_reach = friction_reach * n.dx;
   constants_.gravity = float(model.options.gravity);
   constants_.relaxation_time = n.relaxation_time;
+  constants_.event_tolerance = contact_tolerance * n.dx;
   constants_.average_rate = n.damping_rate.value_or(0.0);
   constants_.average_share = average_.share_of_length();
   // The share of FLIP does not depend on the step, unless there is a rate.
@@ -118,6 +120,7 @@ void DeviceSnow::upload_layout(HostState& state) {
   ranges_.resize(grid_blocks * 6);
   motions_.resize(std::size_t(blocks_));
   average_.connect(state);
+  events_.connect(state);
   upload_contacts(state);
   upload_sleep(state);
 }
@@ -139,6 +142,7 @@ void DeviceSnow::upload_sleep(const HostState& state) {
   awake_.upload(state.sleep.awake());
   active_.upload(state.sleep.active());
   idle_.upload(state.sleep.idle());
+  events_.follow_sleep(state);
   std::vector<std::int32_t> asleep;
   for (std::int32_t b = 0; b < blocks_; ++b)
     if (state.sleep.states()[std::size_t(b)].asleep) asleep.push_back(b);
@@ -148,6 +152,7 @@ void DeviceSnow::upload_sleep(const HostState& state) {
 
 void DeviceSnow::download(HostState& state) const {
   particles_.download(state.particles);
+  events_.download(state);
   download_contacts(state);
 }
 
@@ -165,6 +170,7 @@ void DeviceSnow::download_contacts(HostState& state) const {
 }
 
 void DeviceSnow::sort(HostState& state) {
+  events_.download(state);
   download_contacts(state);
   launch_moves(device_, particles_.view(), {first_.data(), around_.data()}, blocks_, listed_);
   SortPlan plan = plan_sort(state.layout, listed_.download());
@@ -206,6 +212,10 @@ void DeviceSnow::launch_average(const DeviceArray<std::int32_t>& list, bool asle
          static_cast<const Control*>(control_.data()), constants_);
 }
 
+void DeviceSnow::find_event_contacts() {
+  events_.find_all_contacts(launch_of(awake_, integers_.data()), particles_.size(), constants_);
+}
+
 void DeviceSnow::find_spin(Control& control) {
   constexpr unsigned threads = 256;
   control.spin = 0;
@@ -228,9 +238,12 @@ void DeviceSnow::launch_round() {
     launch(device_, "find_friction_shares", {unsigned(conditions_.size()), particle_threads},
            contacts(), std::int32_t(contacts_.size()), friction_shares_.data(),
            static_cast<const Control*>(control_.data()));
-  launch(device_, "node_step", {unsigned(active_.size()), node_threads}, grid(),
-         static_cast<const std::int32_t*>(active_.data()), contacts(), forces_.view(),
-         control_.data(), constants_);
+  events_.search(launch_of(awake_, integers_.data()), control_.data(), constants_);
+  const DeviceArray<std::int32_t>& lone = events_.meet() ? events_.lone_blocks() : active_;
+  launch(device_, "node_step", {unsigned(lone.size()), node_threads}, grid(),
+         static_cast<const std::int32_t*>(lone.data()), contacts(), forces_.view(), control_.data(),
+         constants_);
+  events_.launch_step(grid(), contacts(), forces_.view(), control_.data(), constants_);
   launch(device_, "probe", {unsigned(awake_.size()), particle_threads},
          launch_of(awake_, integers_.data()), control_.data(), constants_);
   launch(device_, "judge_step", {1, 1}, control_.data(), constants_);
@@ -308,7 +321,7 @@ ContactArrays DeviceSnow::contacts() const {
 }
 
 std::size_t DeviceSnow::bytes() const {
-  std::size_t sum = particles_.bytes() + forces_.bytes() + average_.bytes();
+  std::size_t sum = particles_.bytes() + forces_.bytes() + average_.bytes() + events_.bytes();
   const auto add = [&](const auto&... arrays) { sum += (std::size_t(0) + ... + arrays.bytes()); };
   add(first_, around_, order_, strays_, awake_, asleep_blocks_, active_, idle_, listed_, integers_,
       asleep_, carried_, force_, velocity_, change_, ranges_, first_contact_, contacts_, motions_,

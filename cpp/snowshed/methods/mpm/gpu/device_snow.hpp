@@ -3,6 +3,7 @@
 #pragma once
 
 #include "snowshed/methods/mpm/gpu/device_average.hpp"
+#include "snowshed/methods/mpm/gpu/device_events.hpp"
 #include "snowshed/methods/mpm/gpu/device_forces.hpp"
 #include "snowshed/methods/mpm/gpu/device_particles.hpp"
 #include "snowshed/methods/mpm/model.hpp"
@@ -35,6 +36,9 @@ class DeviceSnow {
   /// Computes the sums of the grid from the particles, of which control.speed_squared is the
   /// largest square of a speed.
   void scatter(Control& control);
+
+  /// Finds the contacts between events after a sort and `scatter`.
+  void find_event_contacts();
 
   /// Takes up to `rounds` steps, until control.until or control.steps_left or an event for the
   /// host. Waits for their end.
@@ -75,6 +79,7 @@ class DeviceSnow {
   DeviceParticles particles_;
   DeviceForces forces_;
   DeviceAverage average_;
+  DeviceEvents events_;
   DeviceArray<std::int32_t> first_, around_, order_, strays_;
   DeviceArray<std::int32_t> awake_, asleep_blocks_, active_, idle_, listed_;
   DeviceArray<unsigned long long> integers_, asleep_;

@@ -2,8 +2,10 @@
 // told in docs/develop/gpu.md.
 #pragma once
 
+#include "snowshed/methods/mpm/gpu/events.cuh"
 #include "snowshed/methods/mpm/gpu/forces.cuh"
 #include "snowshed/methods/mpm/gpu/node_step.cuh"
+#include "snowshed/methods/mpm/gpu/overlap_step.cuh"
 #include "snowshed/methods/mpm/gpu/particle_step.cuh"
 #include "snowshed/methods/mpm/gpu/probe.cuh"
 #include "snowshed/methods/mpm/gpu/sleep.cuh"

@@ -39,6 +39,36 @@ __device__ inline void read_sums(const GridArrays& grid, int n, bool first_try, 
   grid.force[n] = force;
 }
 
+/// The step that is being tried, for the nodes.
+struct NodeTry {
+  bool first;  // the first try of this step
+  float dt;    // s
+  FrictionRates<float> rates;
+  Units units;  // of the sums
+
+  __device__ NodeTry(const Control& c, const Constants& k)
+      : first(!c.repeated),
+        dt(float(c.dt)),
+        rates{float(::fmin(1.0, c.dt / k.friction_memory)), float(c.dt / k.friction_reach)},
+        units(k, c.momentum_unit) {}
+};
+
+__device__ inline bool has_snow(const Quad& carried) { return carried.x > min_node_mass<float>; }
+
+/// Returns the mass and momentum of a node, and finds its velocity after the forces.
+__device__ inline Quad accelerate(const GridArrays& grid, int n, const NodeTry& node_try,
+                                  const Constants& k, float (&velocity)[3]) {
+  Quad carried, force;
+  read_sums(grid, n, node_try.first, node_try.units, carried, force);
+  velocity[0] = velocity[1] = velocity[2] = 0;
+  if (!has_snow(carried)) return carried;
+  const float momentum[3] = {carried.y, carried.z, carried.w}, dt = node_try.dt;
+  const float pull[3] = {force.x, force.y, force.z}, per_mass = dt / carried.x;
+  for (int d = 0; d < 3; ++d) velocity[d] = momentum[d] / carried.x + pull[d] * per_mass;
+  velocity[2] -= dt * k.gravity;
+  return carried;
+}
+
 /// Applies a contact to the velocity of its node.
 __device__ inline void hold(const ContactArrays& contacts, Contact<float>& c, float mass,
                             const FrictionRates<float>& rates, NodeMemory& m) {
@@ -118,6 +148,37 @@ __device__ inline void record_range(const GridArrays& grid, int block, bool has_
   if (m.high[t] > control->high[t]) atomicMax(&control->high[t], m.high[t]);
 }
 
+/// Applies the contacts with obstacles to the velocities of a block, and writes them. `carried` and
+/// `velocity` are those of the thread's node.
+__device__ inline void finish_block(const GridArrays& grid, const ContactArrays& contacts,
+                                    const ForceArrays& forces, int block, const NodeTry& node_try,
+                                    const Quad& carried, float (&velocity)[3], NodeMemory& m,
+                                    Control* control) {
+  const int t = int(threadIdx.x), n = block * nodes_of_block + t;
+  if (t < 3) {
+    m.low[t] = ordered(3e38f);
+    m.high[t] = ordered(-3e38f);
+  }
+  for (int d = 0; d < 3; ++d) {
+    m.velocity[d][t] = velocity[d];
+    m.impulse[d][t] = 0;
+  }
+  m.mass[t] = carried.x;
+  __syncthreads();
+  hold_block(contacts, forces, block, node_try.first, node_try.rates, m);
+  float old[3] = {};
+  if (has_snow(carried)) {
+    const float momentum[3] = {carried.y, carried.z, carried.w};
+    for (int d = 0; d < 3; ++d) {
+      velocity[d] = m.velocity[d][t];
+      old[d] = momentum[d] / carried.x;
+    }
+  }
+  grid.velocity[n] = {velocity[0], velocity[1], velocity[2], velocity[0] - old[0]};
+  grid.change[n] = {velocity[1] - old[1], velocity[2] - old[2]};
+  record_range(grid, block, has_snow(carried), velocity, m, control);
+}
+
 }  // namespace snowshed::methods::mpm::gpu
 
 /// Finds the new velocities of the listed blocks of nodes.
@@ -131,40 +192,11 @@ extern "C" __global__ void __launch_bounds__(64)
   using namespace snowshed::methods::mpm::gpu;
   __shared__ NodeMemory m;
   if (control->phase != Phase::trying) return;
-  const int t = int(threadIdx.x), block = list[blockIdx.x], n = block * nodes_of_block + t;
-  if (t < 3) {
-    m.low[t] = ordered(3e38f);
-    m.high[t] = ordered(-3e38f);
-  }
-  const bool first_try = !control->repeated;
-  const float dt = float(control->dt);
-  Quad carried, force;
-  read_sums(grid, n, first_try, Units(k, control->momentum_unit), carried, force);
-  const bool has_snow = carried.x > min_node_mass<float>;
-  float old[3] = {}, now[3] = {};
-  if (has_snow) {
-    const float momentum[3] = {carried.y, carried.z, carried.w};
-    const float pull[3] = {force.x, force.y, force.z}, per_mass = dt / carried.x;
-    for (int d = 0; d < 3; ++d) {
-      old[d] = momentum[d] / carried.x;
-      now[d] = old[d] + pull[d] * per_mass;
-    }
-    now[2] -= dt * k.gravity;
-  }
-  for (int d = 0; d < 3; ++d) {
-    m.velocity[d][t] = now[d];
-    m.impulse[d][t] = 0;
-  }
-  m.mass[t] = carried.x;
-  __syncthreads();
-  const FrictionRates<float> rates{float(::fmin(1.0, control->dt / k.friction_memory)),
-                                   float(control->dt / k.friction_reach)};
-  hold_block(contacts, forces, block, first_try, rates, m);
-  if (has_snow)
-    for (int d = 0; d < 3; ++d) now[d] = m.velocity[d][t];
-  grid.velocity[n] = {now[0], now[1], now[2], now[0] - old[0]};
-  grid.change[n] = {now[1] - old[1], now[2] - old[2]};
-  record_range(grid, block, has_snow, now, m, control);
+  const NodeTry node_try(*control, k);
+  const int block = list[blockIdx.x], n = block * nodes_of_block + int(threadIdx.x);
+  float velocity[3];
+  const Quad carried = accelerate(grid, n, node_try, k, velocity);
+  finish_block(grid, contacts, forces, block, node_try, carried, velocity, m, control);
 }
 
 /// Finds the share of friction that remains for each obstacle with slip, a thread block to an

@@ -89,6 +89,36 @@ struct AverageArrays {
   Quad* mean;                    // mean velocities
 };
 
+/// Two of the blocks of nodes that several events have at the same position, as indices into
+/// EventArrays::blocks.
+struct EventPair {
+  std::int32_t first, second;
+};
+
+/// A node of a pair. It is a contact if the snow touches, or has separated and friction is still
+/// due; see EventContact.
+struct EventNode {
+  float normal[3];              // from the first field to the second
+  float impulse, next_impulse;  // N s
+  std::int32_t touches;
+};
+
+/// Positions at which several events have blocks of nodes. Position o has the blocks
+/// [first_block[o], first_block[o + 1]) and the pairs [first_pair[o], first_pair[o + 1]).
+struct EventArrays {
+  const std::int32_t *first_block, *blocks, *first_pair;
+  const EventPair* pairs;
+  const std::int32_t *nodes_around, *particles_around;  // the 27 blocks around each of `blocks`
+  EventNode* nodes;                                     // 64 for each pair
+  const float* radius;                                  // radii of all particles, cells
+  float friction;                                       // Coulomb's coefficient
+};
+
+/// A snow before any deformation.
+struct InitialSnow {
+  double density, plastic_strain;  // kg/m3; volumetric
+};
+
 /// Arguments of the kernels of particles.
 struct ParticleLaunch {
   ParticleArrays particles;
@@ -132,6 +162,7 @@ struct Control {
   double smallest_dt;        // s
   double travel;             // m, by the fastest snow since the host looked
   double travel_limit;       // m, after which the host must look
+  double event_travel;       // m, by the fastest snow since contacts between events were sought
   double undamped_time;      // s, of the steps since velocities were last damped over a length
   std::int64_t steps, rejected, undamped_steps;
   Phase phase;
@@ -155,8 +186,9 @@ inline constexpr float arm = 4.5f;
 /// Constants of a run.
 struct Constants {
   double elastic_limit, courant_factor, strain_limit, dx;
-  double friction_memory, friction_reach;   // s, m
-  double relaxation_time;                   // s, of stress beyond the yield surface
+  double friction_memory, friction_reach;  // s, m
+  double relaxation_time;                  // s, of stress beyond the yield surface
+  double event_tolerance;  // m, travel after which contacts between events are sought again
   double average_rate, average_share;       // s^-1; 0: velocities are not damped over a length
   float gravity, flip_ratio, damping_rate;  // a negative rate: the ratio holds for each step
   float mass_unit, force_unit;              // kg, N

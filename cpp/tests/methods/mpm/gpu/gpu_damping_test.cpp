@@ -56,9 +56,11 @@ TEST(GpuDamping, CountsTheStepsOfACheckpoint) {
   gpu->save(out);
   out.save(file);
   const auto cpu = make_solver(damped_options(), {rough_ground()});
-  cpu->load(io::BinaryReader::load(file));
-  for (Solver* s : {cpu.get(), gpu.get()}) run_steps(*s, 3);
+  const auto resumed = make_emulated(damped_options(), {rough_ground()});
+  for (Solver* s : {cpu.get(), resumed.get()}) s->load(io::BinaryReader::load(file));
+  for (Solver* s : {cpu.get(), gpu.get(), resumed.get()}) run_steps(*s, 3);
   EXPECT_LT(largest_distance(cpu->state(), gpu->state()), 1e-7);
+  EXPECT_LT(largest_distance(resumed->state(), gpu->state()), 1e-7);
 }
 
 /// A stone that falls onto sleeping snow is damped towards its rest.

@@ -92,6 +92,26 @@ TEST(GpuForces, HasTheRecordOfTheProcessor) {
   }
 }
 
+/// A try of a step that was too long exerts no force: the recorded impulses are the change of the
+/// snow's momentum.
+TEST(GpuForces, RejectedStepsDoNotCount) {
+  Options o = recording();
+  o.settings.strain_limit = 0.01;
+  const auto solver = make_emulated(o, ground_and_stone(Condition::slip));
+  solver->add(flying_block());
+  const Vec3 before = momentum(solver->state());
+  run_steps(*solver, 80);
+  EXPECT_GT(solver->counters().rejected, 10);
+  const ParticleState after = solver->state();
+  const Vec3 weight(0, 0, -9.81 * total_mass(after) * solver->time());
+  const Vec3 from_obstacles = momentum(after) - before - weight;
+  Vec3 recorded = Vec3::Zero();
+  for (const ForceSample& sample : solver->sample_forces(solver->time()))
+    recorded += sample.impulse.total();
+  EXPECT_GT(from_obstacles.norm(), 0.1 * before.norm());
+  expect_close(-recorded, from_obstacles, 1e-3 * from_obstacles.norm());
+}
+
 TEST(GpuForces, SleepingSnowStillPresses) {
   const auto cpu = make_solver(recording(0.2), ground_and_stone(Condition::separate));
   const auto gpu = make_emulated(recording(0.2), ground_and_stone(Condition::separate));
