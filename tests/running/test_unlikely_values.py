@@ -90,6 +90,7 @@ def flowing(**values):
         ({"regularisation": "bi_viscous"}, "because stress is 'elastoplastic'"),
         ({"spacing": 0.15}, "/bodies/0: the box is 200 mm thick, less than two"),
         ({"cohesion": 0.2}, "/numerics/cohesion: 0.2 Pa is unusual"),
+        ({"yield_iterations": 1}, "/numerics/yield_iterations: 1 is unusual; most values are 10"),
     ],
 )
 def test_settings_of_a_fluid_that_cannot_matter_or_be_are_told(values, message):

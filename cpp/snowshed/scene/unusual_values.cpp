@@ -21,7 +21,8 @@ class UnusualValues : public PathVisitor<UnusualValues> {
     const std::string in_unit = *unit ? std::string(" ") + unit : "";
     notes_.push_back(at(key) + ": " + show_briefly(value) + in_unit +
                      " is unusual; most values are " + show_briefly(range.usual_min) + " to " +
-                     show_briefly(range.usual_max) + in_unit + ", so check its unit");
+                     show_briefly(range.usual_max) + in_unit +
+                     (*unit ? ", so check its unit" : ""));
   }
   void number_instead(const char* key, std::optional<double>& value, const char*, const char* unit,
                       const methods::Range& range, const char* doc) {
@@ -30,7 +31,9 @@ class UnusualValues : public PathVisitor<UnusualValues> {
 
   void version(const char*, int, const char*) {}
   template <class Int>
-  void integer(const char*, Int&, const methods::Range&, const char*) {}
+  void integer(const char* key, Int& value, const methods::Range& range, const char* doc) {
+    number(key, double(value), "", range, doc);
+  }
   void flag(const char*, bool&, const char*) {}
   void text(const char*, std::string&, const char*) {}
   void file(const char*, std::string&, const char*) {}

@@ -135,7 +135,7 @@ template <class T, int D>
 void SolverImpl<T, D>::gather_and_update(double dt) {
   state_.follow_obstacles(model_, threads());
   if (model_.touches())
-    workspace_.touch.update(model_, state_, workspace_.grid.block_stats, threads());
+    workspace_.touch.update(model_, state_, state_.totals.speed * state_.totals.dt, threads());
   if (model_.boundary.any_slip()) state_.contacts.find_friction_shares(workspace_.friction_shares);
   StepParameters<T> step = parameters(dt);
   step.holds_last = true;

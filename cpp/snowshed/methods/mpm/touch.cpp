@@ -52,6 +52,7 @@ T cosine(const T (&a)[D], const T (&b)[size]) {
 template <class T, int D>
 void Touch<T, D>::forget(const Model<T, D>& model, const State<T, D>& state) {
   measured_ = false;
+  travel_ = 0;
   largest_radius_ = state.largest_contact_radius(model);
   blocks_.resize(state.layout.particle_blocks.size());
 }
@@ -62,7 +63,7 @@ std::vector<std::int32_t> Touch<T, D>::due_blocks(const Model<T, D>& model,
   const bool all = !measured_ || model.boundary.any_motion();
   std::vector<std::int32_t> due;
   for (std::size_t b = 0; b < blocks_.size(); ++b)
-    if (all || (blocks_[b].reserve <= 0 && !state.sleep.states()[b].asleep))
+    if (all || (travel_ >= blocks_[b].next && !state.sleep.states()[b].asleep))
       due.push_back(std::int32_t(b));
   return due;
 }
@@ -77,10 +78,10 @@ std::vector<std::int32_t> Touch<T, D>::touching_blocks() const {
 
 template <class T, int D>
 double Touch<T, D>::reserve(const State<T, D>& state) const {
-  double smallest = geometry::infinity;
+  double next = geometry::infinity;
   for (const std::int32_t b : state.sleep.awake())
-    smallest = std::min(smallest, blocks_[std::size_t(b)].reserve);
-  return smallest;
+    next = std::min(next, blocks_[std::size_t(b)].next);
+  return next - travel_;
 }
 
 template <class T, int D>
@@ -90,14 +91,8 @@ void Touch<T, D>::measure(const Model<T, D>& model, State<T, D>& state,
   measured_ = false;  // stays false if this throws
   parallel_for_dynamic(std::ptrdiff_t(blocks.size()), threads, 4,
                        [&](std::ptrdiff_t i) { measure(model, state, blocks[std::size_t(i)]); });
-  std::vector<std::int32_t> around;  // blocks of nodes that these particles may reach
-  for (const std::int32_t b : blocks)
-    around.insert(around.end(), state.layout.around_particles[b].begin(),
-                  state.layout.around_particles[b].end());
-  std::sort(around.begin(), around.end());
-  around.erase(std::unique(around.begin(), around.end()), around.end());
-  parallel_for_dynamic(std::ptrdiff_t(around.size()), threads, 16,
-                       [&](std::ptrdiff_t i) { mark(model, state, around[std::size_t(i)]); });
+  parallel_for_dynamic(std::ptrdiff_t(state.layout.grid_blocks.size()), threads, 16,
+                       [&](std::ptrdiff_t g) { mark(model, state, std::int32_t(g)); });
   measured_ = true;
 }
 
@@ -136,8 +131,8 @@ void Touch<T, D>::measure(const Model<T, D>& model, const State<T, D>& state, st
     }
   }
   // A particle may cease to touch before the next measurement. The short delay does not matter.
-  block.reserve = std::max(nearest, contact_tolerance * n.dx);
-  if (!block.touching_particles.empty()) block.reserve = contact_tolerance * n.dx;
+  block.next = travel_ + std::max(nearest, contact_tolerance * n.dx);
+  if (!block.touching_particles.empty()) block.next = travel_ + contact_tolerance * n.dx;
 }
 
 template <class T, int D>

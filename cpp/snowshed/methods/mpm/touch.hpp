@@ -9,7 +9,6 @@
 // touch.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -26,21 +25,16 @@ class Touch {
   /// the particles.
   void forget(const Model<T, D>& model, const State<T, D>& state);
 
-  /// Decides for each contact whether it acts, after the last step. `stats` are those of the blocks
-  /// of particles.
-  void update(const Model<T, D>& model, State<T, D>& state, const std::vector<BlockStats>& stats,
-              int threads) {
-    for (const std::int32_t b : state.sleep.awake())
-      blocks_[b].reserve -= std::sqrt(stats[b].max_speed_squared) * state.totals.dt;
+  /// Decides for each contact whether it acts. `moved` is the distance (m) by which the fastest
+  /// snow has moved since the last call.
+  void update(const Model<T, D>& model, State<T, D>& state, double moved, int threads) {
+    travel(moved);
     measure(model, state, due_blocks(model, state), threads);
   }
 
   // --- the parts of `update`, for particles in the memory of a device ---------------------------
 
-  /// The fastest snow has moved by this distance (m).
-  void travel(double moved) {
-    for (Block& block : blocks_) block.reserve -= moved;
-  }
+  void travel(double moved) { travel_ += moved; }
   /// The blocks whose distances must be measured.
   std::vector<std::int32_t> due_blocks(const Model<T, D>& model, const State<T, D>& state) const;
   /// Blocks with particles that touch an obstacle.
@@ -65,7 +59,7 @@ class Touch {
   };
   struct Block {
     std::vector<TouchingParticle> touching_particles;  // ordered by obstacle
-    double reserve = 0;  // m by which its snow may move before distances are measured again
+    double next = 0;  // travel (m) at which distances are measured again
   };
 
   void measure(const Model<T, D>& model, const State<T, D>& state, std::int32_t block);
@@ -77,6 +71,7 @@ class Touch {
   int support_;
   std::vector<Block> blocks_;  // one per block of particles
   double largest_radius_ = 0;  // m, bound for all particles
+  double travel_ = 0;          // distance (m) that the fastest snow has moved since `forget`
   bool measured_ = false;
 };
 

@@ -29,7 +29,7 @@ void describe(SettingsVisitor& v, Settings& s) {
            "Shear rate above which the stress grows as a power of the rate");
   v.number("dilatant_exponent", s.dilatant_exponent, "", between(1.0, 5.0),
            "Exponent of the stress above dilatant_rate");
-  v.integer("yield_iterations", s.yield_iterations, between(1, 1000),
+  v.integer("yield_iterations", s.yield_iterations, between(1, 1000).usual(10, 1000),
             "Largest number of iterations for the apparent viscosity in a step");
   v.flag("erosion", s.erosion, "Whether snow is eroded and deposited");
   v.number("erodible_thickness", s.erodible_thickness, "m", allowed::size_or_zero,

@@ -62,16 +62,18 @@ class UncertainParameter:
         """The name with the unit."""
         return f"{self.name}, {self.unit}" if self.unit else self.name
 
-    def check(self, name: str, span: Span) -> None:
-        """Raise InputError if a range is not allowed; note unusual values.
+    def is_usual(self, value: float) -> bool:
+        """Return whether a value has a usual magnitude; 0 has.
 
         Examples
         --------
-        >>> UNCERTAIN["catch"].check("catch", (0.5, 2.0))
-        Traceback (most recent call last):
-        snowshed._core.InputError: catch: 0.5 to 2 is not allowed; needed: two values, the smaller \
-first, from 0 to 1
+        >>> UNCERTAIN["adhesion"].is_usual(150.0), UNCERTAIN["adhesion"].is_usual(0.15)
+        (True, False)
         """
+        return not self.usual or not value or self.usual[0] <= value <= self.usual[1]
+
+    def check(self, name: str, span: Span) -> None:
+        """Raise InputError if a range is not allowed; note unusual values."""
         low, high = span
         smallest, largest = self.limits
         if not (math.isfinite(low) and math.isfinite(high) and smallest <= low <= high <= largest):
@@ -79,7 +81,7 @@ first, from 0 to 1
                 f"{name}: {low:g} to {high:g} is not allowed; needed: two values, the smaller "
                 f"first, from {smallest:g} to {largest:g}"
             )
-        if self.usual and any(value and not self.usual[0] <= value <= self.usual[1] for value in span):
+        if self.usual and not all(map(self.is_usual, span)):
             issue_note(
                 f"{name}: {low:g} to {high:g} is unusual; most values are {self.usual[0]:g} to "
                 f"{self.usual[1]:g}{f' ({self.unit})' if self.unit else ''}, so check the unit"

@@ -134,7 +134,7 @@ def _note_hidden_words(script: Script, words: set[str]) -> None:
             if name in words:
                 issue_note(
                     f"{ScriptLine(script.name, number)}: the local variable {name} hides the word "
-                    f"{name}; {name} {{...}} without \"local\" and \"=\" describes it"
+                    f'{name}; {name} {{...}} without "local" and "=" describes it'
                 )
 
 
