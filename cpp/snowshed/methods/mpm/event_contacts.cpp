@@ -113,8 +113,8 @@ typename EventContacts<T, D>::Masses EventContacts<T, D>::masses_of(const State<
   return masses;
 }
 
-/// Finds the normals of the nodes, smoothed over the nodes around each. Without smoothing its
-/// direction is arbitrary at the corners of a body, and it would push the body forward.
+/// Finds the normals of the nodes, smoothed over the nodes around each. Without smoothing their
+/// directions are arbitrary at the corners of a body, and they would push the body forward.
 template <class T, int D>
 void EventContacts<T, D>::find_normals(const Masses& a, const Masses& b, Nodes& nodes) {
   struct WeightedNormal {
