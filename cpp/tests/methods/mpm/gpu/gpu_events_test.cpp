@@ -65,8 +65,26 @@ TEST(GpuEvents, LandAndSlideOnEachOtherAsOnTheProcessor) {
   EXPECT_GT(largest_distance(events.gpu->state(), single.gpu->state()), 1e-3);
 }
 
+/// The snows differ in density and hardness, on which the radii of particles depend.
+TEST(GpuEvents, MayHaveSnowsOfTheirOwn) {
+  Options o = with_fields();
+  material::Snow heavy;
+  heavy.density = 350;
+  o.snows = {material::Snow(), heavy};
+  BothDevices pair = on_both(o);
+  pair.each([](Solver& s) {
+    s.add(layer());
+    ParticleBatch block = landing_block();
+    block.mass *= 350.0 / 210;
+    block.material_id = 1;
+    s.add(block);
+    run_steps(s, 100);
+  });
+  EXPECT_LT(pair.distance(), 1e-5);
+}
+
 /// The block slides on for many sorts, with the friction of the snow alone.
-TEST(GpuEvents, FrictionIsThatOfTheSnow) {
+TEST(GpuEvents, SlideWithTheFrictionOfTheSnow) {
   Options o = with_fields();
   o.settings.event_friction = 1;
   double losses[2];  // m/s along x
@@ -147,7 +165,7 @@ TEST(GpuEvents, AllOfTheSchemeAgreesWithTheProcessor) {
   o.settings.adopt(Scheme::objective);
   o.forces = true;
   BothDevices pair = on_both(o);
-  Vec3 impulses[2];  // of the second event, N s
+  Vec3 impulses[2];  // N s, of the second event
   pair.each([&](Solver& s) {
     ParticleBatch low = layer();
     for (Vec3& x : low.positions) x.z() -= 0.016;
