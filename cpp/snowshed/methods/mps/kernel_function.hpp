@@ -76,16 +76,11 @@ inline double share_of_wall(double distance, double second) {
   return (1 - 2 * second) * falls(0.75, 1.25) + second * falls(1.75, 2.25);
 }
 
-/// The part of n0 and of the filling that the second layer of a lattice below a surface lacks.
-struct SurfaceDeficit {
-  double number, filling;
-};
-inline SurfaceDeficit second_layer_deficit(int dimension, const KernelConstants& k) {
-  SurfaceDeficit sum{};
-  visit_beyond_second_layer(dimension, k, [&](double w, int) {
-    sum.number += w / k.number_density;
-    sum.filling += filling_weight(w) / k.filling;
-  });
+/// The part of the filling that the second layer of a lattice below a surface lacks.
+inline double second_layer_deficit(int dimension, const KernelConstants& k) {
+  double sum = 0;
+  visit_beyond_second_layer(dimension, k,
+                            [&](double w, int) { sum += filling_weight(w) / k.filling; });
   return sum;
 }
 

@@ -109,8 +109,8 @@ void find_surface(const Model<D>& model, const Particles<D>& particles, Neighbou
 /// doi:10.1016/j.jcp.2011.01.009). It is the identity on a lattice, and if there are too few
 /// neighbours. `weight_correction` is a matrix B. The factor e.B e of weights, with the direction e
 /// of a pair, is a first-order correction (ours): the sum of w r r^T, and with it Laplacians of
-/// quadratic fields, become those of a lattice. Dummy walls have no pressure, and are left out of
-/// gradients.
+/// quadratic fields, become those of a lattice. `asymmetry` is the sum of w r of snow and of inner
+/// walls, whose pressure is solved. Dummy walls have no pressure, and are left out of gradients.
 template <int D>
 void find_corrections(const Model<D>& model, const Particles<D>& particles, Neighbourhood<D>& near,
                       int threads) {
@@ -129,11 +129,12 @@ void find_corrections(const Model<D>& model, const Particles<D>& particles, Neig
     near.asymmetry[i].setZero();
     near.weight_correction[i] = upper_half<D>(Matrix::Identity());
     near.correction[i].setIdentity();
+    VecD<D> side;
+    for (int d = 0; d < D; ++d) side[d] = double(near.moments[i].side[d]);
+    if (particles.kind[i] == Kind::inner_wall && !near.below_surface[i]) near.asymmetry[i] = side;
     if (particles.is_wall(i)) return;
     Matrix moment = symmetric<D>(near.moments[i].slope);
     Matrix second = symmetric<D>(near.moments[i].weight);
-    VecD<D> side;
-    for (int d = 0; d < D; ++d) side[d] = double(near.moments[i].side[d]);
     for (const WallImage<D>* m = near.images.begin(i); m < near.images.end(i); ++m) {
       moment += double(m->slope) * m->separation * m->separation.transpose();
       second += double(m->weight) * m->separation * m->separation.transpose();

@@ -122,23 +122,16 @@ constexpr double min_source = 1e-8;
 /// Tolerance of densities below the surface, where particles need not form a lattice.
 constexpr double surface_tolerance = 0.002;
 
-/// Excess of density over that of a lattice, which the compensation (ours) reduces. Inside the snow
-/// it follows from the filled part of the space. Beside wall particles it follows from the number
-/// density, which grows faster near a wall. At the surface only a positive excess counts. In the
-/// layer below the surface, only the part of a deficit counts that exceeds a lattice's deficit, so
-/// that gaps close.
+/// Excess of density over that of a lattice, which the compensation (ours) reduces. It follows from
+/// the filled part of the space. At the surface only a positive excess counts. In the layer below
+/// the surface, only the part of a deficit counts that exceeds a lattice's deficit, so that gaps
+/// close.
 template <int D>
-double compensated_excess(const Model<D>& model, const Particles<D>& particles,
-                          const Neighbourhood<D>& near, std::size_t i) {
-  const bool beside_walls = model.has_wall_particles() &&
-                            (particles.is_wall(i) || near.contacts.begin(i) < near.contacts.end(i));
-  const double excess =
-      (beside_walls ? near.density[i] / model.kernel.number_density : near.filling[i]) - 1;
+double compensated_excess(const Model<D>& model, const Neighbourhood<D>& near, std::size_t i) {
+  const double excess = near.filling[i] - 1;
   if (near.surface[i]) return std::max(excess, 0.0);
   if (!near.below_surface[i] || excess > 0) return excess;
-  const double deficit =
-      beside_walls ? model.surface_deficit.number : model.surface_deficit.filling;
-  return std::min(0.0, excess + deficit + surface_tolerance);
+  return std::min(0.0, excess + model.surface_deficit + surface_tolerance);
 }
 
 /// The share of the density's error that a step removes. Snow with a yield stress keeps the errors
@@ -161,7 +154,24 @@ double source(const Model<D>& model, double dt, double compensation_time,
     return -s.density / (dt * dt) * (near.density[i] / model.kernel.number_density - 1);
   return s.density / dt * divergence(model, particles, work, i) -
          compensated_share(model) * s.density / (dt * compensation_time) *
-             compensated_excess(model, particles, near, i);
+             compensated_excess(model, near, i);
+}
+
+/// The gradient of the last step's pressure over the density, m/s2; at an inner wall the mean of
+/// the snow around, because walls have no acceleration.
+template <int D>
+VecD<D> last_pressure_acceleration(const Particles<D>& particles, const Neighbourhood<D>& near,
+                                   std::size_t i) {
+  if (!particles.is_wall(i)) return particles.pressure_acceleration[i];
+  VecD<D> sum = VecD<D>::Zero();
+  double weight = 0;
+  for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e) {
+    const std::size_t j = near.lists.neighbour(e);
+    if (particles.is_wall(j)) continue;
+    sum += double(near.weight[e]) * particles.pressure_acceleration[j];
+    weight += double(near.weight[e]);
+  }
+  return weight > 0 ? VecD<D>(sum / weight) : sum;
 }
 
 /// Subtracts the mean from the sources. The pressure of a fluid without a free surface is defined
@@ -269,7 +279,8 @@ SolveReport solve_pressure(const Model<D>& model, double dt, Particles<D>& parti
     if (work.pressure.fixed[i]) return;
     double value = -source(model, dt, relaxation, particles, work, i) / model.laplacian();
     if (corrected)
-      value -= model.settings().density * near.asymmetry[i].dot(particles.pressure_acceleration[i]);
+      value -= model.settings().density *
+               near.asymmetry[i].dot(last_pressure_acceleration(particles, near, i));
     if (near.surface[i]) value = std::max(value, 0.0);  // no suction at the surface
     work.pressure.source[i] = value;
   });

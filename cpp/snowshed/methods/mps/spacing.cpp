@@ -8,17 +8,19 @@ namespace snowshed::methods::mps {
 namespace {
 
 /// Particles nearer to each other than `distance` (in l0) bounce, and keep the share `restitution`
-/// of the speed at which they approach.
+/// of the speed at which they approach. Wall particles may be left out.
 struct Collision {
   double distance, restitution;
+  bool with_walls;
 };
 /// The values that are common in MPS codes.
-constexpr Collision common_collision{0.5, 0.2};
+constexpr Collision common_collision{0.5, 0.2, true};
 /// With shifting, particles nearer than the spacing of the lattice only stop approaching each other
 /// (ours, after the dynamic stabilisation of Tsuruta and others 2013, Computers & Fluids 82):
 /// velocities that alternate between neighbours have no divergence and would otherwise persist.
-/// With a distance of 0.8 water at rest boils after 5 s.
-constexpr Collision inelastic_collision{1.0, 0.0};
+/// With a distance of 0.8 water at rest boils after 5 s. A row of wall particles would be rough at
+/// this distance, and slow down snow that slides along it.
+constexpr Collision inelastic_collision{1.0, 0.0, false};
 
 /// Shift over the gradient of the concentration, in l0^2 (Lind and others 2012,
 /// doi:10.1016/j.jcp.2011.10.027, where this factor is half the square of the smoothing length).
@@ -33,7 +35,8 @@ void collide(const Model<D>& model, const Collision& law, Particles<D>& particle
   work.spacing.impulse_share.resize(n);
   work.change.resize(n);
   for_each_particle(n, threads, [&](std::size_t i) {
-    work.spacing.impulse_share[i] = particles.moves(i) ? 0.5 : 1.0;
+    const double fixed = particles.is_wall(i) && !law.with_walls ? 0.0 : 1.0;
+    work.spacing.impulse_share[i] = particles.moves(i) ? 0.5 : fixed;
   });
   for_each_piece(n, threads, [&](std::ptrdiff_t begin, std::ptrdiff_t end) {
     model.kernels.sum_approaches(

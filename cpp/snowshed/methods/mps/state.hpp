@@ -44,8 +44,8 @@ struct Model {
   Options options;
   VecD<D> gravity;  // m/s2
   KernelConstants kernel;
-  double second_layer;             // see second_layer_share
-  SurfaceDeficit surface_deficit;  // see second_layer_deficit
+  double second_layer;     // see second_layer_share
+  double surface_deficit;  // see second_layer_deficit
   Rheology rheology;
   const Kernels<D>& kernels = chosen_kernels<D>();
   int threads;
@@ -105,7 +105,7 @@ struct Neighbourhood {
   AlignedVector<RowMoments<D>> moments;  // moments of w(r)
   AlignedVector<double> density;         // number density
   AlignedVector<double> filling;         // the filling over that of a lattice
-  AlignedVector<VecD<D>> asymmetry;      // sum of w(r) r, m; 0 at the free surface
+  AlignedVector<VecD<D>> asymmetry;      // sum of w(r) r, m; 0 near the surface, and at dummies
   // Correction of gradients, see find_corrections.
   AlignedVector<Eigen::Matrix<double, D, D>> correction;
   AlignedVector<std::array<float, RowMoments<D>::half>> weight_correction;  // upper half of B

@@ -87,10 +87,9 @@ TEST(MpsVolume, ABinghamHeapKeepsItsVolume) {
     const auto mps = body_of(o, {0.3, 0, 0.2});
     flow_until(*mps, 0.5);  // still fast, and most disordered
     EXPECT_NEAR(mean_space(*mps, 0.01), 1, 0.015) << int(walls);
-    const double tolerance = walls == Walls::mirrors ? 0.01 : 0.012;
     for (const double time : {1.0, 2.0}) {
       flow_until(*mps, time);
-      EXPECT_NEAR(mean_space(*mps, 0.01), 1, tolerance) << int(walls) << ' ' << time;
+      EXPECT_NEAR(mean_space(*mps, 0.01), 1, 0.01) << int(walls) << ' ' << time;
     }
   }
 }

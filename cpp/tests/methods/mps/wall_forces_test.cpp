@@ -44,8 +44,8 @@ TEST(WallForces, WaterInATankPressesOnFloorAndSides) {
       solver->add(water);
       advance_to(*solver, 0.5);
       const auto forces = mean_forces(*solver, 0.8);
-      // Wall particles hold their first layers less well: the water swells by a few per cent, and
-      // the forces converge with the spacing.
+      // Rows beside a side of wall particles stand closer than a spacing, so that their areas are
+      // too large; the forces converge with the spacing.
       const double exact = walls == Walls::mirrors ? 1 : dimension == 2 ? 1.5 : 5;
       EXPECT_NEAR(forces[0].total().z() / (-water.total_mass() * g), 1, 1e-4);
       const double side = 0.5 * 1000 * g * depth * depth * across;
