@@ -51,9 +51,9 @@ void EventContacts<T, D>::update(const Model<T, D>& model, State<T, D>& state, G
   std::vector<std::vector<EventContact<T>>> by_overlap(overlaps);
   parallel_for_dynamic(overlaps, threads, 1, [&](std::ptrdiff_t overlap) {
     const SortedContacts earlier =
-        measured_ ? SortedContacts{by_key.data() + first_[overlap],
-                                   by_key.data() + first_[overlap + 1]}
-                  : SortedContacts{by_key.data(), by_key.data() + by_key.size()};
+        measured_
+            ? SortedContacts{by_key.data() + first_[overlap], by_key.data() + first_[overlap + 1]}
+            : SortedContacts{by_key.data(), by_key.data() + by_key.size()};
     if (due_[overlap]) {
       measure(model, state, grid, earlier, overlap, by_overlap[overlap]);
       travel_[overlap] = 0;
@@ -214,8 +214,7 @@ void EventContacts<T, D>::measure(const Model<T, D>& model, const State<T, D>& s
       for (Field* field : {&fields[a], &fields[b]})
         if (field->masses.empty())
           field->masses = masses_of(state, grid, model.kernels, field->block);
-      const SharedNodes<T, D> nodes =
-          find_shared_nodes<T, D>(fields[a].masses, fields[b].masses);
+      const SharedNodes<T, D> nodes = find_shared_nodes<T, D>(fields[a].masses, fields[b].masses);
       ReachMap<T, D> first(nodes, T(1)), second(nodes, T(-1));  // towards each other
       find_reach(model, state, grid, fields[a].block, nodes, first);
       find_reach(model, state, grid, fields[b].block, nodes, second);

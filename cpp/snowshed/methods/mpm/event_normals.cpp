@@ -64,9 +64,9 @@ std::vector<double> smoothed(const std::vector<double>& values, int before, Span
   return sums;
 }
 
-/// Smooths normals. Without this their direction is arbitrary at the corners of a body, and it would
-/// push the body forward. Sums normals with the product of the tents along all directions, at the nodes from `begin` to
-/// `end`. Returns the components of a node after each other.
+/// Smooths normals. Without this their direction is arbitrary at the corners of a body, and it
+/// would push the body forward. Sums normals with the product of the tents along all directions, at
+/// the nodes from `begin` to `end`. Returns the components of a node after each other.
 template <int D>
 std::vector<double> smoothed(const std::vector<WeightedNormal<D>>& normals,
                              const std::array<int, D>& begin, const std::array<int, D>& end) {

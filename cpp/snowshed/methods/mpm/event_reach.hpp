@@ -43,9 +43,7 @@ class ReachMap {
   }
 
   /// The reach at a shared node of the block, in cells.
-  T at(const std::array<int, D>& node) const {
-    return reach_[flat_index<D>(node, edge, -margin)];
-  }
+  T at(const std::array<int, D>& node) const { return reach_[flat_index<D>(node, edge, -margin)]; }
 
  private:
   static constexpr int lanes = 4;

@@ -145,7 +145,6 @@ void GpuSolver::prepare() {
   ++state.totals.sorts;
   control_.speed_squared = float(state.totals.speed * state.totals.speed);
   control_.phase = Phase::waiting;
-  control_.event_travel = 0;
   snow_.scatter(control_);
   snow_.find_event_contacts();
   if (state.forces) with_contacts([this] { hold_sleeping_forces(); });

@@ -49,8 +49,9 @@ void VelocityAverage<T, D>::find_tiles() {
 }
 
 template <class T, int D>
-typename VelocityAverage<T, D>::Box VelocityAverage<T, D>::reached_box(
-    const ParticleView<T>& view, const BlockLayout<D>& layout, std::int32_t b) const {
+typename VelocityAverage<T, D>::Box VelocityAverage<T, D>::reached_box(const ParticleView<T>& view,
+                                                                       const BlockLayout<D>& layout,
+                                                                       std::int32_t b) const {
   constexpr double rounding = 1e-3;  // of the kernel's positions, in spacings; generous
   const int last = layout_.tile_edge() - support(Basis::quadratic);
   Box box;

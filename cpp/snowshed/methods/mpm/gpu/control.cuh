@@ -76,18 +76,11 @@ __device__ inline double largest_speed(const Control& c) {
   return double(::sqrtf(c.speed_squared));
 }
 
-/// Counts the distance by which snow has moved since contacts between events were sought.
-__device__ inline void count_event_travel(Control& c, const Constants& k) {
-  if (c.event_travel >= k.event_tolerance) c.event_travel = 0;  // this step has sought them
-  c.event_travel += largest_speed(c) * c.dt;
-}
-
 /// Records a step that was taken.
 __device__ inline void record_step(Control& c, const Constants& k) {
   if (k.average_share > 0) count_undamped(c.undamped_steps, c.undamped_time, c.dt);
   c.time += c.dt;
   c.travel += largest_speed(c) * c.dt;
-  count_event_travel(c, k);
   c.last_dt = c.dt;
   c.smallest_dt = c.dt < c.smallest_dt ? c.dt : c.smallest_dt;
   ++c.steps;

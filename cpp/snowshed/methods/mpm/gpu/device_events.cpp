@@ -59,6 +59,7 @@ DeviceEvents::DeviceEvents(snowshed::gpu::Device& device, const Model<float, 3>&
       active_pairs_(device),
       all_pairs_(device),
       nodes_(device),
+      travel_(device),
       radius_(device),
       snows_(device) {
   if (model.options.settings.fields == Fields::one) return;
@@ -75,7 +76,7 @@ void DeviceEvents::connect(const HostState& state) {
   for (std::size_t o = 0; o + 1 < layout.overlap_first.size(); ++o) {
     for (std::int32_t a = layout.overlap_first[o]; a < layout.overlap_first[o + 1]; ++a)
       for (std::int32_t b = a + 1; b < layout.overlap_first[o + 1]; ++b)
-        host_pairs_.push_back({a, b});
+        host_pairs_.push_back({a, b, std::int32_t(o)});
     first_pair.push_back(std::int32_t(host_pairs_.size()));
   }
   pairs_.upload(host_pairs_);
@@ -103,6 +104,8 @@ void DeviceEvents::connect(const HostState& state) {
     node.impulse = node.next_impulse = at->next_impulse;
   });
   nodes_.upload(contacts);
+  travel_.resize(host_pairs_.size());
+  travel_.clear();
 }
 
 void DeviceEvents::follow_sleep(const HostState& state) {
@@ -172,16 +175,18 @@ void DeviceEvents::launch_step(const GridArrays& grid, const ContactArrays& cont
 }
 
 EventArrays DeviceEvents::view() const {
-  return {first_block_.data(), blocks_.data(),       first_pair_.data(),
-          pairs_.data(),       nodes_around_.data(), particles_around_.data(),
-          nodes_.data(),       radius_.data(),       friction_};
+  return {first_block_.data(),  blocks_.data(),
+          first_pair_.data(),   pairs_.data(),
+          nodes_around_.data(), particles_around_.data(),
+          nodes_.data(),        travel_.data(),
+          radius_.data(),       friction_};
 }
 
 std::size_t DeviceEvents::bytes() const {
   std::size_t sum = 0;
   const auto add = [&](const auto&... arrays) { sum += (std::size_t(0) + ... + arrays.bytes()); };
   add(first_block_, blocks_, first_pair_, nodes_around_, particles_around_, pairs_, lone_,
-      active_overlaps_, active_pairs_, all_pairs_, nodes_, radius_, snows_);
+      active_overlaps_, active_pairs_, all_pairs_, nodes_, travel_, radius_, snows_);
   return sum;
 }
 

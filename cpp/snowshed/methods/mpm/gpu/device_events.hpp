@@ -26,7 +26,7 @@ class DeviceEvents {
 
   /// Finds the radii of the particles, which have been sorted, and then all contacts.
   void find_all_contacts(const ParticleLaunch&, std::size_t particles, const Constants&);
-  /// Queues the search that is due in a step if snow may have moved far enough.
+  /// Queues the search of a step, for the pairs whose snow may have moved far enough.
   void search(const ParticleLaunch&, const Control*, const Constants&) const;
   /// Queues the steps of the nodes of these positions.
   void launch_step(const GridArrays&, const ContactArrays&, const ForceArrays&, Control*,
@@ -49,6 +49,7 @@ class DeviceEvents {
   DeviceArray<EventPair> pairs_;
   DeviceArray<std::int32_t> lone_, active_overlaps_, active_pairs_, all_pairs_;
   DeviceArray<EventNode> nodes_;
+  DeviceArray<double> travel_;
   DeviceArray<float> radius_;
   DeviceArray<InitialSnow> snows_;
 };

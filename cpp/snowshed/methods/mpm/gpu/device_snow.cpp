@@ -35,6 +35,7 @@ DeviceSnow::DeviceSnow(snowshed::gpu::Device& device, const Model<float, 3>& mod
       around_(device),
       order_(device),
       strays_(device),
+      fastest_(device),
       awake_(device),
       asleep_blocks_(device),
       active_(device),
@@ -119,6 +120,8 @@ void DeviceSnow::upload_layout(HostState& state) {
   change_.resize(nodes);
   ranges_.resize(grid_blocks * 6);
   motions_.resize(std::size_t(blocks_));
+  fastest_.resize(std::size_t(blocks_));
+  fastest_.clear();
   average_.connect(state);
   events_.connect(state);
   upload_contacts(state);
@@ -305,7 +308,7 @@ ParticleLaunch DeviceSnow::launch_of(const DeviceArray<std::int32_t>& list,
   return {particles_.view(), {first_.data(), around_.data()},
           list.data(),       grid(),
           strays_.data(),    integers,
-          average_.view()};
+          average_.view(),   fastest_.data()};
 }
 
 GridArrays DeviceSnow::grid() const {
@@ -325,7 +328,7 @@ std::size_t DeviceSnow::bytes() const {
   const auto add = [&](const auto&... arrays) { sum += (std::size_t(0) + ... + arrays.bytes()); };
   add(first_, around_, order_, strays_, awake_, asleep_blocks_, active_, idle_, listed_, integers_,
       asleep_, carried_, force_, velocity_, change_, ranges_, first_contact_, contacts_, motions_,
-      cell_ranges_);
+      cell_ranges_, fastest_);
   return sum;
 }
 

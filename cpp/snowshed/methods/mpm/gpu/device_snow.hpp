@@ -81,6 +81,7 @@ class DeviceSnow {
   DeviceAverage average_;
   DeviceEvents events_;
   DeviceArray<std::int32_t> first_, around_, order_, strays_;
+  DeviceArray<float> fastest_;
   DeviceArray<std::int32_t> awake_, asleep_blocks_, active_, idle_, listed_;
   DeviceArray<unsigned long long> integers_, asleep_;
   DeviceArray<Quad> carried_, force_, velocity_;

@@ -22,6 +22,8 @@ struct SearchMemory {
   float normal[nodes_of_block][3];
   std::int32_t reach[2][nodes_of_block];  // of the two fields along the normal, see `ordered`
   bool shared[nodes_of_block];
+  float fastest;  // m2/s2
+  bool is_due;
 };
 static_assert(sizeof(SearchMemory) <= 48 * 1024);
 
@@ -160,6 +162,30 @@ __device__ inline void search_pair(const EventArrays& events, const ParticleLaun
   nodes[t] = node;
 }
 
+/// Whether the snow that can reach a pair's nodes may have moved far enough since their contacts
+/// were sought: in the last step, and before.
+__device__ inline bool is_search_due(const EventArrays& events, const ParticleLaunch& l, int pair,
+                                     double dt, double tolerance, SearchMemory& m) {
+  const int t = int(threadIdx.x), overlap = events.pairs[pair].overlap;
+  if (t == 0) m.fastest = 0;
+  __syncthreads();
+  float fastest = 0;
+  const int end = events.first_block[overlap + 1] * neighbours;
+  for (int i = events.first_block[overlap] * neighbours + t; i < end; i += int(blockDim.x)) {
+    const std::int32_t b = events.particles_around[i];
+    if (b >= 0) fastest = ::fmaxf(fastest, l.fastest[b]);
+  }
+  raise(&m.fastest, fastest);
+  __syncthreads();
+  if (t == 0) {
+    const double travel = events.travel[pair] + double(::sqrtf(m.fastest)) * dt;
+    m.is_due = travel >= tolerance;
+    events.travel[pair] = m.is_due ? 0 : travel;
+  }
+  __syncthreads();
+  return m.is_due;
+}
+
 }  // namespace snowshed::methods::mpm::gpu
 
 /// Finds the contacts of the listed pairs. A search within a step (`control` is not null) is due
@@ -171,10 +197,10 @@ extern "C" __global__ void __launch_bounds__(128)
                         snowshed::methods::mpm::gpu::Constants k) {
   using namespace snowshed::methods::mpm::gpu;
   __shared__ SearchMemory memory;
-  if (control && (control->phase != Phase::trying || control->repeated ||
-                  control->event_travel < k.event_tolerance))
-    return;
+  if (control && (control->phase != Phase::trying || control->repeated)) return;
   const int pair = l.list[blockIdx.x];
+  if (control && !is_search_due(events, l, pair, control->last_dt, k.event_tolerance, memory))
+    return;
   search_pair(events, l, events.pairs[pair], events.nodes + pair * nodes_of_block,
               Units(k, 1.0f).of[0], memory);
 }

@@ -180,6 +180,7 @@ __device__ inline void step_block(const ParticleLaunch& l, Control* control, con
   if (Variant::affine) raise(&m.spin, largest.spin);
   __syncthreads();
   if (t > 0) return;
+  l.fastest[b] = m.fastest;
   raise(&control->speed_squared, m.fastest);
   if (Variant::affine) raise(&control->spin, m.spin);
 }
@@ -214,7 +215,11 @@ __device__ inline void step_strays(const ParticleLaunch& l, std::int32_t block_c
                             {from.lowest[0], from.lowest[1], from.lowest[2]}},
                   means);
       move(s, means, l.average, low, step);
-      const auto moved = finish_particle(s, means, l.particles, i, k, step, control, largest);
+      Largest own;
+      const auto moved = finish_particle(s, means, l.particles, i, k, step, control, own);
+      raise(l.fastest + low, own.speed_squared);
+      largest.speed_squared = ::fmaxf(largest.speed_squared, own.speed_squared);
+      largest.spin = ::fmaxf(largest.spin, own.spin);
       if (!moved.sound) continue;
       if (!may_move_on(s.cell)) control->must_sort = 1;
       scatter_stray(Place(s.cell), moved.given, l.integers, around, units);

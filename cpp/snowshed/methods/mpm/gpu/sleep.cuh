@@ -78,6 +78,7 @@ extern "C" __global__ void __launch_bounds__(64)
     stop_blocks(snowshed::methods::mpm::gpu::ParticleLaunch l) {
   using namespace snowshed::methods::mpm::gpu;
   const int b = l.list[blockIdx.x];
+  if (threadIdx.x == 0) l.fastest[b] = 0;
   for (int i = l.blocks.first[b] + int(threadIdx.x); i < l.blocks.first[b + 1];
        i += motion_threads) {
     for (int d = 0; d < 3; ++d) l.particles.velocity[d][i] = 0;

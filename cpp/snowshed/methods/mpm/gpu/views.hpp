@@ -90,9 +90,9 @@ struct AverageArrays {
 };
 
 /// Two of the blocks of nodes that several events have at the same position, as indices into
-/// EventArrays::blocks.
+/// EventArrays::blocks, and the index of that position.
 struct EventPair {
-  std::int32_t first, second;
+  std::int32_t first, second, overlap;
 };
 
 /// A node of a pair. It is a contact if the snow touches, or has separated and friction is still
@@ -110,6 +110,7 @@ struct EventArrays {
   const EventPair* pairs;
   const std::int32_t *nodes_around, *particles_around;  // the 27 blocks around each of `blocks`
   EventNode* nodes;                                     // 64 for each pair
+  double* travel;                                       // of each pair, m, see find_event_contacts
   const float* radius;                                  // radii of all particles, cells
   float friction;                                       // Coulomb's coefficient
 };
@@ -128,6 +129,7 @@ struct ParticleLaunch {
   std::int32_t* strays;          // room for all particles
   unsigned long long* integers;  // sums to which the particles are added
   AverageArrays average;
+  float* fastest;  // m2/s2, of the fastest snow of each block in the last step; asleep: 0
 };
 
 /// Sums over the particles of a block, by which the host decides whether the block sleeps.
@@ -162,7 +164,6 @@ struct Control {
   double smallest_dt;        // s
   double travel;             // m, by the fastest snow since the host looked
   double travel_limit;       // m, after which the host must look
-  double event_travel;       // m, by the fastest snow since contacts between events were sought
   double undamped_time;      // s, of the steps since velocities were last damped over a length
   std::int64_t steps, rejected, undamped_steps;
   Phase phase;
