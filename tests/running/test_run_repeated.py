@@ -6,10 +6,12 @@ import shutil
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 import snowshed
-from snowshed import InputError, Results, Scene, SnowshedNote
+from snowshed import InputError, Results, Scene, Simulation, SnowshedNote
 from snowshed.base.build import build_id
+from snowshed.cli.main import cli
 from snowshed.results import InlineView
 from snowshed.running import Ageing, Interval
 
@@ -87,6 +89,35 @@ def test_a_run_json_alone_makes_every_number_again(tmp_path):
     assert heights(again) == expected
     for name, content in tables.items():
         assert (tmp_path / "again" / name).read_bytes() == content
+
+
+def test_a_copy_of_a_run_json_repeats_the_ageing_under_any_name(tmp_path):
+    expected = heights(snowshed.run(TINY, tmp_path / "first", ageing=AGEING, pictures=False))
+    copied = shutil.copy(tmp_path / "first/run.json", tmp_path / "supplement.json")
+    assert heights(snowshed.run(copied, tmp_path / "again", pictures=False)) == expected
+    done = CliRunner().invoke(cli, ["run", str(copied), "-o", str(tmp_path / "third"), "-q"])
+    assert done.exit_code == 0
+    assert heights(Results(tmp_path / "third")) == expected
+
+
+def test_a_scene_without_the_ageing_of_its_run_is_told(tmp_path):
+    snowshed.run(TINY, tmp_path / "first", ageing=AGEING, pictures=False)
+    with pytest.warns(SnowshedNote, match="its run had ageing, which a scene does not hold"):
+        snowshed.run(tmp_path / "first/scene.json", pictures=False)
+    copied = shutil.copy(tmp_path / "first/run.json", tmp_path / "supplement.json")
+    with pytest.warns(SnowshedNote, match="its run had ageing, which a scene does not hold"):
+        Scene.load(copied)
+    with pytest.warns(SnowshedNote, match="the ageing of its run is left out"):
+        Simulation(copied)
+
+
+def test_a_damaged_run_json_is_refused_under_any_name(tmp_path):
+    snowshed.run(TINY, tmp_path / "first", pictures=False)
+    text = (tmp_path / "first/run.json").read_text()
+    (tmp_path / "supplement.json").write_text(text.replace('"tilt": 50', '"tilt": 70'))
+    for read in (snowshed.run, Scene.load, Simulation):
+        with pytest.raises(InputError, match="its checksum is not that of its content"):
+            read(tmp_path / "supplement.json")
 
 
 def test_a_run_json_of_another_build_or_with_changed_files_says_so(tmp_path):

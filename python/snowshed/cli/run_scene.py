@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 from pathlib import Path
+from typing import Optional
 
 import snowshed._core as _core
 from snowshed.base.formatting import about
@@ -15,6 +16,7 @@ from snowshed.cli.output.dry_run import print_cost
 from snowshed.cli.output.terminal import say
 from snowshed.io.raster.output import MapFormat
 from snowshed.methods.registry import DEFAULT, SETTINGS_KEY, method_of
+from snowshed.running.recorded_run import RecordedRun
 from snowshed.scene.scene import ResolvedScene
 
 ANNOUNCED_FROM_S = 600.0  # s; longer runs are announced
@@ -26,17 +28,20 @@ def run_scene(
     resume: bool,
     quiet: bool,
     map_format: MapFormat = "ascii",
+    recorded: Optional[RecordedRun] = None,
 ) -> None:
     """Run a scene into a folder with a progress bar, and print its results."""
     from snowshed.cli.output.progress import progress_bar
-    from snowshed.running.run import run
+    from snowshed.running.run import run_resolved
 
     if not quiet and (slow := _core.slow_kernels_note()):
         say(f"note: {slow}", err=True)
     try:
         with progress_bar(quiet=quiet) as show:
             progress = None if show is None else announcing_long_run(resolved, show)
-            results = run(resolved, folder, resume=resume, progress=progress, map_format=map_format)
+            results = run_resolved(
+                resolved, folder, recorded, resume=resume, progress=progress, map_format=map_format
+            )
     except Interrupted as interrupted:
         raise Stopped(str(interrupted)) from None
     if not quiet:
@@ -54,6 +59,7 @@ def run_or_cost(
     quiet: bool,
     check: bool = False,
     map_format: MapFormat = "ascii",
+    recorded: Optional[RecordedRun] = None,
 ) -> None:
     """Run a scene as `run_scene` does; a dry run prints its cost only.
 
@@ -63,13 +69,15 @@ def run_or_cost(
         Whether to measure the error of the stack, too.
     map_format
         Format of the maps, if the method has them.
+    recorded
+        The earlier run that this one repeats.
     """
     if check:
         check_can_be_measured(resolved)
     if dry_run:
         print_cost(resolved)
         return
-    run_scene(resolved, folder, resume, quiet, map_format)
+    run_scene(resolved, folder, resume, quiet, map_format, recorded)
     if check:
         check_run(folder, quiet)
 

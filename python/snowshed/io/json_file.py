@@ -41,11 +41,11 @@ def parse_object(text: str | bytes, where: str) -> dict[str, Any]:
         raise InputError(f"{where}: damaged: {shortened(str(error), 200)}") from None
     if not isinstance(data, dict):
         raise InputError(f"{where}: damaged: not a JSON object")
-    _check_seal(text if isinstance(text, bytes) else text.encode(), where)
+    check_seal(text if isinstance(text, bytes) else text.encode(), where)
     return data
 
 
-def _check_seal(text: bytes, where: str) -> None:
+def check_seal(text: bytes, where: str) -> None:
     """Raise InputError if a text's checksum is wrong."""
     at = text.rfind(SEAL)
     if at >= 0 and text[at:] != SEAL + b'%08x"\n}\n' % zlib.crc32(text[:at]):

@@ -8,6 +8,7 @@ previous version have no such checksums.
 from __future__ import annotations
 
 import zlib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -43,10 +44,38 @@ def scene_of_record(document: JsonValue) -> JsonValue:
     >>> scene_of_record({"version": "0.1.0", "scene": {"snowshed": 2}})
     {'snowshed': 2}
     """
-    if isinstance(document, dict) and "snowshed" not in document:
-        scene = document.get("scene")
-        return scene if isinstance(scene, dict) else document
+    if isinstance(document, dict) and is_record(document):
+        return document["scene"]
     return document
+
+
+def is_record(document: JsonValue) -> bool:
+    """Return whether a document is the record of a run (run.json), whatever its file is called.
+
+    Examples
+    --------
+    >>> is_record({"version": "0.1.0", "scene": {"snowshed": 2}}), is_record({"snowshed": 2})
+    (True, False)
+    """
+    return (
+        isinstance(document, dict)
+        and "snowshed" not in document
+        and isinstance(document.get("scene"), dict)
+    )
+
+
+def beyond_scene(record: Mapping[str, Any]) -> str:
+    """Return what shaped a recorded run beside its scene; empty: nothing.
+
+    Examples
+    --------
+    >>> beyond_scene({"ageing": {"pauses": {}}, "laws": "ice"})
+    "ageing and the laws 'ice'"
+    """
+    parts = ["ageing"] if record.get("ageing") else []
+    if laws := record.get("laws"):
+        parts.append(f"the laws {laws!r}")
+    return " and ".join(parts)
 
 
 def file_mark(path: Path) -> tuple[int, str]:

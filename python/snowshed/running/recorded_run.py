@@ -12,8 +12,9 @@ import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.build import package_digest
 from snowshed.base.callers import either
+from snowshed.base.notes import issue_note
 from snowshed.io.json_file import read_object
-from snowshed.io.run_files import RECORD, file_mark
+from snowshed.io.run_files import RECORD, beyond_scene, file_mark, is_record
 from snowshed.running.ageing.ageing import Ageing
 from snowshed.running.laws import Laws
 from snowshed.scene.scene import SceneLike
@@ -63,14 +64,36 @@ class RecordedRun:
 
 
 def recorded_run(scene: SceneLike) -> Optional[RecordedRun]:
-    """Return the recorded run if a scene is given by the path of a run.json; else None.
+    """Return the recorded run if a scene is given by the path of a run.json or a copy; else None.
 
     Raises
     ------
     InputError
         If the file is damaged.
     """
-    if not isinstance(scene, (str, os.PathLike)) or Path(scene).name != RECORD:
+    if not isinstance(scene, (str, os.PathLike)):
         return None
     record = read_object(Path(scene))
-    return RecordedRun(record, Path(scene)) if "snowshed" not in record else None
+    return RecordedRun(record, Path(scene)) if is_record(record) else None
+
+
+def note_run_beside(scene: SceneLike, *, as_it_was: bool) -> None:
+    """Note that the run of a scene.json had more than its scene.
+
+    Parameters
+    ----------
+    scene
+        The scene, perhaps the path of the scene.json of a run.
+    as_it_was
+        Whether the new run has ageing or laws, too.
+    """
+    if as_it_was or not isinstance(scene, (str, os.PathLike)):
+        return
+    path = Path(scene)
+    if path.name != "scene.json" or not (path.parent / RECORD).is_file():
+        return
+    if more := beyond_scene(read_object(path.parent / RECORD)):
+        issue_note(
+            f"{path}: its run had {more}, which a scene does not hold; {path.parent / RECORD} "
+            "repeats the run"
+        )

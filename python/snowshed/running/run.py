@@ -35,7 +35,7 @@ from snowshed.running.ageing.ageing import Ageing
 from snowshed.running.kept_inputs import kept_inputs
 from snowshed.running.laws import Laws
 from snowshed.running.method_run import MethodRun, RunOptions
-from snowshed.running.recorded_run import recorded_run
+from snowshed.running.recorded_run import RecordedRun, note_run_beside, recorded_run
 from snowshed.running.sequence import open_sequence, record_note, run_sequence
 from snowshed.scene.resolved import ResolvedScene
 from snowshed.scene.scene import SceneLike, resolve_scene
@@ -128,6 +128,29 @@ def run(
             map_format=map_format,
         )  # fmt: skip
     resolved, recorded = resolve_scene(scene), recorded_run(scene)
+    if recorded is None:
+        note_run_beside(scene, as_it_was=resume is True or ageing is not None or laws is not None)
+    return run_resolved(
+        resolved, folder, recorded, resume=resume, overwrite=overwrite, ageing=ageing, laws=laws,
+        progress=progress, pictures=pictures, compact=compact, map_format=map_format,
+    )  # fmt: skip
+
+
+def run_resolved(
+    resolved: ResolvedScene,
+    folder: PathLike,
+    recorded: Optional[RecordedRun] = None,
+    *,
+    resume: Union[bool, Literal["auto"]] = False,
+    overwrite: bool = False,
+    ageing: Optional[Ageing] = None,
+    laws: Optional[Laws] = None,
+    progress: Optional[Reporter] = None,
+    pictures: bool = True,
+    compact: bool = False,
+    map_format: MapFormat = "ascii",
+) -> Results:
+    """Run a complete scene as `run` does; `recorded` is the earlier run that it repeats."""
     method = method_of(resolved.data)
     if recorded is not None:
         ageing = ageing or recorded.ageing

@@ -13,6 +13,7 @@ from snowshed.cli.options.common import PATH, run_options
 from snowshed.cli.options.resolve import with_accuracy
 from snowshed.cli.output.dry_run import print_cost
 from snowshed.cli.run_scene import run_or_cost
+from snowshed.running.recorded_run import note_run_beside, recorded_run
 from snowshed.scene.scene import ResolvedScene, Scene
 
 
@@ -40,7 +41,13 @@ def run(
       snowshed run scene.json -o results
     """  # noqa: D301 - click wants the control character
     resolved = _resolve_file(scene, accuracy, forces=forces, quiet=quiet)
-    run_or_cost(resolved, folder, resume=resume, dry_run=dry_run, quiet=quiet, check=check)
+    recorded = recorded_run(scene)
+    if recorded is None:
+        note_run_beside(scene, as_it_was=resume)
+    run_or_cost(
+        resolved, folder, resume=resume, dry_run=dry_run, quiet=quiet, check=check,
+        recorded=recorded,
+    )  # fmt: skip
 
 
 @click.command(hidden=True)
