@@ -34,12 +34,12 @@ template <int D>
 bool AverageLayout<D>::connect(const std::vector<BlockKey>& particle_blocks) {
   if (particle_blocks == keys_) return false;
   const std::size_t blocks = particle_blocks.size();
-  keys_ = particle_blocks;
+  keys_.clear();  // until all arrays belong to the new blocks
   first_nodes_.resize(blocks);
   origins_.resize(blocks);
   std::vector<BlockShare> pairs;
   for (std::size_t b = 0; b < blocks; ++b) {
-    const BlockCoord<D> c = block_coord<D>(keys_[b]);
+    const BlockCoord<D> c = block_coord<D>(particle_blocks[b]);
     Coord begin{}, end{};
     for (int d = 0; d < D; ++d) {
       const double origin = double(c[d]) * block_edge<D> * per_cell_;
@@ -50,7 +50,7 @@ bool AverageLayout<D>::connect(const std::vector<BlockKey>& particle_blocks) {
       end[d] = std::int32_t(std::floor((lowest + tile_edge_ - 1) / edge)) + 1;
     }
     for_each_index(begin, end, [&](const Coord& at) {
-      pairs.push_back({field_of(keys_[b]), at, std::int32_t(b)});
+      pairs.push_back({field_of(particle_blocks[b]), at, std::int32_t(b)});
     });
   }
   std::sort(pairs.begin(), pairs.end());
@@ -71,6 +71,7 @@ bool AverageLayout<D>::connect(const std::vector<BlockKey>& particle_blocks) {
         std::int32_t(coarse_blocks_.size()) - 1;
   }
   sharing_first_.push_back(std::int32_t(sharing_.size()));
+  keys_ = particle_blocks;
   return true;
 }
 

@@ -22,7 +22,9 @@ VelocityAverage<T, D>::VelocityAverage(double length, double dx, Basis basis)
 
 template <class T, int D>
 void VelocityAverage<T, D>::connect(const BlockLayout<D>& layout) {
-  if (layout_.connect(layout.particle_blocks) || tiles_of_.empty()) find_tiles();
+  if (layout_.connect(layout.particle_blocks)) tiles_fit_ = false;
+  if (!tiles_fit_) find_tiles();
+  tiles_fit_ = true;
   std::fill(settled_.begin(), settled_.end(), std::uint8_t(0));
 }
 
