@@ -46,7 +46,7 @@ std::vector<double> covered_shares(Walls walls, double row) {
   return shares;
 }
 
-TEST(MpsWallAreas, OfALatticeAreItsCells) {
+TEST(MpsWallAreas, AreTheCellsOfALattice) {
   for (const Walls walls : {Walls::mirrors, Walls::particles}) {
     for (const double share : covered_shares<2>(walls, 1)) EXPECT_NEAR(share, 1, 1e-3);
     for (const double share : covered_shares<3>(walls, 1)) EXPECT_NEAR(share, 1, 1e-3);
@@ -54,7 +54,7 @@ TEST(MpsWallAreas, OfALatticeAreItsCells) {
 }
 
 // Eleven rows in place of ten had 10 % too large an area.
-TEST(MpsWallAreas, OfCrowdedRowsCoverTheSurfaceOnce) {
+TEST(MpsWallAreas, CoverTheSurfaceOnceIfRowsCrowd) {
   for (const Walls walls : {Walls::mirrors, Walls::particles}) {
     EXPECT_NEAR(covered_shares<2>(walls, 10.0 / 11)[1], 1, 0.02) << int(walls);
     EXPECT_NEAR(covered_shares<3>(walls, 10.0 / 11)[1], 1, 0.02) << int(walls);

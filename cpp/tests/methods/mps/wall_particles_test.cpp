@@ -164,9 +164,9 @@ double error_of_front(Options o, double width) {
   double square = 0;
   for (const auto& [time, front] : volume_of_fluid) {
     flow_until(*water, time * unit);
-    double place = 0;
-    for (const Vec3& x : water->state().positions) place = std::max(place, x.x());
-    square += std::pow((place + 0.5 * o.settings.spacing) / width - front, 2);
+    double farthest = 0;
+    for (const Vec3& x : water->state().positions) farthest = std::max(farthest, x.x());
+    square += std::pow((farthest + 0.5 * o.settings.spacing) / width - front, 2);
   }
   return std::sqrt(square / double(volume_of_fluid.size()));
 }
