@@ -9,28 +9,28 @@
 namespace snowshed::scene {
 namespace {
 
-std::vector<std::string> notes_of(const Scene& scene) {
+std::vector<std::string> notes_on_unusual(const Scene& scene) {
   std::vector<std::string> notes;
   add_notes_on_unusual_values(scene, notes);
   return notes;
 }
 
 TEST(UnusualValues, UsualScenesHaveNoNotes) {
-  EXPECT_TRUE(notes_of(panel_scene(40)).empty());
+  EXPECT_TRUE(notes_on_unusual(panel_scene(40)).empty());
   for (const std::string& name : scene_preset_names())
-    EXPECT_TRUE(notes_of(preset_scene(name)).empty()) << name;
+    EXPECT_TRUE(notes_on_unusual(preset_scene(name)).empty()) << name;
 }
 
 TEST(UnusualValues, ZeroStandsForNoneAndHasNoNote) {
   Scene scene = panel_scene(0);
   scene.panel->friction = scene.panel->thickness = scene.panel->height = scene.gravity = 0;
-  EXPECT_TRUE(notes_of(scene).empty());
+  EXPECT_TRUE(notes_on_unusual(scene).empty());
 }
 
 TEST(UnusualValues, TheNoteHasPathValueAndUsualRange) {
   Scene scene = panel_scene(40);
   scene.snow.preconsolidation_pressure = 7;
-  const auto notes = notes_of(scene);
+  const auto notes = notes_on_unusual(scene);
   ASSERT_EQ(notes.size(), 1u);
   EXPECT_EQ(notes[0],
             "/snow/preconsolidation_pressure: 7 Pa is unusual; most values are 50 to 1e+07 Pa, so "
@@ -40,14 +40,14 @@ TEST(UnusualValues, TheNoteHasPathValueAndUsualRange) {
 TEST(UnusualValues, PanelsLongerThanRoofsAreNoted) {
   Scene scene = panel_scene(40);
   scene.panel->length = 40;
-  EXPECT_TRUE(notes_of(scene).empty());
+  EXPECT_TRUE(notes_on_unusual(scene).empty());
   scene.panel->length = 50;  // half a metre in centimetres
-  EXPECT_EQ(notes_of(scene).size(), 1u);
+  EXPECT_EQ(notes_on_unusual(scene).size(), 1u);
 }
 
 TEST(UnusualValues, AnglesInRadiansAreNotedWithEitherSign) {
-  EXPECT_EQ(notes_of(panel_scene(0.87)).size(), 1u);
-  EXPECT_EQ(notes_of(panel_scene(40, -0.35)).size(), 1u);
+  EXPECT_EQ(notes_on_unusual(panel_scene(0.87)).size(), 1u);
+  EXPECT_EQ(notes_on_unusual(panel_scene(40, -0.35)).size(), 1u);
 }
 
 TEST(UnusualValues, AFewOfManyAreShownAndTheRestIsCounted) {
@@ -60,7 +60,7 @@ TEST(UnusualValues, AFewOfManyAreShownAndTheRestIsCounted) {
     obstacle.shape.radius = 1;
     obstacle.friction = 30;
   }
-  const auto notes = notes_of(scene);
+  const auto notes = notes_on_unusual(scene);
   ASSERT_EQ(notes.size(), 6u);
   EXPECT_EQ(notes.back(), "7 further values are unusual");
 }
@@ -71,10 +71,10 @@ TEST(UnusualValues, SpeedsBeyondAFallAreNoted) {
   body.shape.type = "sphere";
   body.shape.radius = 1;
   body.velocity = {0, 0, -90};
-  EXPECT_TRUE(notes_of(scene).empty());
+  EXPECT_TRUE(notes_on_unusual(scene).empty());
   body.velocity = {90, 0, -90};
-  ASSERT_EQ(notes_of(scene).size(), 1u);
-  EXPECT_EQ(notes_of(scene)[0],
+  ASSERT_EQ(notes_on_unusual(scene).size(), 1u);
+  EXPECT_EQ(notes_on_unusual(scene)[0],
             "/bodies/0/velocity: 127 m/s is unusual; most values are 0 to 100 m/s, so check its "
             "unit");
 }
@@ -82,10 +82,10 @@ TEST(UnusualValues, SpeedsBeyondAFallAreNoted) {
 TEST(UnusualValues, ThickReleasesOfSlidesAreNoted) {
   Scene scene;
   scene.terrain.emplace().release.emplace_back().thickness = 3;
-  EXPECT_TRUE(notes_of(scene).empty());
+  EXPECT_TRUE(notes_on_unusual(scene).empty());
   scene.terrain->release[0].thickness = 5;
-  ASSERT_EQ(notes_of(scene).size(), 1u);
-  EXPECT_EQ(notes_of(scene)[0].find("/terrain/release/0/thickness: 5 m is unusual"), 0u);
+  ASSERT_EQ(notes_on_unusual(scene).size(), 1u);
+  EXPECT_EQ(notes_on_unusual(scene)[0].find("/terrain/release/0/thickness: 5 m is unusual"), 0u);
 }
 
 TEST(UnusualValues, SettingsOfMethodsAreChecked) {
@@ -93,8 +93,8 @@ TEST(UnusualValues, SettingsOfMethodsAreChecked) {
   methods::slide::Settings settings;
   settings.density = 0.2;
   scene.numerics = settings;
-  ASSERT_EQ(notes_of(scene).size(), 1u);
-  EXPECT_EQ(notes_of(scene)[0].find("/numerics/density"), 0u);
+  ASSERT_EQ(notes_on_unusual(scene).size(), 1u);
+  EXPECT_EQ(notes_on_unusual(scene)[0].find("/numerics/density"), 0u);
 }
 
 }  // namespace

@@ -3,15 +3,16 @@
 // The corrected gradient does not give pairs of particles equal and opposite forces, so that the
 // reaction to a wall's share of the gradient is not the force on the wall. The record begins with
 // the pressure at the wall's surface, over the area that each contact stands for, the drag of the
-// wall, and the impulses that keep particles out of it. In a flow the particles beside a wall are
-// not a lattice, and stand for too small or too large an area. The balance of momentum corrects
-// this in each step: whatever changed the momentum of the snow, and was neither gravity nor a
-// recorded force, came from the walls that were pressed, along their normals.
+// wall, and the impulses that keep particles out of it. In a flow these pressures and areas have
+// errors. The balance of momentum corrects them in each step: whatever changed the momentum of the
+// snow, and was neither gravity nor a recorded force, came from the walls that were pressed, along
+// their normals.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
 #include "snowshed/methods/mps/elastic_strain.hpp"
 #include "snowshed/methods/mps/solver_impl.hpp"
+#include "snowshed/methods/mps/wall_areas.hpp"
 #include "snowshed/methods/mps/wall_friction.hpp"
 
 namespace snowshed::methods::mps {
@@ -37,6 +38,8 @@ void SolverImpl<D>::find_wall_impulses(double dt, const State<D>& next) {
   const Particles<D>& p = next.particles;
   const RowLists<WallContact<D>>& contacts = workspace_.near.contacts;
   WallImpulses& impulses = workspace_.wall_impulses;
+  const std::vector<double> areas =
+      contact_areas(model_, workspace_.start.particles, workspace_.near);
   impulses.by_name.assign(forces_->names().size(), ContactImpulse());
   impulses.pushes.clear();
   impulses.moving_mass = 0;
@@ -47,11 +50,8 @@ void SolverImpl<D>::find_wall_impulses(double dt, const State<D>& next) {
     impulses.moving_mass += p.mass[i];
     for (const WallContact<D>* c = contacts.begin(i); c < contacts.end(i); ++c) {
       const std::size_t k = contacts.index_of(c);
-      const double l0 = model_.settings().spacing;
-      const double area = share_of_wall(c->distance / l0, model_.second_layer) * p.mass[i] /
-                          (model_.settings().density * l0);
       const double push =
-          dt * area * pressure_at_wall(model_, p, i, *c) + p.mass[i] * workspace_.wall_stop[k];
+          dt * areas[k] * pressure_at_wall(model_, p, i, *c) + p.mass[i] * workspace_.wall_stop[k];
       const VecD<D> impulse = workspace_.wall_impulse[k] - push * c->normal;
       if (impulse.isZero(0)) continue;
       const Vec3 normal = embed(c->normal);

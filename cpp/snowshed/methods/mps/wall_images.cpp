@@ -9,9 +9,6 @@ namespace {
 constexpr std::size_t particles_with_images = 256;
 /// Minimum distance of a particle's image from a wall, in l0.
 constexpr double min_image_distance = 0.1;
-/// Two walls make a corner, with images behind both, if the cosine between their normals is at most
-/// this.
-constexpr double max_corner_cosine = 0.7;
 
 /// Another particle's contact with the same obstacle, or null.
 template <int D>

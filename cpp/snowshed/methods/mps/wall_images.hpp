@@ -7,6 +7,10 @@
 
 namespace snowshed::methods::mps {
 
+/// Two walls make a corner, with images behind both, if the cosine between their normals is at most
+/// this.
+inline constexpr double max_corner_cosine = 0.7;
+
 /// The image of particle k behind a wall, or behind two at once in a corner, for particle i. Its
 /// distance is r'^2 = r^2 + 4 h_i h_k with the distances h from the wall. This is exact for plane
 /// walls. It is also used for curved walls, because it keeps the distance symmetric in i and k.
