@@ -57,7 +57,7 @@ UserLaws named(const std::string& name) {
   return laws;
 }
 
-scene::Scene one_event() {
+scene::Scene slide_of_own_laws() {
   scene::Scene scene = small_scene();
   scene.events.count = 1;
   scene.output.energy = false;
@@ -72,7 +72,7 @@ methods::ParticleState state_after(const scene::Scene& scene, const UserLaws& la
 }
 
 TEST(UserLaws, ALawThatDoesNothingLeavesElasticSnow) {
-  scene::Scene scene = one_event();
+  scene::Scene scene = slide_of_own_laws();
   scene.numerics.as<methods::mpm::Settings>().precision = methods::mpm::Precision::float64;
   UserLaws laws = named("elastic");
   laws.material = reinterpret_cast<void*>(&stay_elastic);
@@ -93,7 +93,7 @@ material::CamClay<T> cam_clay() {
                                     2);
 }
 template <class T>
-void snow_itself(std::int64_t count, T* p, T* q, T* plastic, const std::uint8_t*, double) {
+void unchanged_snow(std::int64_t count, T* p, T* q, T* plastic, const std::uint8_t*, double) {
   static const material::CamClay<T> law = cam_clay<T>();
   using V = SimdPack<T>;
   for (std::int64_t at = 0; at < count; at += simd_width<T>) {
@@ -115,8 +115,8 @@ TEST(UserLaws, TheLawOfTheSnowGivesTheSameBits) {
     const scene::Scene scene = falling_box(2, precision);
     UserLaws laws = named("cam-clay");
     laws.material = precision == methods::mpm::Precision::float32
-                        ? reinterpret_cast<void*>(&snow_itself<float>)
-                        : reinterpret_cast<void*>(&snow_itself<double>);
+                        ? reinterpret_cast<void*>(&unchanged_snow<float>)
+                        : reinterpret_cast<void*>(&unchanged_snow<double>);
     Simulation mine(scene, ".", laws), own(scene);
     for (Simulation* sim : {&mine, &own}) {
       sim->begin_event();
@@ -131,7 +131,7 @@ TEST(UserLaws, TheLawOfTheSnowGivesTheSameBits) {
 }
 
 TEST(UserLaws, TheLawOfTheSnowIsReplaced) {
-  const scene::Scene scene = one_event();
+  const scene::Scene scene = slide_of_own_laws();
   UserLaws laws = named("fluid");
   laws.material = reinterpret_cast<void*>(&lose_shear);
   EXPECT_FALSE(state_after(scene, laws, 600).positions == state_after(scene, {}, 600).positions);
@@ -141,7 +141,7 @@ TEST(UserLaws, EveryParticleIsPassedOnceAStep) {
   calls = 0;
   UserLaws laws = named("counter");
   laws.material = reinterpret_cast<void*>(&count_calls);
-  scene::Scene scene = one_event();
+  scene::Scene scene = slide_of_own_laws();
   scene.numerics.as<methods::mpm::Settings>().sleep_speed = 0;
   const auto state = state_after(scene, laws, 100);
   EXPECT_EQ(calls, 100 * int(state.positions.size()));
@@ -150,7 +150,7 @@ TEST(UserLaws, EveryParticleIsPassedOnceAStep) {
 TEST(UserLaws, AConstantCoefficientGivesTheBitsOfTheScene) {
   UserLaws laws = named("friction");
   laws.friction["panel"] = &always;
-  const scene::Scene scene = one_event();
+  const scene::Scene scene = slide_of_own_laws();
   ASSERT_EQ(scene.panel->friction, 0.2);
   EXPECT_TRUE(state_after(scene, laws, 600).positions == state_after(scene, {}, 600).positions);
 }
@@ -158,7 +158,7 @@ TEST(UserLaws, AConstantCoefficientGivesTheBitsOfTheScene) {
 TEST(UserLaws, FrictionThatGrowsWithTheSpeedLimitsIt) {
   UserLaws laws = named("friction");
   laws.friction["panel"] = &grows_with_speed;
-  scene::Scene scene = one_event();
+  scene::Scene scene = slide_of_own_laws();
   scene.panel->length = 0.5;
   scene.slab->length = 0.1;
   Simulation sim(scene, ".", laws);
@@ -169,7 +169,7 @@ TEST(UserLaws, FrictionThatGrowsWithTheSpeedLimitsIt) {
 }
 
 TEST(UserLaws, ABodyForceAgainstGravityKeepsSnowAtRest) {
-  scene::Scene scene = one_event();
+  scene::Scene scene = slide_of_own_laws();
   scene.panel->tilt = 0;
   UserLaws laws = named("floating");
   laws.body_force = &upwards;
@@ -202,7 +202,7 @@ TEST(UserLaws, ABodyForceAcceleratesFreeSnowAsItSays) {
 }
 
 TEST(UserLaws, AnObstacleFollowsItsFunction) {
-  scene::Scene scene = one_event();
+  scene::Scene scene = slide_of_own_laws();
   scene.panel->tilt = 0;
   scene.panel->condition = methods::Condition::sticky;
   UserLaws laws = named("swing");
@@ -221,10 +221,10 @@ TEST(UserLaws, AnObstacleFollowsItsFunction) {
 TEST(UserLaws, WrongLawsAreRefused) {
   UserLaws laws = named("friction");
   laws.friction["pannel"] = &always;
-  EXPECT_THROW(Simulation(one_event(), ".", laws), InputError);
+  EXPECT_THROW(Simulation(slide_of_own_laws(), ".", laws), InputError);
   laws = named("force");
   laws.body_force = &upwards;
-  scene::Scene scene = one_event();
+  scene::Scene scene = slide_of_own_laws();
   scene.output.energy = true;
   EXPECT_THROW(Simulation(scene, ".", laws), InputError);
 }
@@ -234,7 +234,7 @@ using UserLawsFiles = io::TemporaryFolder;
 TEST_F(UserLawsFiles, ACheckpointNeedsTheSameLawsAgain) {
   UserLaws laws = named("friction");
   laws.friction["panel"] = &always;
-  Simulation sim(one_event(), ".", laws);
+  Simulation sim(slide_of_own_laws(), ".", laws);
   sim.begin_event();
   sim.save(path("checkpoint.bin"));
   EXPECT_THROW(Simulation::load(path("checkpoint.bin")), InputError);

@@ -15,9 +15,10 @@ from typing import Any
 from snowshed._core import InputError
 from snowshed.base.callers import resuming_call
 from snowshed.base.json_values import JsonValue
+from snowshed.base.notes import issue_note
 from snowshed.io.csv_table import Table
 from snowshed.io.input_file import read_regular
-from snowshed.io.json_file import read_object
+from snowshed.io.json_file import check_seal, read_object
 
 RECORD = "run.json"
 #: Files that `snowshed-run` does not update when it resumes a run.
@@ -47,6 +48,21 @@ def scene_of_record(document: JsonValue) -> JsonValue:
     if isinstance(document, dict) and is_record(document):
         return document["scene"]
     return document
+
+
+def scene_in(document: JsonValue, content: bytes, where: str) -> JsonValue:
+    """Return the scene in the content of a file, and note what a recorded run had beside it.
+
+    Raises
+    ------
+    InputError
+        If it is a record whose checksum is wrong.
+    """
+    if isinstance(document, dict) and is_record(document):
+        check_seal(content, where)
+        if more := beyond_scene(document):
+            issue_note(f"{where}: its run had {more}, which a scene does not hold")
+    return scene_of_record(document)
 
 
 def is_record(document: JsonValue) -> bool:

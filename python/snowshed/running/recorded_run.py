@@ -13,7 +13,8 @@ from snowshed._core import InputError
 from snowshed.base.build import package_digest
 from snowshed.base.callers import either
 from snowshed.base.notes import issue_note
-from snowshed.io.json_file import read_object
+from snowshed.io.input_file import read_input
+from snowshed.io.json_file import parse_object, read_object
 from snowshed.io.run_files import RECORD, beyond_scene, file_mark, is_record
 from snowshed.running.ageing.ageing import Ageing
 from snowshed.running.laws import Laws
@@ -73,8 +74,21 @@ def recorded_run(scene: SceneLike) -> Optional[RecordedRun]:
     """
     if not isinstance(scene, (str, os.PathLike)):
         return None
-    record = read_object(Path(scene))
+    content = read_input(Path(scene))
+    if b'"scene"' not in content:  # without parsing it
+        return None
+    record = parse_object(content, os.fspath(scene))
     return RecordedRun(record, Path(scene)) if is_record(record) else None
+
+
+def check_scene_alone(scene: SceneLike, laws: Optional[Laws]) -> None:
+    """Check the laws for a simulation of the scene of a recorded run; note its ageing."""
+    recorded = recorded_run(scene)
+    if recorded is None:
+        return
+    recorded.check_laws(laws)
+    if recorded.ageing is not None:
+        issue_note(f"{recorded.path}: the ageing of its run is left out; run repeats it")
 
 
 def note_run_beside(scene: SceneLike, *, as_it_was: bool) -> None:

@@ -19,7 +19,7 @@ from snowshed.methods.registry import method_of
 from snowshed.results.provenance import present_origin, with_origin
 from snowshed.running.laws import Laws, addresses_of
 from snowshed.running.particle_reading import ReadsParticles
-from snowshed.running.recorded_run import recorded_run
+from snowshed.running.recorded_run import check_scene_alone
 from snowshed.running.scene_notes import notes_before
 from snowshed.running.sequence import issuing_notes
 from snowshed.running.stepping_checks import (
@@ -102,11 +102,8 @@ class Simulation(ReadsParticles):
     """
 
     def __init__(self, scene: SceneLike, *, laws: Optional[Laws] = None) -> None:
-        self._scene, recorded = resolve_scene(scene), recorded_run(scene)
-        if recorded is not None:
-            recorded.check_laws(laws)
-            if recorded.ageing is not None:
-                issue_note(f"{recorded.path}: the ageing of its run is left out; run repeats it")
+        self._scene = resolve_scene(scene)
+        check_scene_alone(scene, laws)
         self._laws = laws  # keeps the functions alive
         addresses = addresses_of(laws, self._scene.data)
         self._core = _core.Simulation(self._scene.core, self._scene.base_dir, addresses)

@@ -19,13 +19,11 @@ from snowshed._core import InputError
 from snowshed._core import preset as preset_text
 from snowshed.base.arguments import checked
 from snowshed.base.json_values import JsonObject, JsonValue
-from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.base.record import MAX_DEPTH, Record, check_instead, check_once, default
 from snowshed.io.input_file import read_input
-from snowshed.io.json_file import check_seal
 from snowshed.io.json_text import loads
-from snowshed.io.run_files import beyond_scene, is_record, scene_of_record
+from snowshed.io.run_files import scene_in
 from snowshed.methods.registry import DEFAULT, NAME_KEY, SETTINGS_KEY, method_named
 from snowshed.methods.settings import MethodSettings
 from snowshed.scene.components import (
@@ -178,12 +176,8 @@ class Scene(Record):
             data = loads(content)
         except (ValueError, RecursionError) as error:
             raise InputError(f"{path}: not JSON: {error}") from None
-        if isinstance(data, dict) and is_record(data):
-            check_seal(content, str(path))
-            if more := beyond_scene(data):
-                issue_note(f"{path}: its run had {more}, which a scene does not hold")
+        data = scene_in(data, content, os.fspath(path))
         try:
-            data = scene_of_record(data)
             _refuse_null(data, "")
             scene = cls.from_data(cast("JsonObject", data))
             scene.to_data()

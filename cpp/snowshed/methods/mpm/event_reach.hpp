@@ -1,4 +1,4 @@
-// How far the particles of a field, with their radii, reach along the normals of the nodes that it
+// The reach of the particles of a field, with their radii, along the normals of the nodes that it
 // shares with another field (equation S7 of docs/methods/mpm-scheme.md).
 #pragma once
 

@@ -54,7 +54,7 @@ template <class T, int D>
 typename VelocityAverage<T, D>::Box VelocityAverage<T, D>::reached_box(const ParticleView<T>& view,
                                                                        const BlockLayout<D>& layout,
                                                                        std::int32_t b) const {
-  constexpr double rounding = 1e-3;  // of the kernel's positions, in spacings; generous
+  constexpr double rounding = 1e-3;  // more than the error of the kernel's positions, spacings
   const int last = layout_.tile_edge() - support(Basis::quadratic);
   Box box;
   for (int d = 0; d < D; ++d) {

@@ -110,7 +110,7 @@ struct EventArrays {
   const EventPair* pairs;
   const std::int32_t *nodes_around, *particles_around;  // the 27 blocks around each of `blocks`
   EventNode* nodes;                                     // 64 for each pair
-  double* travel;                                       // of each pair, m, see find_event_contacts
+  double* travel;                                       // travel of each pair, m (is_search_due)
   const float* radius;                                  // radii of all particles, cells
   float friction;                                       // Coulomb's coefficient
 };
