@@ -56,3 +56,4 @@ def test_the_table_of_an_old_store_is_read(store, monkeypatch, writable):
         "time_limit",
     )
     assert (row["courant_factor"], row["trimming"]) == (0.9, "equal_pace")
+    assert row["notes"] == ""  # unknown

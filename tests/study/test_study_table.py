@@ -2,6 +2,7 @@
 
 import re
 import sqlite3
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -151,7 +152,9 @@ def test_csv_and_parquet_preserve_the_table(mixed, tmp_path):
     export(mixed, tmp_path / "t.csv")
     export(mixed, tmp_path / "t.parquet")
     from_csv = pd.read_csv(tmp_path / "t.csv", dtype={"steps": "Int64"}, keep_default_na=True)
-    pd.testing.assert_frame_equal(from_csv.fillna({"error": ""}), table, check_dtype=False)
+    pd.testing.assert_frame_equal(
+        from_csv.fillna({"error": "", "notes": ""}), table, check_dtype=False
+    )
     pd.testing.assert_frame_equal(pd.read_parquet(tmp_path / "t.parquet"), table)
 
 
@@ -216,3 +219,17 @@ def test_all_measures_except_counts_and_words_have_units():
         "ended",
         "trimming",
     }
+
+
+def test_the_table_has_the_notes_of_each_run_in_every_form(tmp_path):
+    folder, study = tmp_path / "store", tiny_study(frictions=(0.1, 0.2))
+    with Store.create(folder) as store:
+        runs = study.runs()
+        store.register(study.name, study.axes, runs)
+        for run, notes in zip(runs, (("thin slab", "snow stays"), ())):
+            store.record(replace(outcome(run.hash, events=1), notes=notes))
+    table = read_table(folder)
+    assert table["notes"].tolist() == ["thin slab; snow stays", ""]
+    assert to_dataset(table)["notes"].values.tolist() == ["thin slab; snow stays", ""]
+    export(folder, tmp_path / "table.csv")
+    assert "thin slab; snow stays" in (tmp_path / "table.csv").read_text()

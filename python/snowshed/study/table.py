@@ -53,8 +53,8 @@ def read_table(
     pandas.DataFrame
         One row per run and event, runs in the study's order: ``hash`` of the run; the parameters
         that vary, by their dotted paths; ``seed``; ``event``; the measures of the method, such as
-        the columns of events.csv or the figures of a slide; ``error``; ``version`` and ``build``
-        of snowshed; ``dimension``; and the accuracy settings (``dx``, ``precision``, ...). A run
+        the columns of events.csv or the figures of a slide; ``error``; ``notes`` on the run, joined
+        by "; "; ``version`` and ``build`` of snowshed; ``dimension``; and the accuracy settings (``dx``, ``precision``, ...). A run
         that failed has, after its completed events, a row without measures whose ``ended`` is
         "failed" and whose ``error`` says why.
 
@@ -72,8 +72,8 @@ def read_table(
         scenes = [scene_data(run.scene) for run in store.runs(name)] or [{}]
     measured = [column for scene in scenes for column in MEASURE_COLUMNS[method_of(scene).name]]
     settings = [column for scene in scenes for column in accuracy_of(scene)]
-    columns = ["hash", *axes, "seed", "event", *measured, "error", "version", "build", "dimension"]
-    columns += [*settings, *(("wall_s", *RUN_TIMING) if timing else ())]
+    columns = ["hash", *axes, "seed", "event", *measured, "error", "notes", "version", "build"]
+    columns += ["dimension", *settings, *(("wall_s", *RUN_TIMING) if timing else ())]
     table = pd.DataFrame(rows, columns=list(dict.fromkeys(columns)))  # axes may be among them
     types: dict[str, Any] = {
         **dict.fromkeys(_columns_of_type("INTEGER"), "Int64"),
@@ -133,7 +133,14 @@ def _facts(run: StoredRun, axes: Sequence[str]) -> dict[str, Any]:
     """Return the columns that all events of a run share."""
     scene = with_current_names(scene_data(run.scene))
     facts = scene_columns(scene, axes)
-    return {**facts, "hash": run.hash, "error": "", "version": run.version, "build": run.build}
+    return {
+        **facts,
+        "hash": run.hash,
+        "error": "",
+        "notes": "; ".join(run.notes),
+        "version": run.version,
+        "build": run.build,
+    }
 
 
 def scene_columns(scene: Mapping[str, Any], axes: Sequence[str]) -> dict[str, Any]:
