@@ -1,8 +1,8 @@
 """Checksums in a store: a damaged row is found when it is read.
 
 Their names: ``run HASH`` for the scene of a run, ``study NAME`` for the runs of a study, ``results
-HASH`` for measures, ``particles HASH`` for stored particles and ``notes HASH`` for notes. A store of
-an earlier version gets its checksums when it is opened.
+HASH`` for measures, ``particles HASH`` for stored particles and ``notes HASH`` for notes. A store
+of an earlier version gets its checksums when it is opened.
 """
 
 from __future__ import annotations

@@ -266,8 +266,8 @@ class Store:
     def _stored(self, row: Sequence[Any]) -> StoredRun:
         if not all(text is None or isinstance(text, str) for text in row[:-1]):
             raise self.damaged(f"run {row[0]!r}: not a text in every column")
-        *texts, notes, keep_particles = row
-        run = StoredRun(*texts, self._notes(row[0], notes), bool(keep_particles))
+        notes = self._notes(row[0], row[-2])
+        run = StoredRun(*[*row[:-2], notes, bool(row[-1])])
         if not is_hash(run.hash) or run.status not in STATUSES:
             raise self.damaged(f"run {run.hash!r}: {run.status!r}, or no content hash")
         where = f"{self.folder / FILE}: run {run.hash}: its scene"

@@ -54,9 +54,9 @@ def read_table(
         One row per run and event, runs in the study's order: ``hash`` of the run; the parameters
         that vary, by their dotted paths; ``seed``; ``event``; the measures of the method, such as
         the columns of events.csv or the figures of a slide; ``error``; ``notes`` on the run, joined
-        by "; "; ``version`` and ``build`` of snowshed; ``dimension``; and the accuracy settings (``dx``, ``precision``, ...). A run
-        that failed has, after its completed events, a row without measures whose ``ended`` is
-        "failed" and whose ``error`` says why.
+        by "; "; ``version`` and ``build`` of snowshed; ``dimension``; and the accuracy settings
+        (``dx``, ``precision``, ...). A run that failed has, after its completed events, a row
+        without measures whose ``ended`` is "failed" and whose ``error`` says why.
 
     Raises
     ------
