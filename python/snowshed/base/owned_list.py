@@ -49,5 +49,8 @@ class OwnedList(list[Item]):
         copied = OwnedList(given) if isinstance(index, slice) else copy.deepcopy(given)
         super().__setitem__(index, copied)  # type: ignore[assignment,index]
 
-    def __deepcopy__(self, memo: object) -> OwnedList[Item]:
-        return OwnedList(self)
+    def __deepcopy__(self, memo: dict[int, Any]) -> OwnedList[Item]:
+        copied: OwnedList[Item] = OwnedList()
+        memo[id(self)] = copied  # first, because a list may contain itself
+        list.extend(copied, (copy.deepcopy(item, memo) for item in self))
+        return copied
