@@ -307,7 +307,7 @@ def _note_on_units(
             f"{'a square' if dimension == 2 else 'a cube'} with sides of {snow:.2g} m, but its "
             f"particles span only {size:.2g} m; are the masses in g, or is `dimension` another one?"
         )
-    too_wide = size > MAX_SPREAD * snow
+    too_wide = bool(size > MAX_SPREAD * snow)
     if too_wide:
         issue_note(
             f"positions: the particles span {' x '.join(f'{side:.3g}' for side in sides)} m, "
