@@ -18,6 +18,7 @@ from snowshed.snow.stack.quantities import MEASURES, QUANTITIES
 from snowshed.study.database import MEASURE_COLUMNS, STORED_TYPES, TIMING
 from snowshed.study.factors import SEED
 from snowshed.study.store import Store, StoredRun
+from snowshed.study.table_origin import column_units, table_origin
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -56,7 +57,9 @@ def read_table(
         the columns of events.csv or the figures of a slide; ``error``; ``notes`` on the run, joined
         by "; "; ``version`` and ``build`` of snowshed; ``dimension``; and the accuracy settings
         (``dx``, ``precision``, ...). A run that failed has, after its completed events, a row
-        without measures whose ``ended`` is "failed" and whose ``error`` says why.
+        without measures whose ``ended`` is "failed" and whose ``error`` says why. Its `attrs` have
+        ``units`` by column, and ``snowshed_version`` and ``snowshed_build``, each a list if the
+        runs have several.
 
     Raises
     ------
@@ -82,7 +85,9 @@ def read_table(
     for column in measured:
         if column not in types and table[column].isna().all():  # a table without any stack
             types[column] = float
-    return with_trimming(table.astype({k: v for k, v in types.items() if k in table}))
+    table = with_trimming(table.astype({k: v for k, v in types.items() if k in table}))
+    table.attrs.update({"units": column_units(table), **table_origin(table)})
+    return table
 
 
 def with_trimming(table: pd.DataFrame) -> pd.DataFrame:
