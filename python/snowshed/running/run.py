@@ -142,7 +142,7 @@ def run(
         raise _core.InputError("resume, overwrite: give one of the two")
     resume = _resumes(resume, Path(folder))
     if not resume and not overwrite:
-        check_empty(folder, _instead_of_full())
+        check_empty(folder, instead_of_full())
     if map_format != "ascii":
         _check_maps(method, map_format)
     options = RunOptions(resume, ageing, pictures, compact, map_format)
@@ -317,10 +317,17 @@ class _Observer:
         )
 
 
-def _instead_of_full() -> str:
-    """Return the end of the message on a folder that is not empty."""
+def instead_of_full(work: str = "run") -> str:
+    """Return the end of the message on a folder of some work that is not empty.
+
+    Examples
+    --------
+    >>> print(instead_of_full("season"))
+    ; choose a new folder, resume the season with `resume=True`, or replace its results with \
+`overwrite=True`
+    """
     return either(
-        "; choose a new folder, resume the run with `resume=True`, or replace its results with "
+        f"; choose a new folder, resume the {work} with `resume=True`, or replace its results with "
         "`overwrite=True`",
-        "; choose a new folder, or resume the run with --resume",
+        f"; choose a new folder, or resume the {work} with --resume",
     )

@@ -217,8 +217,8 @@ def test_positions_in_millimetres_are_told():
 def test_positions_in_centimetres_are_told():
     x, z = np.meshgrid(np.linspace(0, 1, 101), np.linspace(0, 0.2, 21))
     heap = np.column_stack([x.ravel(), 0 * x.ravel(), z.ravel()])
-    told = r"most of the mass is detached, .*; check the unit"
-    with pytest.warns(SnowshedNote, match=told) as notes:
+    message = r"most of the mass is detached, .*; check the unit"
+    with pytest.warns(SnowshedNote, match=message) as notes:
         measured = measure(100.0 * heap, mass=0.02, dx=0.01)
     assert len(notes) == 1
     assert measured.detached_mass > 0.5 * measured.mass
