@@ -2,10 +2,12 @@ import builtins
 import doctest
 import importlib
 import pkgutil
+import re
 import subprocess
 import sys
 
 import pytest
+from helpers.paths import ROOT
 from helpers.processes import modules_after
 from helpers.requirements import MODULE_BY_PACKAGE, required
 
@@ -36,6 +38,13 @@ def test_no_exported_name_is_that_of_a_standard_module():
 def test_every_requirement_has_a_module():
     own, extras = required()
     assert own.union(*extras.values()) == MODULE_BY_PACKAGE.keys() | {"numpy"}
+
+
+def test_classifiers_name_every_python_from_the_oldest_to_3_14():
+    text = (ROOT / "pyproject.toml").read_text()
+    (oldest,) = re.findall(r'requires-python = ">=3\.(\d+)"', text)
+    named = re.findall(r"Programming Language :: Python :: 3\.(\d+)", text)
+    assert [int(minor) for minor in named] == list(range(int(oldest), 15))
 
 
 def test_running_a_scene_does_not_import_image_libraries():

@@ -23,6 +23,8 @@ def test_tables_are_read_from_files_with_units(finished):
     assert units["height_m"] == "m" and units["density_kg_m3"] == "kg/m3" and "steps" not in units
     assert list(results.outline) == ["event", "x", "z"]
     assert results.outline.attrs["units"] == {"x": "m", "z": "m"}
+    of_events = read_events(finished).attrs
+    assert of_events and of_events == {name: results.events.attrs[name] for name in of_events}
     assert results.run["events"] == 2
     assert results.scene.data["events"]["count"] == 2
 

@@ -1,11 +1,22 @@
 """Scenes from arrays in memory: terrain, polygons, grains and solids."""
 
+import warnings
+
 import numpy as np
 import pandas as pd
 import pytest
 
 import snowshed
-from snowshed import GrainsSettings, InputError, LoadingStage, Obstacle, Sample, Scene, Shape
+from snowshed import (
+    GrainsSettings,
+    InputError,
+    LoadingStage,
+    Obstacle,
+    Sample,
+    Scene,
+    Shape,
+    SnowshedNote,
+)
 from snowshed.io import Raster
 from snowshed.io.array_files import array_folder
 from snowshed.scene import slide_scene
@@ -55,6 +66,15 @@ def test_a_scene_from_arrays_needs_no_file_and_its_run_keeps_one(tmp_path, relea
     assert file.startswith(str(tmp_path / "out-inputs"))
     again = snowshed.run(tmp_path / "out/run.json", pictures=False)
     assert reached(again) == reached(first)
+
+
+def test_arrays_of_a_run_that_a_note_refuses_are_not_left(tmp_path, release):
+    scene = slide_scene(as_array(), [release], thickness=5.0).set("events.max_time", 1)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", SnowshedNote)
+        with pytest.raises(SnowshedNote):
+            snowshed.run(scene, tmp_path / "out", pictures=False)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_thickness_and_names_come_from_a_table_of_polygons(release):

@@ -3,6 +3,7 @@
 import json
 import logging
 import shutil
+import warnings
 
 import numpy as np
 import pytest
@@ -62,6 +63,28 @@ def test_results_stay_if_the_new_run_cannot_begin(tmp_path):
     with pytest.raises(InputError, match="below the ground"):
         snowshed.run(TINY.with_({"bodies": [inside]}), tmp_path / "out", overwrite=True)
     assert (tmp_path / "out/events.csv").read_bytes() == before
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+
+
+@pytest.mark.parametrize(
+    ("place", "overwrite"),
+    [("new", False), ("new", True), ("empty", False), ("empty", True), ("old", True)],
+)
+def test_a_run_that_a_note_refuses_leaves_nothing(tmp_path, place, overwrite):
+    folder = tmp_path / "out"
+    if place == "empty":
+        folder.mkdir()
+    if place == "old":
+        snowshed.run(TINY, folder, pictures=False)
+    before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+    coarse = TINY.with_({"slab.thickness": 0.01})
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", SnowshedNote)
+        with pytest.raises(SnowshedNote, match="its stack is coarse"):
+            snowshed.run(coarse, folder, overwrite=overwrite, pictures=False)
+    after = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+    assert after == before and folder.exists() == (place != "new")
+    snowshed.run(coarse, folder, overwrite=place == "old", pictures=False)
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from snowshed import Simulation, SnowshedNote
+from snowshed import InputError, Simulation, SnowshedNote
 
 
 @pytest.fixture
@@ -43,6 +43,34 @@ def test_a_function_is_called_after_each_step_and_changes_nothing_by_itself(tiny
     assert steps == list(range(1, plain.steps + 1))
     assert np.array_equal(plain.positions(), watched.positions())
     assert not watched.event_running
+
+
+@pytest.mark.parametrize("name", ["run", "step", "begin_event"])
+@pytest.mark.parametrize("argument", ["until", "on_step"])
+def test_functions_that_a_run_calls_take_no_steps(tiny, name, argument):
+    simulation, plain = Simulation(tiny), Simulation(tiny)
+    with pytest.raises(InputError, match=rf"^{name}: called from a function that `run` calls"):
+        simulation.run(**{argument: lambda s: getattr(s, name)()})
+    plain.begin_event()
+    plain.step(simulation.steps)
+    assert np.array_equal(simulation.positions(), plain.positions())
+    simulation.run(until=0.05)  # the refused call left no lock
+
+
+def test_attributes_cannot_be_set(tiny):
+    simulation = Simulation(tiny)
+    with pytest.raises(AttributeError, match=r"Simulation\.tiem: .*; did you mean time\?"):
+        simulation.tiem = 3
+    for name in ("time", "measure"):
+        with pytest.raises(InputError, match=rf"Simulation\.{name}: it is read"):
+            setattr(simulation, name, 3)
+
+    class Own(Simulation):
+        pass
+
+    own = Own(tiny)
+    own.label = "mine"
+    assert own.label == "mine"
 
 
 @pytest.mark.parametrize("until", [0.01, lambda s: s.time >= 0.01])

@@ -47,6 +47,26 @@ def test_a_simulation_in_memory_tells_of_a_coarse_slab(tiny):
         Simulation(tiny.set("numerics.dx", 0.1))
 
 
+def test_unusual_values_of_factors_are_told_when_a_study_is_made(tiny):
+    axes = {"panel.tilt": [0.87, 0.7, 40], "snow.density": [200, 300], "snow.cohesion": [0.1]}
+    with record_notes() as notes:
+        Study.product(tiny, axes)
+    assert notes == [
+        "panel.tilt = 0.7: /panel/tilt: 0.7 degrees is unusual; most values are 3 to 90 degrees, "
+        "so check its unit"
+    ]
+    together = Factor({"panel.tilt": [30, 40], "snow.youngs_modulus": [1e6, 1.0]})
+    with record_notes() as notes:
+        Study(tiny, [[together], [together, Factor({"panel.friction": [0.2]})]])
+    assert len(notes) == 1 and notes[0].startswith("snow.youngs_modulus = 1.0: ")
+
+
+def test_a_study_of_an_incomplete_scene_or_of_words_has_no_notes(tiny, recwarn):
+    Study.product(Scene(dimension=2), {"panel.tilt": [0.7]})
+    Study.product(tiny, {"panel.condition": ["slip", "separate"], "panel.tilt": [30, 40]})
+    assert [str(warning.message) for warning in recwarn] == []
+
+
 def test_a_stack_before_the_first_event_is_told(tiny):
     with pytest.warns(SnowshedNote, match="no event has begun"):
         assert Simulation(tiny).measure().mass == 0

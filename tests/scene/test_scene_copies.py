@@ -1,9 +1,14 @@
 """A scene keeps copies of given values, changes only on request, and shows its values."""
 
+import operator
+import pickle
+
 import pytest
 
 from snowshed import (
+    Body,
     InputError,
+    Layer,
     MpmSettings,
     Obstacle,
     Panel,
@@ -50,6 +55,58 @@ def test_scenes_share_no_parts():
     first.obstacles[0].friction = 0.9
     assert second.panel == Panel(height=1.0, length=1.0)
     assert shelf == second.obstacles[0] == Obstacle(shape=Shape.box((0, 0), (1, 1)))
+
+
+def entered_by(name):
+    """A function that puts a part into a list of a scene."""
+
+    def assign(items, part):
+        items[:] = [part, part]
+
+    def replace(items, part):
+        items.append(None)
+        items[0] = part
+
+    def add(items, part):
+        items += [part]
+
+    return {
+        "append": lambda items, part: items.append(part),
+        "extend": lambda items, part: items.extend([part]),
+        "insert": lambda items, part: items.insert(0, part),
+        "slice": assign,
+        "index": replace,
+        "+=": add,
+    }[name]
+
+
+@pytest.mark.parametrize("name", ["append", "extend", "insert", "slice", "index", "+="])
+def test_lists_of_scenes_share_no_parts(name):
+    box = Shape.box((0, 0), (1, 1))
+    for path, part, field in [
+        ("obstacles", Obstacle(shape=box), "friction"),
+        ("bodies", Body(shape=box), "volume"),
+        ("slab.layers", Layer(thickness=0.1), "thickness"),
+    ]:
+        scenes = [Scene(slab=Slab()).set(path, []) for _ in range(2)]
+        lists = [operator.attrgetter(path)(scene) for scene in scenes]
+        before = getattr(part, field)
+        for items in lists:
+            entered_by(name)(items, part)
+        setattr(lists[0][0], field, 0.77)
+        assert getattr(lists[1][0], field) == getattr(part, field) == before
+        assert all(getattr(item, field) == before for item in lists[0][1:] if item)
+
+
+def test_a_list_given_to_two_scenes_and_repeated_in_one_is_copied():
+    shelves = [Obstacle(shape=Shape.box((0, 0), (1, 1)))]
+    first, second = Scene(obstacles=shelves), Scene(obstacles=shelves)
+    first.obstacles *= 2
+    second.obstacles = first.obstacles
+    first.obstacles[0].friction = 0.11
+    frictions = [[part.friction for part in scene.obstacles] for scene in (first, second)]
+    assert frictions == [[0.11, 0.3], [0.3, 0.3]]
+    assert pickle.loads(pickle.dumps(first)) == first == first.copy()
 
 
 def test_every_scene_has_snow_seeding_settings_events_and_output():

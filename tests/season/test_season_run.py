@@ -68,6 +68,42 @@ def test_a_season_writes_a_table_and_a_figure(finished):
     assert not any("before the snow rested" in note for note in summary["notes"])
 
 
+def entries(folder):
+    return {path.name: path.read_bytes() for path in folder.glob("season.*")}
+
+
+def test_a_second_season_overwrites_the_first_on_request_only(season_file, tmp_path):
+    flat, folder = panel_scene(**{"panel.tilt": 20}), tmp_path / "out"
+    run_season(season_file, panel_scene(**{"events.max_time": 0.05}), folder, pictures=False)
+    assert (folder / "run/scene.json").is_file()
+    with pytest.raises(InputError, match=r"not empty; .*resume the season .*`overwrite=True`"):
+        run_season(season_file, flat, folder, pictures=False)
+    with pytest.raises(InputError, match="resume, overwrite: give one of the two"):
+        run_season(season_file, flat, folder, resume=True, overwrite=True)
+    before = entries(folder)
+    result = run_season(season_file, flat, folder, overwrite=True, pictures=False)
+    assert result.releases == 0 and sorted(entries(folder)) == sorted(before)
+    assert entries(folder) != before and not (folder / "run").exists()
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+
+
+def test_a_season_stays_if_the_new_one_cannot_begin_or_other_files_are_there(season_file, tmp_path):
+    folder, usual = tmp_path / "out", panel_scene(**{"events.max_time": 0.05})
+    run_season(season_file, usual, folder, pictures=False)
+    before = entries(folder)
+    inside = {"shape": {"type": "sphere", "center": [0, -1], "radius": 0.5}}
+    for wrong in (usual.with_({"bodies": [inside]}), usual.with_({"panel": None})):
+        with pytest.raises(InputError):
+            run_season(season_file, wrong, folder, overwrite=True, pictures=False)
+        assert entries(folder) == before and (folder / "run/events.csv").is_file()
+    for place in ("thoughts.txt", "run/thoughts.txt"):
+        (folder / place).write_text("mine")
+        with pytest.raises(InputError, match=r"other files than those of a .*: thoughts\.txt"):
+            run_season(season_file, usual, folder, overwrite=True, pictures=False)
+        (folder / place).unlink()
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+
+
 def test_between_events_the_stack_only_settles(finished):
     table = pd.read_csv(finished[1] / "season.csv")
     height, settled = table["stack_height_m"], table["settled_height_m"]

@@ -47,6 +47,20 @@ def test_a_stress_beyond_the_strength_is_refused_with_its_place():
         follow_path(SNOW, {"stress_1": [5e3], "stress_2": [0.0], "stress_3": [0.0]})
 
 
+@pytest.mark.parametrize("stress", [-5e4, -5e5, -5e6, -1e8, -1e300, 5e6])
+@pytest.mark.parametrize("steps", [1, 100])
+def test_stresses_of_any_size_have_a_finite_state_or_are_refused(stress, steps):
+    path = {"stress_1": [stress], "stress_2": [0.0], "stress_3": [0.0]}
+    with pytest.raises(InputError, match=r"path: row 1, increment \d+: the snow cannot bear"):
+        follow_path(SNOW, path, steps=steps)
+
+
+def test_a_state_that_is_not_finite_is_refused():
+    strains = {f"strain_{k}": [-0.01] for k in (1, 2, 3)}
+    with pytest.raises(InputError, match="path: row 1, increment 1: the state is not finite"):
+        follow_path(SNOW, strains, law=lambda p, q, plastic: (float("nan"), q, plastic))
+
+
 def test_a_law_of_ones_own_takes_the_place():
     elastic = follow_path(
         SNOW, pd.DataFrame({"strain_1": [-0.05], "strain_2": [0.0]}), dimension=2,

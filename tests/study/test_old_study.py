@@ -35,7 +35,8 @@ def test_an_old_study_is_not_computed_again(store, scripted_workers):
     table = study.run(store, same_version=True)
     assert scripted_workers.tasks == []
     assert table["height_m"].tolist() == [0.318458004]
-    assert table["build"].tolist() == [""]  # unknown
+    assert table["build"].tolist() == [""]
+    assert table.attrs["snowshed_build"] == "unknown"
 
 
 def test_by_default_an_old_study_is_computed_again_and_says_so(store, scripted_workers):
@@ -56,3 +57,4 @@ def test_the_table_of_an_old_store_is_read(store, monkeypatch, writable):
         "time_limit",
     )
     assert (row["courant_factor"], row["trimming"]) == (0.9, "equal_pace")
+    assert row["notes"] == ""  # unknown

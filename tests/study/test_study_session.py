@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 import study_helpers
-from study_helpers import outcome, tiny_study
+from study_helpers import outcome, tiny_scene, tiny_study
 
 from snowshed import InputError, SnowshedNote, _core
 from snowshed.base.notes import record_notes
@@ -348,3 +348,15 @@ def test_notes_on_runs_are_reported_at_the_end_by_frequency(scripted_workers, tm
         STUDY.run(tmp_path / "store")
     runs = len(states(tmp_path / "store"))
     assert reported == [f"{runs} runs: the slab is thin", "1 run: one stays"]
+
+
+def test_notes_of_earlier_results_are_told_again_in_one_summary(scripted_workers, tmp_path):
+    scripted_workers.answer = lambda task: replace(outcome(task.hash), notes=["the slab is thin"])
+    folder = tmp_path / "store"
+    Study.product(tiny_scene(), {"panel.friction": [0.1]}, name="tiny").run(folder)
+    wider = Study.product(tiny_scene(), {"panel.friction": [0.1, 0.2]}, name="tiny")
+    for _ in range(2):  # with a run of each kind, then with earlier results only
+        with pytest.warns(SnowshedNote), record_notes() as reported:
+            wider.run(folder)
+        assert reported == ["2 runs: the slab is thin"]
+    assert len(scripted_workers.tasks) == 2

@@ -272,3 +272,17 @@ def test_a_store_that_cannot_be_written_can_be_read(tmp_path, monkeypatch):
 
 def test_runs_have_the_version_that_computed_them(tiny_store):
     assert {run.version for run in tiny_store.runs("tiny")} == {_core.version}
+
+
+def test_notes_on_a_run_are_stored_with_its_results_and_guarded(tiny_store):
+    notes = ("the slab is 1.5 cells thick", "snow stays on the panel")
+    tiny_store.record(replace(outcome(HASHES[0]), notes=notes))
+    tiny_store.record(replace(outcome(HASHES[1], "failed"), notes=notes[:1]))
+    assert [tuple(run.notes) for run in tiny_store.runs("tiny")] == [notes, notes[:1], ()]
+    tiny_store.reset([HASHES[1]])
+    assert [tuple(run.notes) for run in tiny_store.runs("tiny")] == [notes, (), ()]
+    for text in ("", '["none"]'):
+        with sqlite3.connect(tiny_store.folder / FILE) as connection:
+            connection.execute("UPDATE run SET notes = ? WHERE hash = ?", (text, HASHES[0]))
+        with pytest.raises(InputError, match=f"notes {HASHES[0]}: its checksum is wrong"):
+            tiny_store.runs("tiny")

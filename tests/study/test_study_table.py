@@ -2,6 +2,7 @@
 
 import re
 import sqlite3
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -11,12 +12,14 @@ import xarray
 from helpers.paths import ROOT
 from study_helpers import outcome, tiny_scene, tiny_study
 
-from snowshed import InputError, Shape
+from snowshed import InputError, Shape, _core
+from snowshed.base.build import build_id
 from snowshed.results.folder import EVENT_COLUMNS
 from snowshed.scene.components import Obstacle
 from snowshed.study import Factor, Study, export, read_table, to_dataset
 from snowshed.study.database import FILE, MEASURED_TYPES, TIMING
 from snowshed.study.store import Store
+from snowshed.study.table_origin import column_units
 
 computed_folder = study_helpers.computed_folder  # a fixture
 
@@ -151,7 +154,9 @@ def test_csv_and_parquet_preserve_the_table(mixed, tmp_path):
     export(mixed, tmp_path / "t.csv")
     export(mixed, tmp_path / "t.parquet")
     from_csv = pd.read_csv(tmp_path / "t.csv", dtype={"steps": "Int64"}, keep_default_na=True)
-    pd.testing.assert_frame_equal(from_csv.fillna({"error": ""}), table, check_dtype=False)
+    pd.testing.assert_frame_equal(
+        from_csv.fillna({"error": "", "notes": ""}), table, check_dtype=False
+    )
     pd.testing.assert_frame_equal(pd.read_parquet(tmp_path / "t.parquet"), table)
 
 
@@ -206,9 +211,7 @@ def test_without_its_library_a_format_says_what_to_install(mixed, tmp_path, hide
 
 
 def test_all_measures_except_counts_and_words_have_units():
-    from snowshed.study.formats import _units
-
-    units = _units()
+    units = column_units(pd.DataFrame(columns=["panel.tilt", *MEASURED_TYPES]))
     assert units["panel.tilt"] == "degrees" and units["volume_m3"] == "m3"
     assert {name for name in MEASURED_TYPES if name not in units} == {
         "joined",
@@ -216,3 +219,43 @@ def test_all_measures_except_counts_and_words_have_units():
         "ended",
         "trimming",
     }
+
+
+def test_tables_have_the_origin_and_the_units_of_results(mixed, tmp_path):
+    table = read_table(mixed)
+    origin = {"snowshed_version": _core.version, "snowshed_build": build_id()}
+    assert {name: table.attrs[name] for name in origin} == origin
+    units = table.attrs["units"]
+    assert (units["height_m"], units["dx"], units["damping_rate_per_s"]) == ("m", "m", "1/s")
+    dataset = to_dataset(table)
+    assert dataset.attrs == origin
+    assert dataset["dx"].attrs["units"] == "m"
+    with sqlite3.connect(mixed / FILE) as connection:  # as if another build had computed a run
+        connection.execute("UPDATE run SET build = 'other' WHERE status = 'failed'")
+    builds = sorted([build_id(), "other"])
+    assert read_table(mixed).attrs["snowshed_build"] == builds
+    assert to_dataset(read_table(mixed)).attrs["snowshed_build"] == builds
+    export(mixed, tmp_path / "t.nc")
+    with xarray.open_dataset(tmp_path / "t.nc") as stored:
+        assert stored.attrs["snowshed_build"] == ", ".join(builds)
+
+
+def test_a_table_without_builds_or_rows_has_no_origin(tmp_path):
+    empty = read_table(store_with(tmp_path / "store", tiny_study(), "pending"))
+    assert set(empty.attrs) == {"units"}
+    table = pd.DataFrame({"hash": ["a"], "event": [1], "height_m": [0.1]})
+    assert to_dataset(table).attrs == {}
+
+
+def test_the_table_has_the_notes_of_each_run_in_every_form(tmp_path):
+    folder, study = tmp_path / "store", tiny_study(frictions=(0.1, 0.2))
+    with Store.create(folder) as store:
+        runs = study.runs()
+        store.register(study.name, study.axes, runs)
+        for run, notes in zip(runs, (("thin slab", "snow stays"), ())):
+            store.record(replace(outcome(run.hash, events=1), notes=notes))
+    table = read_table(folder)
+    assert table["notes"].tolist() == ["thin slab; snow stays", ""]
+    assert to_dataset(table)["notes"].values.tolist() == ["thin slab; snow stays", ""]
+    export(folder, tmp_path / "table.csv")
+    assert "thin slab; snow stays" in (tmp_path / "table.csv").read_text()

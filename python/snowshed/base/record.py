@@ -1,7 +1,7 @@
 """Records: dataclasses that mirror JSON objects, some fields of which are given.
 
 A name that is not a field, and a value that a field does not take, are errors at once. A record
-keeps copies of given records.
+keeps copies of given records, and so do its lists.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from snowshed._core import InputError
 from snowshed.base.field_type import alternatives_of, convert, is_record, shown
 from snowshed.base.json_values import JsonObject, JsonValue
 from snowshed.base.messages import shortened, suggestion
+from snowshed.base.owned_list import OwnedList
 
 MAX_DEPTH = 64  # the same as in the core
 
@@ -343,9 +344,9 @@ def _defaults(record: type[Record]) -> Mapping[str, object]:
 
 def _own(value: object) -> object:
     """Return a copy if the value is a record or a list, because the caller may change it later."""
-    if isinstance(value, Record) or (isinstance(value, list) and value):
-        return copy.deepcopy(value)
-    return value
+    if isinstance(value, list):
+        return OwnedList(value)
+    return copy.deepcopy(value) if isinstance(value, Record) else value
 
 
 def _record_type(hint: object) -> Optional[type[Record]]:

@@ -17,10 +17,13 @@ UNITS = MappingProxyType(
         "pa": "Pa",
         "kpa": "kPa",
         "n": "N",
+        "kn": "kN",
         "nm": "N m",
         "ns": "N s",
         "kg": "kg",
+        "kg_m2": "kg/m2",
         "kg_m3": "kg/m3",
+        "w_m2": "W/m2",
         "s": "s",
         "j": "J",
         "mb": "MB",
@@ -37,9 +40,15 @@ def unit_of_column(name: str) -> str:
     --------
     >>> unit_of_column("density_kg_m3"), unit_of_column("wall_s"), unit_of_column("event")
     ('kg/m3', 's', '')
+    >>> unit_of_column("damping_rate_per_s"), unit_of_column("snow_kg_per_m")
+    ('1/s', 'kg/m')
     """
     endings = [ending for ending in UNITS if name.endswith(f"_{ending}")]
-    return UNITS[max(endings, key=len)] if endings else ""
+    if not endings:
+        return ""
+    ending = max(endings, key=len)
+    counted, per, _ = name.rpartition(f"_per_{ending}")
+    return f"{unit_of_column(counted) or 1}/{UNITS[ending]}" if per else UNITS[ending]
 
 
 def with_units(table: pd.DataFrame) -> pd.DataFrame:

@@ -255,7 +255,7 @@ def write_csv(table: pd.DataFrame, path: PathLike, **options: Any) -> None:
     write_text(path, csv_text(table, **options))
 
 
-def frame_as_text(table: pd.DataFrame, name: str, *, index: str) -> TextTable:
+def frame_as_text(table: pd.DataFrame, name: str, *, index: str = "") -> TextTable:
     """Return a DataFrame as the table of texts that its CSV file would be.
 
     Parameters
@@ -265,11 +265,20 @@ def frame_as_text(table: pd.DataFrame, name: str, *, index: str) -> TextTable:
     name
         Name of the table in messages.
     index
-        The column for the index, if the table has no column of this name.
+        The column for the index, if the table has no column of this name; empty: the index does
+        not count.
+
+    Raises
+    ------
+    InputError
+        If a column occurs twice.
     """
-    if index not in table:
+    if index and index not in table:
         table = table.rename_axis(index).reset_index()
     columns = [str(column) for column in table]
+    twice = next((column for column in columns if columns.count(column) > 1), None)
+    if twice is not None:
+        raise InputError(f"{name}: the column {twice!r} occurs twice")
     rows = [
         TableRow(name, f"row {number}", number, dict(zip(columns, map(_cell_text, cells))))
         for number, cells in enumerate(table.itertuples(index=False, name=None), 1)

@@ -21,6 +21,7 @@ from snowshed.io.input_file import read_regular
 from snowshed.io.json_file import check_seal, read_object
 
 RECORD = "run.json"
+UNKNOWN_BUILD = "unknown"  # that of results by earlier versions
 #: Files that `snowshed-run` does not update when it resumes a run.
 OF_PYTHON = ("curve.csv", "energy_history.csv", "grains.json", "slide.json")
 
@@ -35,6 +36,23 @@ def read_run_record(folder: Path) -> dict[str, Any]:
     """
     path = folder / RECORD
     return read_object(path) if path.is_file() else {}
+
+
+def origin_of_record(record: Mapping[str, Any]) -> dict[str, str]:
+    """Return the version and build of snowshed that made the results of a run, for `attrs`.
+
+    Builds of earlier versions are unknown.
+
+    Examples
+    --------
+    >>> origin_of_record({"version": "0.1.0", "build": "e09705a3e90a", "package": "9586848eeb18"})
+    {'snowshed_version': '0.1.0', 'snowshed_build': 'e09705a3e90a-9586848eeb18'}
+    """
+    build = "-".join(str(record[name]) for name in ("build", "package") if name in record)
+    return {
+        "snowshed_version": str(record.get("version", "")),
+        "snowshed_build": build or UNKNOWN_BUILD,
+    }
 
 
 def scene_of_record(document: JsonValue) -> JsonValue:

@@ -42,10 +42,11 @@ from snowshed._core import InputError
 from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
 from snowshed.base.paths import PathLike
+from snowshed.base.units import with_units
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import Table, read_csv
 from snowshed.io.json_file import read_object
-from snowshed.io.run_files import check_run_file
+from snowshed.io.run_files import check_run_file, origin_of_record, read_run_record
 from snowshed.snow.stack.measure import StackMeasure
 from snowshed.snow.stack.quantities import MEASURES, QUANTITIES
 from snowshed.snow.stack.trimming import TRIMMINGS
@@ -266,6 +267,9 @@ def _last_known(sums: Mapping[str, str], event: int) -> int:
 def read_events(folder: PathLike) -> pd.DataFrame:
     """Read the table of events from a results folder.
 
+    Its `attrs` have the version and the build of snowshed that made it, if known, and the units of
+    its columns.
+
     Raises
     ------
     InputError
@@ -276,7 +280,10 @@ def read_events(folder: PathLike) -> pd.DataFrame:
     if not path.is_file():
         raise InputError(f"{folder}: no results; it holds no events.csv")
     check_run_file(path)
-    return parse_events(path)
+    table = with_units(parse_events(path))
+    record = read_run_record(Path(folder))
+    table.attrs.update(origin_of_record(record) if record else {})
+    return table
 
 
 def parse_events(path: Path) -> pd.DataFrame:

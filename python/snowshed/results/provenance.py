@@ -7,6 +7,7 @@ from typing import Any, TypeVar
 
 import snowshed._core as _core
 from snowshed.base.build import build_id
+from snowshed.io.run_files import origin_of_record
 from snowshed.scene.resolved import ResolvedScene
 
 Result = TypeVar("Result")
@@ -42,9 +43,4 @@ def recorded_origin(scene: ResolvedScene, record: Mapping[str, Any]) -> dict[str
     >>> recorded_origin(Scene.preset("lab-50").resolve(), record)["snowshed_build"]
     'e09705a3e90a-9586848eeb18'
     """
-    build = "-".join(str(record[name]) for name in ("build", "package") if name in record)
-    return {
-        "snowshed_version": str(record.get("version", "")),
-        "snowshed_build": build or "unknown",
-        "scene": scene.json,
-    }
+    return {**origin_of_record(record), "scene": scene.json}

@@ -10,6 +10,7 @@ from pathlib import Path
 from snowshed.base.paths import PathLike
 from snowshed.io.array_files import is_array_file
 from snowshed.io.atomic import replacing
+from snowshed.results.replacement import inputs_beside
 from snowshed.scene.named_files import named_files, with_named_files
 from snowshed.scene.resolved import ResolvedScene
 
@@ -23,8 +24,7 @@ def kept_inputs(scene: ResolvedScene, folder: PathLike) -> Iterator[ResolvedScen
     if not any(map(is_array_file, named_files(scene.data))):
         yield scene
         return
-    results = Path(folder).absolute()
-    beside = results.with_name(f"{results.name}-inputs")
+    results, beside = Path(folder), inputs_beside(folder)
     was_there = beside.exists()
     beside.mkdir(parents=True, exist_ok=True)
     data = with_named_files(scene.copied_data(), lambda path: _copy(path, beside))

@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import shutil
 import weakref
+from collections.abc import Callable
 from contextlib import nullcontext
 from pathlib import Path
 from tempfile import mkdtemp
@@ -30,7 +31,7 @@ from snowshed.methods.method import Method
 from snowshed.methods.registry import method_of
 from snowshed.results.folder import RunFolder
 from snowshed.results.reader import Results
-from snowshed.results.replacement import replaced_results
+from snowshed.results.replacement import new_results
 from snowshed.running.ageing.ageing import Ageing
 from snowshed.running.kept_inputs import kept_inputs
 from snowshed.running.laws import Laws
@@ -165,30 +166,37 @@ def run_resolved(
         raise _core.InputError("resume, overwrite: give one of the two")
     resume = _resumes(resume, Path(folder))
     if not resume and not overwrite:
-        check_empty(folder, _instead_of_full())
+        check_empty(folder, instead_of_full())
     if map_format != "ascii":
         _check_maps(method, map_format)
     options = RunOptions(resume, ageing, pictures, compact, map_format)
-    replaced = replaced_results(folder) if overwrite else nullcontext()
-    with replaced, kept_inputs(resolved, folder) as resolved:
-        sequence = open_sequence(resolved, folder, resume=resume, laws=laws)
-    LOGGER.info("%s %s in %s", "resuming" if resume else "running", _title(resolved), folder)
-    with sequence, deferred_interrupts() as interrupt:
-        method_run: MethodRun = method.run_class()(sequence, resolved, Path(folder), options)
-        method_run.begin()
-        sequence.describe_machine(machine_facts())
-        for note in [] if recorded is None else recorded.differences():
-            record_note(sequence, note)
-        try:
-            run_sequence(sequence, _Observer(method_run, interrupt, progress), resolved, folder)
-        except Interrupted:
-            method_run.interrupted()
-            raise
-        method_run.finish()
+    starting = nullcontext(_nothing) if resume else new_results(folder, overwrite=overwrite)
+    with starting as begin:
+        with kept_inputs(resolved, folder) as resolved:
+            sequence = open_sequence(resolved, folder, resume=resume, laws=laws)
+        verb = "resuming" if resume else "running"
+        LOGGER.info("%s %s in %s", verb, _title(resolved), folder)
+        with sequence, deferred_interrupts() as interrupt:
+            method_run: MethodRun = method.run_class()(sequence, resolved, Path(folder), options)
+            method_run.begin()
+            sequence.describe_machine(machine_facts())
+            for note in [] if recorded is None else recorded.differences():
+                record_note(sequence, note)
+            observer = _Observer(method_run, interrupt, progress, begin)
+            try:
+                run_sequence(sequence, observer, resolved, folder)
+            except Interrupted:
+                method_run.interrupted()
+                raise
+            method_run.finish()
     LOGGER.info("finished in %s", folder)
     if pictures:
         method_run.draw()
     return Results.of_run(folder, resolved)
+
+
+def _nothing() -> None:
+    """Do nothing: a resumed run has begun long since."""
 
 
 def _check_maps(method: Method, map_format: MapFormat) -> None:
@@ -282,11 +290,16 @@ class _Observer:
     """Observer of the core's loop: calls the method's steps, and reports the progress."""
 
     def __init__(
-        self, method_run: MethodRun, interrupt: InterruptRequest, report: Optional[Reporter]
+        self,
+        method_run: MethodRun,
+        interrupt: InterruptRequest,
+        report: Optional[Reporter],
+        begin: Callable[[], None],
     ) -> None:
         self.method_run = method_run
         self.interrupt = interrupt
         self.report = report
+        self.begin = begin  # called once the run can be resumed
 
     def between_events(self) -> None:
         """Let the method change the snow between two events."""
@@ -316,6 +329,7 @@ class _Observer:
     def before_checkpoint(self) -> None:
         """Let the method write the files that belong to the checkpoint."""
         self.method_run.before_checkpoint()
+        self.begin()
 
     def stop_requested(self) -> bool:
         """Return whether to stop at the next safe point."""
@@ -340,10 +354,17 @@ class _Observer:
         )
 
 
-def _instead_of_full() -> str:
-    """Return the end of the message on a folder that is not empty."""
+def instead_of_full(work: str = "run") -> str:
+    """Return the end of the message on a folder of some work that is not empty.
+
+    Examples
+    --------
+    >>> print(instead_of_full("season"))
+    ; choose a new folder, resume the season with `resume=True`, or replace its results with \
+`overwrite=True`
+    """
     return either(
-        "; choose a new folder, resume the run with `resume=True`, or replace its results with "
+        f"; choose a new folder, resume the {work} with `resume=True`, or replace its results with "
         "`overwrite=True`",
-        "; choose a new folder, or resume the run with --resume",
+        f"; choose a new folder, or resume the {work} with --resume",
     )

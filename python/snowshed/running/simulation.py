@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
-from typing import Literal, NamedTuple, Optional, Union, cast
+from typing import Literal, Optional, Union, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,6 +17,8 @@ from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.methods.registry import method_of
 from snowshed.results.provenance import present_origin, with_origin
+from snowshed.running.callback_guard import CallsFunctions, refused_within_calls
+from snowshed.running.event_end import Ended, EventEnd
 from snowshed.running.laws import Laws, addresses_of
 from snowshed.running.particle_reading import ReadsParticles
 from snowshed.running.recorded_run import check_scene_alone
@@ -30,13 +32,13 @@ from snowshed.running.stepping_checks import (
     note_on_time,
     refuse_coincident,
 )
+from snowshed.running.strict_attributes import StrictAttributes
 from snowshed.scene.components import Snow
 from snowshed.scene.resolved import snows_of
 from snowshed.scene.scene import ResolvedScene, SceneLike, resolve_scene
 from snowshed.snow.stack.measure import StackMeasure
 from snowshed.snow.stack.particles import measure_particles
 
-Ended = Literal["rest", "time_limit", "reached"]
 Until = Union[Literal["rest"], float, Callable[["Simulation"], bool]]
 OnStep = Callable[["Simulation"], object]
 
@@ -44,26 +46,8 @@ MAX_STEPS = 64  # steps between two checks for Ctrl-C
 CHECK_INTERVAL = 0.1  # s of wall time between checks while the core runs to rest
 
 
-class EventEnd(NamedTuple):
-    """The end of an event.
-
-    Attributes
-    ----------
-    event
-        Number of the event, from 1.
-    ended
-        "rest" or "time_limit".
-    time
-        Duration of the event, s.
-    """
-
-    event: int
-    ended: Ended
-    time: float
-
-
 @checked
-class Simulation(ReadsParticles):
+class Simulation(CallsFunctions, StrictAttributes, ReadsParticles):
     """A scene being simulated, in memory.
 
     It advances event by event: `run` seeds the snow of the next event and moves it until it rests;
@@ -151,6 +135,7 @@ class Simulation(ReadsParticles):
             raise SimulationError("no event has begun, so nothing can be saved; begin_event first")
         self._core.save(os.fspath(path))
 
+    @refused_within_calls
     def begin_event(self) -> None:
         """Lay the snow of the next event; notes on it are warnings, `SnowshedNote`.
 
@@ -165,6 +150,7 @@ class Simulation(ReadsParticles):
         with issuing_notes(self._core):
             self._core.begin_event()
 
+    @refused_within_calls
     def step(self, count: int = 1) -> None:
         """Take steps of the present event, whether the snow rests or not.
 
@@ -178,6 +164,7 @@ class Simulation(ReadsParticles):
         for left in range(whole_number("count", count, lowest=0), 0, -MAX_STEPS):
             self._core.step(min(left, MAX_STEPS))
 
+    @refused_within_calls
     def run(
         self, until: Until = "rest", *, every: int = 16, on_step: Optional[OnStep] = None
     ) -> Ended:
@@ -188,11 +175,13 @@ class Simulation(ReadsParticles):
         until
             "rest": until the snow rests or the event's time limit; either ends the event. A number:
             until this time in the event, s; the last step may end after it. A
-            function: until it returns True; it gets the simulation and may change it.
+            function: until it returns True; it gets the simulation and may change it, but takes no
+            steps.
         every
             Number of steps between two calls of the function `until`.
         on_step
-            Function that is called with the simulation after each step, and may change it.
+            Function that is called with the simulation after each step, and may change it, but
+            takes no steps.
 
         Returns
         -------
@@ -202,7 +191,8 @@ class Simulation(ReadsParticles):
         Raises
         ------
         InputError
-            If `until` or `every` is none of these.
+            If `until` or `every` is none of these, or one of the functions calls `run`, `step` or
+            `begin_event`.
         SimulationError
             If all events have ended, or the simulation cannot continue.
         """
@@ -239,7 +229,7 @@ class Simulation(ReadsParticles):
         on_step: Optional[OnStep] = None,
     ) -> Ended:
         limit = self._max_time
-        while not is_reached(condition(self)):
+        while not is_reached(self._call(condition)):
             if self.time >= limit:
                 return "time_limit"
             if on_step is None:
@@ -247,7 +237,7 @@ class Simulation(ReadsParticles):
                 continue
             for _ in range(every):
                 self.step()
-                on_step(self)
+                self._call(on_step)
         return "reached"
 
     def _run_stepwise(self, until: Until, every: int, on_step: OnStep) -> Ended:
@@ -256,7 +246,7 @@ class Simulation(ReadsParticles):
         limit = self._max_time if isinstance(until, str) else until
         while self.time < limit and not (isinstance(until, str) and self.at_rest):
             self.step()
-            on_step(self)
+            self._call(on_step)
         return self._run_to_end() if isinstance(until, str) else "reached"
 
     @property

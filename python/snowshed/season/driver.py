@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, Optional
 
@@ -15,8 +16,9 @@ from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import Table, read_csv, write_csv
 from snowshed.io.folders import check_empty
 from snowshed.methods.registry import resolution_of
+from snowshed.results.replacement import replaced_season
 from snowshed.results.season_folder import SeasonFolder
-from snowshed.running.run import run_events
+from snowshed.running.run import instead_of_full, run_events
 from snowshed.scene.scene import ResolvedScene, SceneLike, resolve_scene
 from snowshed.season.accumulation import WinterDay, snow_on_panel, stack_ageing
 from snowshed.season.notes import assumptions, fall_notes, first_staying, notes
@@ -82,6 +84,7 @@ def run_season(
     *,
     settings: Optional[SeasonSettings] = None,
     resume: bool = False,
+    overwrite: bool = False,
     progress: Optional[Reporter] = None,
     pictures: bool = True,
     coverage: float = COVERAGE,
@@ -99,11 +102,14 @@ def run_season(
         method are used; `season_scene` replaces its slab and its events. The panel's friction is
         that of sliding snow.
     folder
-        The results folder (``snowshed.results.season_folder``); new or empty, unless resuming.
+        The results folder (``snowshed.results.season_folder``); new or empty, unless resuming or
+        overwriting.
     settings
         Settings of release, density and settling. [default: `SeasonSettings()`]
     resume
         Whether to resume an interrupted season in `folder`.
+    overwrite
+        Whether to replace an earlier season in `folder`. It stays if the new one cannot begin.
     progress
         Called about twice a second while a slide-off runs.
     pictures
@@ -140,8 +146,28 @@ def run_season(
         temperature=temperature,
     )  # fmt: skip
     files = SeasonFolder(folder)
-    if not resume:
-        check_empty(files.folder)
+    if resume and overwrite:
+        raise InputError("resume, overwrite: give one of the two")
+    if not resume and not overwrite:
+        check_empty(files.folder, instead_of_full("season"))
+    with replaced_season(folder) if overwrite else nullcontext():
+        _slide(plan, settings, files, resume=resume, progress=progress, pictures=pictures)
+    files.folder.mkdir(parents=True, exist_ok=True)
+    result = _result(plan, settings, files)
+    _write(result, plan.scene, settings, files, pictures=pictures)
+    return result
+
+
+def _slide(
+    plan: SeasonPlan,
+    settings: SeasonSettings,
+    files: SeasonFolder,
+    *,
+    resume: bool,
+    progress: Optional[Reporter],
+    pictures: bool,
+) -> None:
+    """Simulate the slide-offs of a season, if there are any."""
     if plan.slides is not None:
         with lying_snow_named(settings.rows):
             run_events(
@@ -157,10 +183,6 @@ def run_season(
             f"{files.folder}: it holds slide-offs, but in this season nothing slides; give another "
             "folder"
         )
-    files.folder.mkdir(parents=True, exist_ok=True)
-    result = _result(plan, settings, files)
-    _write(result, plan.scene, settings, files, pictures=pictures)
-    return result
 
 
 @dataclass(frozen=True)

@@ -27,6 +27,7 @@ TOLERANCE = 1e-10  # of the stress that a path prescribes, relative to Young's m
 MAX_ITERATIONS = 50
 MAX_STRAIN = 1.0  # beyond it, a note asks for the unit
 MIN_STRESS = 50.0  # Pa, as `MAX_STRAIN`; the strength of snow is larger
+BEYOND_STRENGTH = "the snow cannot bear this stress"
 #: A law: pressure, Mises stress and plastic strain after an elastic trial.
 ReturnMap = Callable[[float, float, float], "tuple[float, float, float]"]
 
@@ -67,8 +68,8 @@ def follow_path(
     Raises
     ------
     InputError
-        If a column is missing or unknown, a value is not finite, or the snow cannot bear a stress
-        of the path.
+        If a column is missing or unknown, a value is not finite, the snow cannot bear a stress of
+        the path, or a state on it is not finite.
 
     Examples
     --------
@@ -89,10 +90,14 @@ def follow_path(
         for step in range(1, count + 1):
             wanted = before + (target - before) * (step / count)
             try:
-                point.go_to(columns, wanted)
+                with np.errstate(over="ignore", invalid="ignore"):  # such a state is refused
+                    point.go_to(columns, wanted)
             except InputError as error:
                 raise InputError(f"path: row {row}, increment {step}: {error}") from None
-            states.append(point.state())
+            state = point.state()
+            if not np.isfinite(state).all():
+                raise InputError(f"path: row {row}, increment {step}: the state is not finite")
+            states.append(state)
         before = target
     return _table(states, dimension)
 
@@ -176,11 +181,16 @@ class _Point:
         scale = TOLERANCE * self.stiffness
         for _ in range(MAX_ITERATIONS):
             missing = wanted[free] - self.stress(self.returned(strain)[0])[free]
+            if not np.isfinite(missing).all():
+                raise InputError(BEYOND_STRENGTH)
             if not np.abs(missing).max(initial=0.0) > scale:
                 break
-            strain[free] += np.linalg.lstsq(self._slopes(strain, free), missing, rcond=None)[0]
+            slopes = self._slopes(strain, free)
+            if not np.isfinite(slopes).all():
+                raise InputError(BEYOND_STRENGTH)
+            strain[free] += np.linalg.lstsq(slopes, missing, rcond=None)[0]
         else:
-            raise InputError("the snow cannot bear this stress")
+            raise InputError(BEYOND_STRENGTH)
         self.elastic, self.plastic = self.returned(strain)
         self.strain = strain
 

@@ -1,8 +1,8 @@
 """Checksums in a store: a damaged row is found when it is read.
 
 Their names: ``run HASH`` for the scene of a run, ``study NAME`` for the runs of a study, ``results
-HASH`` for measures and ``particles HASH`` for stored particles. A store of an earlier version gets
-its checksums when it is opened.
+HASH`` for measures, ``particles HASH`` for stored particles and ``notes HASH`` for notes. A store
+of an earlier version gets its checksums when it is opened.
 """
 
 from __future__ import annotations
@@ -13,6 +13,8 @@ import sqlite3
 from collections.abc import Sequence
 from typing import Any
 
+#: Kinds of checksums that come with the results of a run.
+OF_RESULTS = ("results", "particles", "notes")
 TABLE = (
     "CREATE TABLE IF NOT EXISTS checksum"
     " (name TEXT PRIMARY KEY, digest TEXT NOT NULL) WITHOUT ROWID"
@@ -38,11 +40,14 @@ def store_study_checksum(write: sqlite3.Connection, study: str) -> None:
 
 
 def store_results_checksum(write: sqlite3.Connection, hash_: str) -> None:
-    """Store the checksums of the results of a run, and of its particles if they are stored."""
+    """Store the checksums of the results of a run, and of its particles and notes, if any."""
     store_checksum(write, f"results {hash_}", results_of(write, hash_))
     query = "SELECT event, data FROM event_particles WHERE hash = ? ORDER BY event"
     if particles := write.execute(query, (hash_,)).fetchall():
         store_checksum(write, f"particles {hash_}", particles)
+    (notes,) = write.execute("SELECT notes FROM run WHERE hash = ?", (hash_,)).fetchone()
+    if notes:  # apart from the other results, because rows of earlier versions have none
+        store_checksum(write, f"notes {hash_}", notes)
 
 
 def store_all_checksums(write: sqlite3.Connection) -> None:

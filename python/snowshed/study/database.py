@@ -6,7 +6,8 @@ Every change is one transaction with a write-ahead log that is flushed to the di
 study           name, and its axes (JSON list of dotted paths)
 study_run       the runs of each study, in order; studies may share runs
 run             content hash, version, complete scene (JSON), status, error, owner, whether its
-                particles are stored, and the build that computes it (empty: unknown)
+                particles are stored, the build that computes it (empty: unknown), and the notes
+                on its results (JSON list; empty: none, or unknown)
 event           measures after each event of a run: the columns of all methods
 event_timing    wall time of each event, apart, because it differs when a run is repeated
 event_particles packed particles after each event, or maps of slides, of runs that store them
@@ -72,13 +73,14 @@ PARTICLES_TABLE = (
 ADDED_TO_RUN: Mapping[str, str] = {
     "keep_particles": "INTEGER NOT NULL DEFAULT 0",
     "build": "TEXT NOT NULL DEFAULT ''",
+    "notes": "TEXT NOT NULL DEFAULT ''",
 }
 TABLES = (
     "CREATE TABLE study (name TEXT PRIMARY KEY, axes TEXT NOT NULL)",
     "CREATE TABLE run (hash TEXT PRIMARY KEY, version TEXT NOT NULL, scene TEXT NOT NULL,"
     " status TEXT NOT NULL DEFAULT 'pending' CHECK (status IN ('pending', 'done', 'failed')),"
     " error TEXT, owner TEXT, keep_particles INTEGER NOT NULL DEFAULT 0,"
-    " build TEXT NOT NULL DEFAULT '')",
+    " build TEXT NOT NULL DEFAULT '', notes TEXT NOT NULL DEFAULT '')",
     "CREATE INDEX run_owner ON run (owner) WHERE owner IS NOT NULL",
     "CREATE TABLE study_run (study TEXT NOT NULL REFERENCES study, position INTEGER NOT NULL,"
     " hash TEXT NOT NULL REFERENCES run, PRIMARY KEY (study, position)) WITHOUT ROWID",

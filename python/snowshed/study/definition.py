@@ -24,6 +24,7 @@ from snowshed.study.scene_hash import RunKey
 from snowshed.study.season_part import SEASON_PATHS, SeasonPart
 from snowshed.study.store import Store
 from snowshed.study.table import read_table
+from snowshed.study.unusual_factors import note_on_unusual_values
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -60,6 +61,11 @@ class Study:
         those of the winter. None: the events are those of the scene.
     laws
         Laws of one's own, named so that every process can make them; None: those of the scene.
+
+    Warns
+    -----
+    SnowshedNote
+        If a factor has an unusual value, such as a tilt in radians.
 
     Raises
     ------
@@ -182,6 +188,7 @@ class Study:
             raise InputError(f"has {count} runs; at most {MAX_RUNS} are allowed")
         for part in self.parts:
             self._check(part)
+        note_on_unusual_values(self.scene, self.parts)
 
     @property
     def axes(self) -> list[str]:

@@ -10,12 +10,11 @@ from snowshed._core import InputError
 from snowshed.base.arguments import checked
 from snowshed.base.extras import require
 from snowshed.base.paths import PathLike
-from snowshed.base.units import unit_of_column
 from snowshed.io.atomic import replacing
 from snowshed.io.csv_table import csv_text
-from snowshed.scene.schema import parameter_units
 from snowshed.study.database import STORED_TYPES
 from snowshed.study.table import read_table
+from snowshed.study.table_origin import column_units, table_origin
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -77,7 +76,8 @@ def to_dataset(table: pd.DataFrame) -> xarray.Dataset:
 
     Columns that differ from event to event have both dimensions. All others (hash, parameters,
     settings) are coordinates along run. Events that a run has not reached hold NaN, 0 steps and
-    empty texts.
+    empty texts. Its `attrs` have the version and the build of snowshed, lists if the runs have
+    several, and those of its variables their units.
 
     Raises
     ------
@@ -94,8 +94,8 @@ def to_dataset(table: pd.DataFrame) -> xarray.Dataset:
     data = {name: (("run", "event"), _plain_array(grids[name])) for name in per_event}
     coordinates = {name: ("run", _plain_array(runs[name])) for name in runs}
     coordinates["event"] = ("event", list(grids[per_event[0]].columns))
-    dataset = library.Dataset(data, coordinates)
-    for name, unit in _units().items():
+    dataset = library.Dataset(data, coordinates, table_origin(table))
+    for name, unit in column_units(table).items():
         if name in dataset:
             dataset[name].attrs["units"] = unit
     return cast("xarray.Dataset", dataset)
@@ -121,7 +121,10 @@ def _write_parquet(table: pd.DataFrame, file: Path) -> None:
 
 
 def _write_netcdf(table: pd.DataFrame, file: Path) -> None:
-    to_dataset(table).to_netcdf(file, engine="scipy")
+    dataset = to_dataset(table)
+    for name, value in dataset.attrs.items():  # NetCDF 3 knows no lists of texts
+        dataset.attrs[name] = value if isinstance(value, str) else ", ".join(value)
+    dataset.to_netcdf(file, engine="scipy")
 
 
 WRITERS: Mapping[str, Callable[[pd.DataFrame, Path], None]] = {
@@ -139,12 +142,3 @@ def _plain_array(columns: Any) -> Any:
     if all(getattr(kind, "kind", "O") in "ifb" for kind in kinds):
         return columns.to_numpy()
     return columns.fillna("").astype(str).to_numpy(dtype=object)
-
-
-def _units() -> dict[str, str]:
-    """Return the units of parameters, from the core's schema, and of measures, from their names."""
-    units = dict(parameter_units())
-    for name in (*STORED_TYPES, "wall_s", "run_wall_s", "peak_memory_mb"):
-        if unit := unit_of_column(name):
-            units[name] = unit
-    return units

@@ -42,7 +42,7 @@ def set_aside(write: sqlite3.Connection, hashes: Iterable[str], build: str) -> i
         for table in ("run", *TABLES):
             write.execute(f"DELETE FROM {table} WHERE hash = ?", (name,))
             write.execute(f"UPDATE {table} SET hash = ? WHERE hash = ?", (name, hash_))
-        for kind in ("run", "results", "particles"):
+        for kind in ("run", *checksums.OF_RESULTS):
             write.execute("DELETE FROM checksum WHERE name = ?", (f"{kind} {hash_}",))
         checksums.store_run_checksum(write, name)
         checksums.store_results_checksum(write, name)

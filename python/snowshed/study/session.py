@@ -197,12 +197,14 @@ def _compute(
         runs = {run.hash: run for name in studies for run in store.runs(name)}
     pending = [run for run in runs.values() if run.status == "pending"]
     _check_version(store, pending)
+    notes = Counter(note for run in runs.values() for note in run.notes)
     if not pending:
+        _issue_run_notes(notes)
         return
     workers, at_once = resources.workers(len(pending))
     try:
         with ownership(store) as owner, deferred_interrupts() as interrupt:
-            session = _Session(store, owner, workers, list(runs.values()), interrupt)
+            session = _Session(store, owner, workers, list(runs.values()), interrupt, notes)
             try:
                 session.run(_Narrator(session, progress, at_once) if progress else None)
             finally:
@@ -277,6 +279,7 @@ class _Session:
         workers: Workers,
         runs: Sequence[StoredRun],
         interrupt: InterruptRequest,
+        notes: Counter[str],
     ) -> None:
         self.store = store
         self.owner = owner
@@ -291,7 +294,7 @@ class _Session:
         self.elsewhere: list[StoredRun] = []
         self.looked = -math.inf
         self.deaths: Counter[str] = Counter()
-        self.notes: Counter[str] = Counter()  # number of runs by note
+        self.notes = notes  # number of runs by note, those of earlier results among them
 
     def run(self, report: Optional[Callable[[], None]]) -> None:
         """Compute until no run is missing."""
@@ -344,6 +347,7 @@ class _Session:
         for run in self.elsewhere:
             status, owner = self.store.state(run.hash)
             if status != "pending":
+                self.notes.update(self.store.find(run.hash).notes)
                 self._count(run.hash, status)
             elif owner is None:
                 self.waiting.append(run)

@@ -60,11 +60,12 @@ class StoredRun:
     error: Optional[str]
     owner: Optional[str]
     build: str
+    notes: Sequence[str]
     keep_particles: bool
 
 
 #: Values of columns that a read-only store of an earlier version lacks.
-MISSING = {"build": "''", "keep_particles": "0"}
+MISSING = {"build": "''", "notes": "''", "keep_particles": "0"}
 #: Keys of a complete scene, which a damaged text may lack.
 WHOLE_SCENE = {"dimension": float, "numerics": dict, "events": dict}
 
@@ -265,7 +266,8 @@ class Store:
     def _stored(self, row: Sequence[Any]) -> StoredRun:
         if not all(text is None or isinstance(text, str) for text in row[:-1]):
             raise self.damaged(f"run {row[0]!r}: not a text in every column")
-        run = StoredRun(*[*row[:-1], bool(row[-1])])
+        notes = self._notes(row[0], row[-2])
+        run = StoredRun(*[*row[:-2], notes, bool(row[-1])])
         if not is_hash(run.hash) or run.status not in STATUSES:
             raise self.damaged(f"run {run.hash!r}: {run.status!r}, or no content hash")
         where = f"{self.folder / FILE}: run {run.hash}: its scene"
@@ -275,6 +277,18 @@ class Store:
             lacks = WITHOUT_CHECKSUM if run.status != "pending" else "pending, but has results"
             raise self.damaged(f"run {run.hash}: {lacks}")
         return run
+
+    def _notes(self, hash_: str, text: str) -> Sequence[str]:
+        """Return the notes on a run from their JSON list; runs of earlier versions have none."""
+        if text or f"notes {hash_}" in self._digests:
+            self._check(f"notes {hash_}", lambda: text)
+        try:
+            notes = json.loads(text) if text else []
+        except (ValueError, RecursionError):
+            notes = None
+        if not isinstance(notes, list) or not all(isinstance(note, str) for note in notes):
+            raise self.damaged(f"run {hash_}: its notes are no list of texts")
+        return tuple(notes)
 
     def check_results(self, hash_: str) -> None:
         """Raise InputError if the results of a run have changed since they were stored."""
@@ -331,9 +345,9 @@ class Store:
         """Store the outcome of a run, unless it is stored already."""
         with self._transaction() as write:
             updated = write.execute(
-                "UPDATE run SET status = ?, error = ?, owner = NULL"
+                "UPDATE run SET status = ?, error = ?, notes = ?, owner = NULL"
                 " WHERE hash = ? AND status = 'pending'",
-                (outcome.status, outcome.error, outcome.hash),
+                (outcome.status, outcome.error, _json_of_notes(outcome.notes), outcome.hash),
             )
             if updated.rowcount == 0:
                 return
@@ -352,14 +366,14 @@ class Store:
         with self._transaction() as write:
             for hash_ in hashes:
                 failed = write.execute(
-                    "UPDATE run SET status = 'pending', error = NULL"
+                    "UPDATE run SET status = 'pending', error = NULL, notes = ''"
                     " WHERE hash = ? AND status = 'failed'",
                     (hash_,),
                 )
                 if failed.rowcount:
                     for table in ("event", "event_timing", "event_particles", "run_timing"):
                         write.execute(f"DELETE FROM {table} WHERE hash = ?", (hash_,))
-                    for kind in ("results", "particles"):
+                    for kind in checksums.OF_RESULTS:
                         write.execute("DELETE FROM checksum WHERE name = ?", (f"{kind} {hash_}",))
 
     def particles(self, hash_: str) -> dict[int, bytes]:
@@ -404,6 +418,10 @@ class Store:
 
 def _make_folder(folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
+
+
+def _json_of_notes(notes: Sequence[str]) -> str:
+    return json.dumps(list(notes), ensure_ascii=False) if notes else ""
 
 
 def _insert(write: sqlite3.Connection, table: str, row: Mapping[str, Any]) -> None:

@@ -18,6 +18,7 @@ from snowshed.snow.stack.quantities import MEASURES, QUANTITIES
 from snowshed.study.database import MEASURE_COLUMNS, STORED_TYPES, TIMING
 from snowshed.study.factors import SEED
 from snowshed.study.store import Store, StoredRun
+from snowshed.study.table_origin import column_units, table_origin
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -53,10 +54,12 @@ def read_table(
     pandas.DataFrame
         One row per run and event, runs in the study's order: ``hash`` of the run; the parameters
         that vary, by their dotted paths; ``seed``; ``event``; the measures of the method, such as
-        the columns of events.csv or the figures of a slide; ``error``; ``version`` and ``build``
-        of snowshed; ``dimension``; and the accuracy settings (``dx``, ``precision``, ...). A run
-        that failed has, after its completed events, a row without measures whose ``ended`` is
-        "failed" and whose ``error`` says why.
+        the columns of events.csv or the figures of a slide; ``error``; ``notes`` on the run, joined
+        by "; "; ``version`` and ``build`` of snowshed; ``dimension``; and the accuracy settings
+        (``dx``, ``precision``, ...). A run that failed has, after its completed events, a row
+        without measures whose ``ended`` is "failed" and whose ``error`` says why. Its `attrs` have
+        ``units`` by column, and ``snowshed_version`` and ``snowshed_build``, each a list if the
+        runs have several.
 
     Raises
     ------
@@ -72,8 +75,8 @@ def read_table(
         scenes = [scene_data(run.scene) for run in store.runs(name)] or [{}]
     measured = [column for scene in scenes for column in MEASURE_COLUMNS[method_of(scene).name]]
     settings = [column for scene in scenes for column in accuracy_of(scene)]
-    columns = ["hash", *axes, "seed", "event", *measured, "error", "version", "build", "dimension"]
-    columns += [*settings, *(("wall_s", *RUN_TIMING) if timing else ())]
+    columns = ["hash", *axes, "seed", "event", *measured, "error", "notes", "version", "build"]
+    columns += ["dimension", *settings, *(("wall_s", *RUN_TIMING) if timing else ())]
     table = pd.DataFrame(rows, columns=list(dict.fromkeys(columns)))  # axes may be among them
     types: dict[str, Any] = {
         **dict.fromkeys(_columns_of_type("INTEGER"), "Int64"),
@@ -82,7 +85,9 @@ def read_table(
     for column in measured:
         if column not in types and table[column].isna().all():  # a table without any stack
             types[column] = float
-    return with_trimming(table.astype({k: v for k, v in types.items() if k in table}))
+    table = with_trimming(table.astype({k: v for k, v in types.items() if k in table}))
+    table.attrs.update({"units": column_units(table), **table_origin(table)})
+    return table
 
 
 def with_trimming(table: pd.DataFrame) -> pd.DataFrame:
@@ -133,7 +138,14 @@ def _facts(run: StoredRun, axes: Sequence[str]) -> dict[str, Any]:
     """Return the columns that all events of a run share."""
     scene = with_current_names(scene_data(run.scene))
     facts = scene_columns(scene, axes)
-    return {**facts, "hash": run.hash, "error": "", "version": run.version, "build": run.build}
+    return {
+        **facts,
+        "hash": run.hash,
+        "error": "",
+        "notes": "; ".join(run.notes),
+        "version": run.version,
+        "build": run.build,
+    }
 
 
 def scene_columns(scene: Mapping[str, Any], axes: Sequence[str]) -> dict[str, Any]:

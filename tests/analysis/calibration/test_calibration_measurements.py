@@ -1,5 +1,9 @@
 """Measurement files: their values, and errors with line and column."""
 
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
 import pytest
 
 from snowshed import InputError
@@ -36,6 +40,34 @@ def test_the_template_holds_no_measured_values(tmp_path):
         "\n40,1,1,,,,,,,,", "\n40,1,1,0.05,0.005,0.2,0.02,0.1,0.01,0.3,0.01"
     )
     assert [row.quantity for row in read(tmp_path, filled)] == ["height", "length", "head", "tail"]
+
+
+@pytest.mark.parametrize("index", [[], ["tilt_deg"], ["tilt_deg", "event"]])
+def test_a_data_frame_is_read_as_its_file(tmp_path, index):
+    frame = pd.DataFrame(
+        {"tilt_deg": [40, 50], "event": [1, 2], "height_m": [0.05, np.nan],
+         "height_std_m": [0.005, np.nan], "length_m": [0.2, 0.3], "length_std_m": [0.02, 0.02]}
+    )  # fmt: skip
+    frame.to_csv(tmp_path / "stacks.csv", index=False)
+    from_frame = read_measurements(frame.set_index(index) if index else frame)
+    from_file = read_measurements(tmp_path / "stacks.csv")
+    assert from_frame == [replace(row, line=row.line - 1) for row in from_file]
+    assert len(from_frame) == 3
+
+
+def test_errors_of_a_data_frame_name_its_row():
+    frame = pd.DataFrame(
+        {"tilt_deg": [40, 40], "event": 1, "height_m": [0.05, 0.06], "height_std_m": 0.01}
+    )
+    for wrong, message in [
+        (frame, "measurements, row 2: tilt 40, event 1, round 1 is in row 1 already"),
+        (frame.assign(event=[1, 2.5]), "measurements, row 2: event: 2.5 is not a whole number"),
+        (frame.drop(columns="tilt_deg"), "measurements: no column tilt_deg"),
+        (frame.rename(columns={"event": "tilt_deg"}), "the column 'tilt_deg' occurs twice"),
+        (frame.assign(height_m=np.nan, height_std_m=np.nan), "no measurement in it"),
+    ]:
+        with pytest.raises(InputError, match=message):
+            read_measurements(wrong)
 
 
 def test_rounds_repeat_an_experiment(tmp_path):

@@ -214,6 +214,23 @@ def test_positions_in_millimetres_are_told():
         measure(1000.0 * triangle(1.0, 0.3))
 
 
+def test_positions_in_centimetres_are_told():
+    x, z = np.meshgrid(np.linspace(0, 1, 101), np.linspace(0, 0.2, 21))
+    heap = np.column_stack([x.ravel(), 0 * x.ravel(), z.ravel()])
+    message = r"most of the mass is detached, .*; check the unit"
+    with pytest.warns(SnowshedNote, match=message) as notes:
+        measured = measure(100.0 * heap, mass=0.02, dx=0.01)
+    assert len(notes) == 1
+    assert measured.detached_mass > 0.5 * measured.mass
+
+
+def test_two_separate_stacks_and_a_few_particles_have_no_notes(recwarn):
+    heaps = [triangle(1.0, 0.3) + [5.0 * k, 0.0, 0.0] for k in range(3)]
+    assert measure(np.concatenate(heaps)).detached_mass > 0.0
+    measure(np.array([[0.1 * k, 0.0, 0.0] for k in range(5)]))
+    assert [str(note.message) for note in recwarn] == []
+
+
 @pytest.mark.parametrize("density", [0.2, 2e5])
 def test_densities_in_other_units_are_told(density):
     with pytest.warns(SnowshedNote, match=r"densities: half of them are .* are they in g/cm3"):

@@ -1,13 +1,14 @@
-"""Measured stacks: the CSV file, read and checked, and its empty template."""
+"""Measured stacks: the CSV file or DataFrame, read and checked, and its empty template."""
 
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Optional
+from typing import TYPE_CHECKING, Optional, Union
 
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
@@ -15,7 +16,7 @@ from snowshed.base.formatting import number_in
 from snowshed.base.messages import quoted
 from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
-from snowshed.io.csv_table import TableRow, read_text_table
+from snowshed.io.csv_table import TableRow, TextTable, frame_as_text, read_text_table
 from snowshed.snow.stack.quantities import QUANTITIES
 
 if TYPE_CHECKING:
@@ -94,7 +95,7 @@ class Measurement:
     value, uncertainty
         The measured value and its standard deviation, m.
     line
-        Line in the file, from 1.
+        Line in the file, or row of the DataFrame, from 1.
 
     Raises
     ------
@@ -165,13 +166,20 @@ def measurements_template() -> str:
 
 
 @checked
-def read_measurements(file: PathLike) -> list[Measurement]:
+def read_measurements(file: Union[PathLike, pd.DataFrame]) -> list[Measurement]:
     r"""Read measured stacks from a CSV file; `measurements_template` describes its content.
+
+    Parameters
+    ----------
+    file
+        The file, or a DataFrame with the columns of such a file. Tilt, event and round may be in
+        its index; missing values were not measured.
 
     Raises
     ------
     InputError
-        If the file is wrong; the message has file, line, column, error and allowed values.
+        If the file is wrong; the message has file, line (in a DataFrame the row), column, error
+        and allowed values.
     OSError
         If the file cannot be read.
 
@@ -184,17 +192,27 @@ def read_measurements(file: PathLike) -> list[Measurement]:
     ...     [(one.quantity, one.value, one.line) for one in read_measurements(file)]
     [('height', 0.05, 2)]
     """
-    path = Path(file)
-    hint = "`snowshed calibrate --template FILE` writes one to fill in"
-    table = read_text_table(path, hint, _check_header)
+    table, name = _text_table(file)
     measurements: list[Measurement] = []
-    seen: dict[tuple[float, int, int], int] = {}
+    seen: dict[tuple[float, int, int], str] = {}
     for row in table.rows:
         if any(row.cells.values()):
             measurements += _Row(row).measurements(seen)
     if not measurements:
-        raise InputError(f"{path}: no measurement in it: all cells for measured values are empty")
+        raise InputError(f"{name}: no measurement in it: all cells for measured values are empty")
     return measurements
+
+
+def _text_table(file: Union[PathLike, pd.DataFrame]) -> tuple[TextTable, str]:
+    """Return the checked table of texts and its name."""
+    if isinstance(file, (str, os.PathLike)):
+        hint = "`snowshed calibrate --template FILE` writes one to fill in"
+        return read_text_table(Path(file), hint, _check_header), str(file)
+    name = "the measurements"
+    levels = [level for level in file.index.names if level in (*KEYS, ROUND)]
+    table = frame_as_text(file.reset_index(levels) if levels else file, name)
+    _check_header(table.columns, name)
+    return table, name
 
 
 def to_table(measurements: Sequence[Measurement]) -> pd.DataFrame:
@@ -236,7 +254,7 @@ class _Row:
     def cells(self) -> Mapping[str, str]:
         return self.row.cells
 
-    def measurements(self, seen: dict[tuple[float, int, int], int]) -> list[Measurement]:
+    def measurements(self, seen: dict[tuple[float, int, int], str]) -> list[Measurement]:
         """Return the measurements of the line; `seen` holds the line of every stack so far."""
         key = self._tilt(), self._whole_number("event"), self._whole_number(ROUND, 1)
         values = {quantity: self._value(quantity) for quantity in QUANTITIES}
@@ -246,10 +264,10 @@ class _Row:
             if value is not None
         ]
         if measurements:
-            earlier = seen.setdefault(key, self.row.number)
-            if earlier != self.row.number:
+            earlier = seen.setdefault(key, self.row.place)
+            if earlier != self.row.place:
                 raise self._error(
-                    f"tilt {key[0]:g}, event {key[1]}, round {key[2]} is in line {earlier} "
+                    f"tilt {key[0]:g}, event {key[1]}, round {key[2]} is in {earlier} "
                     "already; give repetitions another round"
                 )
             self._check_ends(values)

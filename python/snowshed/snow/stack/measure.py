@@ -46,6 +46,10 @@ MIN_DENSITY, MAX_DENSITY = 5.0, 1500.0
 #: Largest size of a stack over the side of a cube of its snow; beyond it, a note asks for the unit.
 MAX_SPREAD = 100.0
 MIN_TILT = 2.0  # degrees, of the ground; smaller ones but 0 may be radians
+#: Largest distance of half of the particles to their nearest neighbours, in voxels that connect
+#: snow, while most of the mass is detached; beyond it, a note asks for the unit.
+MAX_GAP = 4.0
+MIN_PARTICLES = 10  # fewer may lie anywhere
 #: Largest side of a cube of the snow over the size of its particles' box; as `MAX_SPREAD`.
 MAX_PACKING = 3.0
 
@@ -235,7 +239,7 @@ def measure_stack(
     coordinates = points("positions", positions, dimension)
     every_mass = column("masses", masses, len(coordinates), non_negative=True)
     every_density = column("densities", densities, len(coordinates), non_negative=True)
-    _note_on_units(coordinates, every_mass, every_density, dimension, dx)
+    spread_noted = _note_on_units(coordinates, every_mass, every_density, dimension, dx)
     on_panel = (
         np.zeros(len(coordinates), dtype=bool)
         if exclude is None
@@ -258,6 +262,9 @@ def measure_stack(
     members = below & ~falling
     snow, mass, under = levelled[members], every_mass[members], under[members]
     body = largest_body(snow, mass, max(dx, CONNECTION_VOXEL))
+    detached = float(mass[~body].sum() + every_mass[falling].sum())
+    if not spread_noted and 2.0 * detached > every_mass[below].sum():
+        _note_on_gaps(levelled[below], max(dx, CONNECTION_VOXEL))
     centre_height, spread = _moments(snow, mass)
     trimmed = {name: _trimmed_extent(snow, mass, under, dimension, name) for name in TRIMMINGS}
     return StackMeasure(
@@ -269,7 +276,7 @@ def measure_stack(
         volume=_volume(every_mass[below], every_density[below], voxel),
         centre_height=centre_height,
         spread=spread,
-        detached_mass=float(mass[~body].sum() + every_mass[falling].sum()),
+        detached_mass=detached,
         on_panel_mass=float(every_mass[held].sum()),
         on_structures_mass=float(every_mass[on_structure].sum()),
         joined=joined,
@@ -279,18 +286,18 @@ def measure_stack(
 
 def _note_on_units(
     positions: Floats, masses: Floats, densities: Floats, dimension: int, dx: float
-) -> None:
-    """Issue notes if the arrays cannot be in metres, kg and kg/m3."""
+) -> bool:
+    """Issue notes if the arrays cannot be in metres, kg and kg/m3; return whether positions did."""
     dense = densities[masses > 0.0]
     if not len(dense):
-        return
+        return False
     middle = float(np.median(dense))
     if not MIN_DENSITY <= middle <= MAX_DENSITY:
         issue_note(
             f"densities: half of them are {middle:.3g} kg/m3 or more, which snow cannot be; are "
             "they in g/cm3, or masses?"
         )
-        return
+        return False
     sides = np.ptp(positions, axis=0)[[0, 2] if dimension == 2 else [0, 1, 2]]
     size = float(np.prod(sides)) ** (1 / dimension)
     snow = float((masses / np.maximum(densities, MIN_DENSITY)).sum()) ** (1 / dimension)
@@ -300,11 +307,36 @@ def _note_on_units(
             f"{'a square' if dimension == 2 else 'a cube'} with sides of {snow:.2g} m, but its "
             f"particles span only {size:.2g} m; are the masses in g, or is `dimension` another one?"
         )
-    if size > MAX_SPREAD * snow:
+    too_wide = bool(size > MAX_SPREAD * snow)
+    if too_wide:
         issue_note(
             f"positions: the particles span {' x '.join(f'{side:.3g}' for side in sides)} m, "
             f"but their snow has the volume of {'a square' if dimension == 2 else 'a cube'} with "
             f"sides of {snow:.2g} m; are the positions in mm or cm?"
+        )
+    return too_wide
+
+
+def _note_on_gaps(snow: Floats, voxel: float) -> None:
+    """Issue a note if most particles of detached snow are far from all others.
+
+    Parameters
+    ----------
+    snow : (n, 3)
+        Positions, m.
+    voxel
+        Edge of the voxels that connect snow, m.
+    """
+    from scipy.spatial import cKDTree  # loads more slowly than snowshed
+
+    if len(snow) < MIN_PARTICLES:
+        return
+    gap = float(np.median(cKDTree(snow).query(snow, k=2)[0][:, 1]))
+    if gap > MAX_GAP * voxel:
+        issue_note(
+            f"positions: most of the mass is detached, because half of the particles are "
+            f"{gap:.3g} m or more from all others, {gap / voxel:.3g} cells; check the unit of the "
+            "positions"
         )
 
 
