@@ -10,6 +10,7 @@ from conftest import tiny_scene
 from helpers.paths import ROOT
 
 import snowshed._core as core
+import snowshed.scene.accuracy_settings  # noqa: F401 - reads its presets once, when it is imported
 from snowshed import ResolvedScene
 from snowshed.cli.main import main
 from snowshed.scene.scene import resolve_scene
