@@ -59,7 +59,7 @@ class VelocityAverage {
   double offset_;                         // cells from a particle to its place on the grid
   std::vector<AverageTile<T>> tiles_of_;  // one per particle block
   std::vector<Box> boxes_;                // one per particle block, valid where its sums are
-  bool tiles_fit_ = false;  // false also if there was no memory for them
+  bool tiles_fit_ = false;                // false also if there was no memory for them
   std::vector<std::uint8_t> settled_;  // one per particle block: whether its tile's sums stay valid
   std::vector<std::int32_t> needed_;
   std::vector<std::uint8_t> is_needed_;
