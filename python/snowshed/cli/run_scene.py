@@ -32,6 +32,7 @@ def run_scene(
 ) -> None:
     """Run a scene into a folder with a progress bar, and print its results."""
     from snowshed.cli.output.progress import progress_bar
+    from snowshed.running.method_run import RunOptions
     from snowshed.running.run import run_resolved
 
     if not quiet and (slow := _core.slow_kernels_note()):
@@ -39,9 +40,8 @@ def run_scene(
     try:
         with progress_bar(quiet=quiet) as show:
             progress = None if show is None else announcing_long_run(resolved, show)
-            results = run_resolved(
-                resolved, folder, recorded, resume=resume, progress=progress, map_format=map_format
-            )
+            options = RunOptions(resume, map_format=map_format)
+            results = run_resolved(resolved, folder, options, recorded, progress=progress)
     except Interrupted as interrupted:
         raise Stopped(str(interrupted)) from None
     if not quiet:

@@ -11,6 +11,7 @@ import shutil
 import weakref
 from collections.abc import Callable
 from contextlib import nullcontext
+from dataclasses import replace
 from pathlib import Path
 from tempfile import mkdtemp
 from typing import TYPE_CHECKING, Any, Literal, Optional, Union
@@ -131,45 +132,40 @@ def run(
     resolved, recorded = resolve_scene(scene), recorded_run(scene)
     if recorded is None:
         note_run_beside(scene, as_it_was=resume is True or ageing is not None or laws is not None)
+    if resume and overwrite:
+        raise _core.InputError("resume, overwrite: give one of the two")
+    options = RunOptions(_resumes(resume, Path(folder)), ageing, pictures, compact, map_format)
     return run_resolved(
-        resolved, folder, recorded, resume=resume, overwrite=overwrite, ageing=ageing, laws=laws,
-        progress=progress, pictures=pictures, compact=compact, map_format=map_format,
-    )  # fmt: skip
+        resolved, folder, options, recorded, overwrite=overwrite, laws=laws, progress=progress
+    )
 
 
 def run_resolved(
     resolved: ResolvedScene,
     folder: PathLike,
+    options: RunOptions,
     recorded: Optional[RecordedRun] = None,
     *,
-    resume: Union[bool, Literal["auto"]] = False,
     overwrite: bool = False,
-    ageing: Optional[Ageing] = None,
     laws: Optional[Laws] = None,
     progress: Optional[Reporter] = None,
-    pictures: bool = True,
-    compact: bool = False,
-    map_format: MapFormat = "ascii",
 ) -> Results:
     """Run a complete scene as `run` does; `recorded` is the earlier run that it repeats."""
     method = method_of(resolved.data)
     if recorded is not None:
-        ageing = ageing or recorded.ageing
+        options = replace(options, ageing=options.ageing or recorded.ageing)
         recorded.check_laws(laws)
-    if ageing is not None and not method.ages:
+    if options.ageing is not None and not method.ages:
         raise _core.InputError(f'ageing: the snow of the method "{method.name}" does not age')
-    if ageing is not None and resolved.data["events"]["between"] != "carry":
+    if options.ageing is not None and resolved.data["events"]["between"] != "carry":
         raise _core.InputError(
             '/events/between: "reseed" replaces the snow, so that it cannot age; use "carry"'
         )
-    if resume and overwrite:
-        raise _core.InputError("resume, overwrite: give one of the two")
-    resume = _resumes(resume, Path(folder))
+    resume = options.resume
     if not resume and not overwrite:
         check_empty(folder, instead_of_full())
-    if map_format != "ascii":
-        _check_maps(method, map_format)
-    options = RunOptions(resume, ageing, pictures, compact, map_format)
+    if options.map_format != "ascii":
+        _check_maps(method, options.map_format)
     starting = nullcontext(_nothing) if resume else new_results(folder, overwrite=overwrite)
     with starting as begin:
         with kept_inputs(resolved, folder) as resolved:
@@ -190,7 +186,7 @@ def run_resolved(
                 raise
             method_run.finish()
     LOGGER.info("finished in %s", folder)
-    if pictures:
+    if options.pictures:
         method_run.draw()
     return Results.of_run(folder, resolved)
 

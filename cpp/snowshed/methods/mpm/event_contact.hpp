@@ -19,6 +19,7 @@ struct EventContact {
   T next_impulse;              // the same after the step that is being tried
 
   auto key() const { return std::tie(first_key, second_key, node); }
+  bool operator<(const EventContact& other) const { return key() < other.key(); }
 };
 
 }  // namespace snowshed::methods::mpm

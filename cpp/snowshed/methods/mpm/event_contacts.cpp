@@ -12,7 +12,7 @@ namespace {
 
 template <class T>
 bool is_before(const EventContact<T>* a, const EventContact<T>* b) {
-  return a->key() < b->key();
+  return *a < *b;
 }
 
 template <class T, int D>

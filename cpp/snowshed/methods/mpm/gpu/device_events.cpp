@@ -23,10 +23,6 @@ Around nodes_around(const Layout& layout, std::int32_t block) {
   return around;
 }
 
-bool by_key(const EventContact<float>& a, const EventContact<float>& b) {
-  return a.key() < b.key();
-}
-
 /// Calls f(contact, node of the device) for each node of a pair. The contact names the node.
 template <class F>
 void for_each_node(const Layout& layout, const std::vector<EventPair>& pairs,
@@ -96,10 +92,10 @@ void DeviceEvents::connect(const HostState& state) {
   std::iota(all.begin(), all.end(), 0);
   all_pairs_.upload(all);
   std::vector<EventContact<float>> stored = state.event_contacts;
-  std::sort(stored.begin(), stored.end(), by_key);
+  std::sort(stored.begin(), stored.end());
   std::vector<EventNode> contacts(host_pairs_.size() * nodes_of_block);
   for_each_node(layout, host_pairs_, contacts, [&](const EventContact<float>& c, EventNode& node) {
-    const auto at = std::lower_bound(stored.begin(), stored.end(), c, by_key);
+    const auto at = std::lower_bound(stored.begin(), stored.end(), c);
     if (at == stored.end() || at->key() != c.key()) return;
     node.impulse = node.next_impulse = at->next_impulse;
   });

@@ -26,7 +26,8 @@ class DeviceEvents {
 
   /// Finds the radii of the particles, which have been sorted, and then all contacts.
   void find_all_contacts(const ParticleLaunch&, std::size_t particles, const Constants&);
-  /// Queues the search of a step, for the pairs whose snow may have moved far enough.
+  /// Queues the search for contacts in a step. A pair is searched once its snow has moved far
+  /// enough.
   void search(const ParticleLaunch&, const Control*, const Constants&) const;
   /// Queues the steps of the nodes of these positions.
   void launch_step(const GridArrays&, const ContactArrays&, const ForceArrays&, Control*,

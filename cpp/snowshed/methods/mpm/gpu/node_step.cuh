@@ -39,7 +39,7 @@ __device__ inline void read_sums(const GridArrays& grid, int n, bool first_try, 
   grid.force[n] = force;
 }
 
-/// The step that is being tried, for the nodes.
+/// The values of the present step that a node needs. The step may still turn out too long.
 struct NodeTry {
   bool first;  // the first try of this step
   float dt;    // s
