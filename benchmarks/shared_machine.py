@@ -6,8 +6,10 @@ Each method runs a short scene on two threads, by ``snowshed-run`` and from Pyth
 one and four programs that keep a core busy, and in a container with one and a half cores. The
 repetitions of all cases alternate; medians count.
 
-The *fair share* of two threads beside k busy programs on c cores is 2 c / (2 + k) cores. The ideal
-time is the processor time of the run alone over its share, and at least the time of the run alone.
+The *fair share* of n threads beside k busy programs on c cores is n c / (n + k) cores. n is the
+number of cores that the run alone keeps busy, rounded, since small scenes use a single thread. The
+ideal time is the processor time of the run alone over its share, and at least the time of the run
+alone.
 Writes benchmarks/results/DATE-shared-NAME.json and prints times over the ideal, and processor times
 over that of the run alone. Nothing else should run on the machine meanwhile.
 """
@@ -158,12 +160,12 @@ def conditions() -> dict[str, Callable[[], contextlib.AbstractContextManager[Non
     return {**every, "quota": with_quota}
 
 
-def fair_share(condition: str) -> float:
-    """Return the cores that two threads get in a condition."""
+def fair_share(condition: str, threads: int) -> float:
+    """Return the cores that some threads get in a condition."""
     if condition == "quota":
-        return min(QUOTA, THREADS)
+        return min(QUOTA, threads)
     busy = int(condition.split(maxsplit=1)[0])
-    return min(THREADS, available_cores() * THREADS / (THREADS + busy))
+    return min(threads, available_cores() * threads / (threads + busy))
 
 
 def measure(scenes: dict[str, Path], repetitions: int) -> pd.DataFrame:
@@ -187,9 +189,11 @@ def summary(times: pd.DataFrame) -> pd.DataFrame:
     table = times.groupby(keys, sort=False)[["wall_s", "processor_s"]].median().reset_index()
     alone = table[table.condition == "0 busy"].set_index(["method", "run"])
     quiet = alone.loc[pd.MultiIndex.from_frame(table[["method", "run"]])]
-    share = table.condition.map(fair_share).to_numpy()
+    threads = (quiet.processor_s / quiet.wall_s).round().clip(1, THREADS).astype(int).to_numpy()
+    share = [fair_share(condition, n) for condition, n in zip(table.condition, threads)]
     ideal = (quiet.processor_s.to_numpy() / share).clip(min=quiet.wall_s.to_numpy())
     return table.assign(
+        threads=threads,
         wall_over_ideal=table.wall_s / ideal,
         processor_over_alone=table.processor_s / quiet.processor_s.to_numpy(),
     )

@@ -107,26 +107,12 @@ double EventContacts<T, D>::fastest_around(const State<T, D>& state, const Grid<
   return std::sqrt(squared);
 }
 
-/// The sums of a block of nodes, or null if no snow reaches it. `buffer` holds them if the block
-/// takes no part in the step.
-template <class T, int D>
-const T* EventContacts<T, D>::sums_of(const State<T, D>& state, Grid<T, D>& grid,
-                                      const Kernels<T>& kernels, std::int32_t g,
-                                      std::vector<T>& buffer) const {
-  if (state.sleep.is_active(g)) return grid.touched[g] ? grid.sum(g) : nullptr;
-  const T* tiles[neighbour_count<D>];
-  if (!grid.tiles_reaching(state.layout, g, tiles)) return nullptr;
-  buffer.resize(Grid<T, D>::block_size);
-  kernels.gather(tiles, buffer.data());
-  return buffer.data();
-}
-
+/// The masses at the nodes of a block and of the margin around it.
 template <class T, int D>
 std::vector<T> EventContacts<T, D>::masses_of(const State<T, D>& state, Grid<T, D>& grid,
-                                              const Kernels<T>& kernels, std::int32_t g) const {
+                                              std::int32_t g) const {
   constexpr int margin = normal_margin<D>;
   std::vector<T> masses(padded_nodes<D>, T(0));
-  std::vector<T> buffer;
   const BlockKey key = state.layout.grid_blocks[g];
   for_each_index(filled<D>(-1), filled<D>(2), [&](const std::array<int, D>& offset) {
     BlockCoord<D> coord = block_coord<D>(key);
@@ -138,9 +124,8 @@ std::vector<T> EventContacts<T, D>::masses_of(const State<T, D>& state, Grid<T, 
     }
     const std::int32_t block =
         find_block(state.layout.grid_blocks, block_key<D>(coord, field_of(key)));
-    if (block < 0) return;
-    const T* sums = sums_of(state, grid, kernels, block, buffer);
-    if (!sums) return;
+    if (block < 0 || !grid.touched[block]) return;
+    const T* const sums = grid.sum(block);
     for_each_index(begin, end, [&](const std::array<int, D>& node) {
       std::array<int, D> padded;
       for (int d = 0; d < D; ++d) padded[d] = node[d] + offset[d] * B;
@@ -166,11 +151,14 @@ void EventContacts<T, D>::find_reach(const Model<T, D>& model, const State<T, D>
     const std::int32_t b = state.layout.around_nodes[g][around];
     const BlockCoord<D> from = block_coord<D>(state.layout.particle_blocks[b]);
     T shift[D], low[D], high[D];  // a particle from `low` to `high` has weight at the shared nodes
+    bool reaches_nodes = true;    // particles stray from their block by less than a cell
     for (int d = 0; d < D; ++d) {
       shift[d] = T((from[d] - block[d]) * B);
       low[d] = T(nodes.begin[d] - support_ + 1);
       high[d] = T(nodes.end[d]);
+      reaches_nodes = reaches_nodes && shift[d] - 1 < high[d] && shift[d] + B + 1 >= low[d];
     }
+    if (!reaches_nodes) continue;
     for (std::int32_t i = state.layout.first[b]; i < state.layout.first[b + 1]; ++i) {
       T x[D];
       bool near = true;
@@ -200,20 +188,16 @@ void EventContacts<T, D>::measure(const Model<T, D>& model, const State<T, D>& s
   const auto end = state.layout.overlap_blocks.begin() + state.layout.overlap_first[overlap + 1];
   struct Field {
     std::int32_t block;
-    const T* sums;
     std::vector<T> masses;  // once they are needed
   };
   std::vector<Field> fields;
-  std::vector<std::vector<T>> buffers(std::size_t(end - begin));
   for (auto g = begin; g != end; ++g)
-    if (const T* sums = sums_of(state, grid, model.kernels, *g, buffers[std::size_t(g - begin)]))
-      fields.push_back({*g, sums, {}});
+    if (grid.touched[*g]) fields.push_back({*g, {}});
   for (std::size_t a = 0; a < fields.size(); ++a)
     for (std::size_t b = a + 1; b < fields.size(); ++b) {
-      if (!share_a_node<T, D>(fields[a].sums, fields[b].sums)) continue;
+      if (!share_a_node<T, D>(grid.sum(fields[a].block), grid.sum(fields[b].block))) continue;
       for (Field* field : {&fields[a], &fields[b]})
-        if (field->masses.empty())
-          field->masses = masses_of(state, grid, model.kernels, field->block);
+        if (field->masses.empty()) field->masses = masses_of(state, grid, field->block);
       const SharedNodes<T, D> nodes = find_shared_nodes<T, D>(fields[a].masses, fields[b].masses);
       ReachMap<T, D> first(nodes, T(1)), second(nodes, T(-1));  // towards each other
       find_reach(model, state, grid, fields[a].block, nodes, first);

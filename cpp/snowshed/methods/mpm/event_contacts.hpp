@@ -28,12 +28,14 @@ class EventContacts {
   void forget(const Model<T, D>& model, const State<T, D>& state, int threads);
 
   /// Finds the contacts of the overlaps in which snow may have moved far enough to change them, in
-  /// the last step and before. The sums of active blocks must be up to date.
+  /// the last step and before. The grid's sums must be up to date, those of idle nodes too.
   void update(const Model<T, D>& model, State<T, D>& state, Grid<T, D>& grid, int threads);
 
   std::ptrdiff_t overlap_count(const BlockLayout<D>& layout) const {
     return std::ptrdiff_t(layout.overlap_first.size()) - 1;
   }
+
+  bool any(std::ptrdiff_t overlap) const { return first_[overlap] < first_[overlap + 1]; }
 
   /// Exchanges the impulses of a step in an overlap.
   void exchange(const StepParameters<T>& step, double friction, State<T, D>& state,
@@ -52,10 +54,7 @@ class EventContacts {
   void find_due(const Model<T, D>& model, const State<T, D>& state, const Grid<T, D>& grid);
   double fastest_around(const State<T, D>& state, const Grid<T, D>& grid,
                         std::ptrdiff_t overlap) const;
-  const T* sums_of(const State<T, D>& state, Grid<T, D>& grid, const Kernels<T>& kernels,
-                   std::int32_t block, std::vector<T>& buffer) const;
-  std::vector<T> masses_of(const State<T, D>& state, Grid<T, D>& grid, const Kernels<T>& kernels,
-                           std::int32_t block) const;
+  std::vector<T> masses_of(const State<T, D>& state, Grid<T, D>& grid, std::int32_t block) const;
   void find_reach(const Model<T, D>& model, const State<T, D>& state, Grid<T, D>& grid,
                   std::int32_t block, const SharedNodes<T, D>& nodes, ReachMap<T, D>& reach) const;
   void measure(const Model<T, D>& model, const State<T, D>& state, Grid<T, D>& grid,

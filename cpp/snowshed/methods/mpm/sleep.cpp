@@ -197,7 +197,7 @@ void SolverImpl<T, D>::update_sleep() noexcept {
     state_.particles.zero_velocity(state_.layout.first[b], state_.layout.first[b + 1]);
     scatter_block(step, view, b);
   }
-  if (!newly_asleep.empty()) clear_idle_nodes();
+  if (!newly_asleep.empty()) rest_idle_nodes();
   if (state_.forces && workspace_.idle_before != state_.sleep.idle()) {
     state_.collect_forces(model_, workspace_.idle_before);
     hold_sleeping_forces();
@@ -241,12 +241,13 @@ typename Sleep<D>::BlockProbe SolverImpl<T, D>::block_probe() {
   return block_probe;
 }
 
-/// Nodes that only sleeping snow touches are at rest.
+/// Nodes that only sleeping snow touches are at rest. Their sums stay valid while they are idle.
 template <class T, int D>
-void SolverImpl<T, D>::clear_idle_nodes() {
+void SolverImpl<T, D>::rest_idle_nodes() {
   for (std::int32_t g : state_.sleep.idle()) {
     workspace_.grid.node_stats[g] = {};
     std::fill_n(workspace_.grid.velocity(g), workspace_.grid.block_size, T(0));
+    if (!state_.layout.has_overlap.empty()) gather(g);
   }
 }
 

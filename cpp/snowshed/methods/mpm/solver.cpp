@@ -116,7 +116,7 @@ void SolverImpl<T, D>::scatter() {
   const StepParameters<T> step = parameters(state_.totals.dt);
   const std::ptrdiff_t n = std::ptrdiff_t(state_.layout.particle_blocks.size());
   parallel_for_dynamic(n, threads(), 1, [&](std::ptrdiff_t b) { scatter_block(step, view, b); });
-  clear_idle_nodes();
+  rest_idle_nodes();
   if (state_.forces) hold_sleeping_forces();
   workspace_.tiles_valid = true;
 }
@@ -143,16 +143,22 @@ void SolverImpl<T, D>::gather_and_update(double dt) {
   parallel_for_dynamic(std::ptrdiff_t(active.size()), threads(), 8, [&](std::ptrdiff_t i) {
     const std::int32_t g = active[i];
     state_.contacts.commit(g);
-    const T* tiles[neighbour_count<D>];
-    const bool touched = workspace_.grid.tiles_reaching(state_.layout, g, tiles);
-    workspace_.grid.touched[g] = touched;
-    if (touched) model_.kernels.gather(tiles, workspace_.grid.sum(g));
+    gather(g);
     if (!has_overlap(g)) update_block(step, g);
   });
   if (state_.layout.has_overlap.empty()) return;
   for (EventContact<T>& c : state_.event_contacts) c.impulse = c.next_impulse;
   workspace_.event_contacts.update(model_, state_, workspace_.grid, threads());
   update_overlaps(step);
+}
+
+/// Sums the tiles of the particle blocks around a grid block.
+template <class T, int D>
+void SolverImpl<T, D>::gather(std::int32_t g) {
+  const T* tiles[neighbour_count<D>];
+  const bool touched = workspace_.grid.tiles_reaching(state_.layout, g, tiles);
+  workspace_.grid.touched[g] = touched;
+  if (touched) model_.kernels.gather(tiles, workspace_.grid.sum(g));
 }
 
 template <class T, int D>
@@ -178,6 +184,10 @@ void SolverImpl<T, D>::update_overlap(const StepParameters<T>& step, std::ptrdif
   const auto begin = state_.layout.overlap_blocks.begin() + state_.layout.overlap_first[overlap];
   const auto end = state_.layout.overlap_blocks.begin() + state_.layout.overlap_first[overlap + 1];
   if (!state_.sleep.is_active(*begin)) return;
+  if (!workspace_.event_contacts.any(overlap)) {
+    for (auto g = begin; g != end; ++g) update_block(step, *g);
+    return;
+  }
   for (auto g = begin; g != end; ++g) {
     workspace_.grid.node_stats[*g] = {};
     if (workspace_.grid.touched[*g]) {

@@ -97,6 +97,7 @@ class SolverImpl final : public Solver {
   void scatter();
   double shorten_to_limits(double dt);  ///< returns the accepted dt
   void gather_and_update(double dt);
+  void gather(std::int32_t grid_block);
   void update(double dt);
   void update_block(const StepParameters<T>& step, std::ptrdiff_t block);
   void finish_block(const StepParameters<T>& step, std::ptrdiff_t block);
@@ -118,7 +119,7 @@ class SolverImpl final : public Solver {
   void update_sleep() noexcept;
   typename Sleep<D>::BlockProbe block_probe();
   BlockStats probe(const StepParameters<T>& step, const ParticleView<T>& view, std::int32_t block);
-  void clear_idle_nodes();
+  void rest_idle_nodes();
   void scatter_block(const StepParameters<T>& step, const ParticleView<T>& view,
                      std::ptrdiff_t block);
 

@@ -39,8 +39,8 @@ class Touch {
   std::vector<std::int32_t> due_blocks(const Model<T, D>& model, const State<T, D>& state) const;
   /// Blocks with particles that touch an obstacle.
   std::vector<std::int32_t> touching_blocks() const;
-  /// Measures the listed blocks, and decides for each contact whether it acts. Looks at the
-  /// particles of these blocks and of the touching ones.
+  /// Measures the listed blocks, and decides for each contact at their nodes whether it acts. Looks
+  /// at the particles of these blocks and of the touching ones.
   void measure(const Model<T, D>& model, State<T, D>& state,
                const std::vector<std::int32_t>& blocks, int threads);
   /// The distance (m) by which the fastest snow may move before a block must be measured.
