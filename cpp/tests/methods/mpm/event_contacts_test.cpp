@@ -362,6 +362,56 @@ TEST_F(EventContactsCheckpoint, SlidingSnowResumesToTheSameBits) {
   expect_resumes(*solver, *falling_slabs(1, 0), path("state"), 200);
 }
 
+// Contacts between sleeping slabs are found with the sums of idle nodes.
+TEST_F(EventContactsCheckpoint, ABlockThatWakesTwoSlabsResumesToTheSameBits) {
+  const auto solver = falling_slabs(1, 2);
+  run_until(*solver, 0.5);
+  EXPECT_LT(solver->motion(0).rms_speed, 1e-6);
+  ParticleBatch block = slab(2, 3, Vec3(-0.19, 0, 0), Vec3(-0.152, 0, 0.04), 0.004);
+  block.velocity.x() = 2;
+  solver->add(block);
+  while (!solver->at_safe_point()) solver->step();
+  expect_resumes(*solver, *falling_slabs(1, 0), path("state"), 400);
+  EXPECT_GT(momentum_of(solver->state(), 1).x(), 0);
+  EXPECT_GT(momentum_of(solver->state(), 2).x(), 0);
+}
+
+/// Two blocks that collide, shifted by some cells of the grid and back again.
+std::vector<Vec3> after_collision(int dimension, int cells) {
+  Options o = event_options({dimension, Precision::float64});
+  o.gravity = 0;
+  o.settings.event_friction = 0;  // friction is shared out among the nodes of a block
+  const Vec3 shift = cells * o.settings.dx * Vec3(1, dimension == 3, 1);
+  const auto solver = make_solver(o, {});
+  ParticleBatch lower = slab(dimension, 1, Vec3(0, 0, 0), Vec3(0.05, 0.03, 0.02), 0.004);
+  ParticleBatch upper = slab(dimension, 2, Vec3(0.013, 0, 0.022), Vec3(0.04, 0.03, 0.04), 0.004);
+  upper.velocity = Vec3(0.3, 0, -0.5);
+  for (ParticleBatch* batch : {&lower, &upper}) {
+    for (Vec3& x : batch->positions) x += shift;
+    solver->add(*batch);
+  }
+  run_steps(*solver, 100);
+  const ParticleState s = solver->state();
+  EXPECT_GT(momentum_of(s, 1).norm(), 0.05 * momentum(s).norm());
+  std::vector<Vec3> positions;
+  for (const Vec3& x : s.positions) positions.push_back(x - shift);
+  return positions;
+}
+
+TEST(EventContacts, APlaceWithinABlockOfNodesDoesNotMatter) {
+  for (const int dimension : {2, 3}) {
+    const std::vector<Vec3> unshifted = after_collision(dimension, 0);
+    for (int cells = 1; cells < block_edge<3>; ++cells) {
+      const std::vector<Vec3> shifted = after_collision(dimension, cells);
+      ASSERT_EQ(shifted.size(), unshifted.size());
+      double largest = 0;
+      for (std::size_t i = 0; i < shifted.size(); ++i)
+        largest = std::max(largest, (shifted[i] - unshifted[i]).norm());
+      EXPECT_LT(largest, 1e-8) << dimension << "D, " << cells << " cells";
+    }
+  }
+}
+
 /// There are more events than fields. The oldest share a field.
 TEST(EventContacts, MoreEventsThanFieldsMayMeet) {
   const auto solver = falling_slabs(1, 12);
