@@ -66,7 +66,7 @@ struct ForceArrays {
 
 /// The balance of energy; null pointers if it is not kept.
 struct EnergyArrays {
-  ParticleEnergies *particles, *blocks;  // of each particle, and sums over each block of them
+  ParticleEnergies *particles, *blocks;  // for each particle; sums over each block of them
   NodeEnergies* nodes;                   // sums over each block of nodes in the step being tried
   StepEnergies* steps;                   // sums over each step since the host looked
 };
