@@ -39,7 +39,7 @@ CPP_FILES = $(shell find cpp -name '*.[ch]pp')
 PYTHON_FOLDERS := python reproductions validation tests tools examples benchmarks lua_compat qgis
 
 .PHONY: help build release demo validation thesis test test-cpp test-py test-slow sanitize sanitize-address \
-  sanitize-thread fuzz mutants bench bench-shared docs qgis components format lint tidy clean
+  sanitize-thread fuzz mutants bench bench-shared gpu-stacks docs qgis components format lint tidy clean
 .NOTPARALLEL:
 
 help:
@@ -53,6 +53,7 @@ help:
 	@echo "make mutants    inject faults and see which the tests catch, an hour or two"
 	@echo "make bench      speed of the solver and of the laboratory events, kept in benchmarks/results"
 	@echo "make bench-shared  runs beside other busy programs, ten minutes"
+	@echo "make gpu-stacks mean stacks of an emulated graphics card beside the processor's, half an hour"
 	@echo "make docs       the documentation as HTML"
 	@echo "make release    a source distribution, and a wheel that is tried in a clean environment"
 	@echo "make qgis       the QGIS plugin as an archive that QGIS installs"
@@ -206,6 +207,17 @@ bench: build
 
 bench-shared: build
 	$(BIN)/python -m benchmarks.shared_machine
+
+# The processor plays the card; on a machine with one, tools/gpu_check.sh does more.
+gpu-stacks: build
+	@$(provide_gtest)
+	@$(call enable,SNOWSHED_BUILD_TESTS)
+	cmake --build $(TREE) --target snowshed-run snowshed_emulated_cuda
+	$(PIP) --quiet nvidia-cuda-nvrtc
+	SNOWSHED_CUDA=$(CURDIR)/$(TREE)/libsnowshed_emulated_cuda.so \
+	  SNOWSHED_NVRTC="$$(ls $(CURDIR)/$(VENV)/lib/python3*/site-packages/nvidia/*/lib/libnvrtc.so.1[23])" \
+	  XDG_CACHE_HOME=$(CURDIR)/build/emulated \
+	  $(BIN)/python -m tools.gpu_stacks $(TREE)/snowshed-run build/gpu-stacks
 
 # --- documentation and style ---------------------------------------------------------------
 

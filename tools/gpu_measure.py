@@ -1,7 +1,8 @@
 """Measure runs on a graphics card beside runs on two threads of the processor.
 
 `gpu_check.sh` calls this with the Python of a bare machine, so that it needs no package. Each run
-is one of ``snowshed-run``, and its numbers come from its ``run.json``.
+is one of ``snowshed-run``, and its numbers come from its ``run.json``. The record is written after
+each run. A run that takes too long is interrupted, and its numbers are those up to then.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import json
 import os
 import platform
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -20,10 +22,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Optional
 
+from tools.snow_measures import measures
+
 RESULTS = Path(__file__).parents[1] / "benchmarks" / "results"
 SCENES = Path(__file__).parents[1] / "examples" / "scenes"
 CELL = 1.0 / 32.0  # m, of the slabs
-TIME_LIMIT = 170.0  # s, of a run
+TIME_LIMIT = 200.0  # s, of a run
+TIME_TO_STOP = 20.0  # s, for a run that was interrupted
 
 
 @dataclass(frozen=True)
@@ -83,12 +88,25 @@ def large_panel() -> dict[str, Any]:
 REST, FLOW = (0.0, 0.0, 0.0), (5.0, 0.0, -5.0)  # m/s
 
 
-def cases_of(rehearse: bool) -> list[Case]:
-    """Return the runs; to rehearse, small ones on the processor only."""
-    if rehearse:
+def small_slab() -> dict[str, Any]:
+    """Return a slab of 4096 particles in plastic flow."""
+    scene = slab(1, FLOW)
+    scene["bodies"][0]["shape"].update(size=[0.25, 0.25, 0.25], center=[0.0, 0.0, 0.125])
+    return scene
+
+
+def cases_of(group: str) -> list[Case]:
+    """Return the runs of a group; to rehearse, small ones."""
+    if group == "rehearsal":
         return [
-            Case("slab_at_rest_262144", slab(1, REST), 0.01, threads=2),
-            Case("slab_in_flow_262144", slab(1, FLOW), 0.01, threads=2),
+            Case("small_slab_in_flow", small_slab(), 0.005),
+            Case("small_slab_in_flow", small_slab(), 0.005, threads=2),
+            Case("slab_at_rest_262144", slab(1, REST), 0.002, threads=2),
+        ]
+    if group == "panel":
+        return [
+            Case("panel_4x2_m", large_panel(), 0.005, threads=2),
+            Case("panel_4x2_m", large_panel()),
         ]
     return [
         Case("slab_at_rest_262144", slab(1, REST), 0.5),
@@ -97,8 +115,6 @@ def cases_of(rehearse: bool) -> list[Case]:
         Case("slab_in_flow_16777216", slab(4, FLOW), 0.3),
         Case("laboratory_one_event", laboratory()),
         Case("laboratory_one_event", laboratory(), threads=2),
-        Case("panel_4x2_m", large_panel()),
-        Case("panel_4x2_m", large_panel(), 0.005, threads=2),
     ]
 
 
@@ -127,30 +143,49 @@ def measured(program: str, folder: Path, case: Case, seconds: float) -> dict[str
     shutil.rmtree(results, ignore_errors=True)
     row = {"case": case.name, "device": device, "threads": case.threads}
     begin = time.perf_counter()
-    try:
-        done = subprocess.run(
-            [program, str(file), "-o", str(results), "--quiet"],
-            capture_output=True,
-            text=True,
-            timeout=max(seconds, 0.1),
-        )
-    except subprocess.TimeoutExpired:
-        return {**row, "error": f"not done in {seconds:.0f} s"}
-    if done.returncode != 0:
-        return {**row, "error": done.stderr.strip()}
+    error = run_for([program, str(file), "-o", str(results), "--quiet"], seconds)
+    process_s = round(time.perf_counter() - begin, 3)
+    if error and not (results / "run.json").exists():
+        return {**row, "error": error}
     record = json.loads((results / "run.json").read_text(encoding="utf-8"))
-    steps = sum(event["wall_s"] for event in record["finished_events"])
+    events = record.get("finished_events", [])
+    if error and not record.get("particle_updates"):
+        return {**row, "error": error}
+    # After an interruption, also the time in which particles were seeded.
+    steps_s = record["wall_s"] if error else sum(event["wall_s"] for event in events)
     return {
         **row,
+        **({"interrupted": error} if error else {}),
         "device_name": record["device"],
         "particles": record["particles"],
+        "events": len(events),
         "steps": record["steps"],
         "particle_updates": record["particle_updates"],
-        "process_s": round(time.perf_counter() - begin, 3),
+        "process_s": process_s,
         "wall_s": record["wall_s"],
-        "updates_per_s": record["particle_updates"] / steps if steps > 0 else 0.0,
+        "updates_per_s": record["particle_updates"] / steps_s if steps_s > 0 else 0.0,
         "peak_memory_mb": record["peak_memory_mb"],
+        **({"measures": measures(results)} if events and case.seconds is None else {}),
     }
+
+
+def run_for(command: list[str], seconds: float) -> str:
+    """Run a command, interrupt it after so many seconds, and return its error, if any."""
+    if seconds < 1.0:
+        return "not begun: the time was over"
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    try:
+        _, error = process.communicate(timeout=seconds)
+        return error.strip() or f"exit code {process.returncode}" if process.returncode else ""
+    except subprocess.TimeoutExpired:
+        process.send_signal(signal.SIGINT)
+    try:
+        process.communicate(timeout=TIME_TO_STOP)
+        return f"interrupted after {seconds:.0f} s"
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.communicate()
+        return f"killed after {seconds + TIME_TO_STOP:.0f} s"
 
 
 def verdicts(rows: list[dict[str, Any]]) -> list[tuple[str, Optional[bool]]]:
@@ -203,52 +238,65 @@ def cpu_name() -> str:
     return names[0] if names else platform.machine()
 
 
-def main() -> int:
-    """Run all cases, write the record and print the verdicts."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("program", nargs="?", help="snowshed-run")
-    parser.add_argument("folder", nargs="?", type=Path, help="folder for scenes and results")
-    parser.add_argument("--rehearse", action="store_true", help="small runs on the processor")
-    parser.add_argument("--write-small", type=Path, help="only write a small scene for a card")
-    parser.add_argument("--card", default="", help="name and driver of the card")
-    parser.add_argument("--cores", type=int, default=os.cpu_count())
-    parser.add_argument("--seconds", type=float, default=480.0, help="time for all runs")
-    parser.add_argument("--failed", default="", help="earlier steps that failed")
-    given = parser.parse_args()
-    if given.write_small:
-        scene = slab(1, FLOW)
-        scene["bodies"][0]["shape"].update(size=[0.25, 0.25, 0.25], center=[0.0, 0.0, 0.125])
-        scene["numerics"]["device"] = "gpu"
+def write_small_scenes(folder: Path) -> None:
+    """Write a scene for a card with each scheme, and with the balance of energy."""
+    for scheme in ("thesis", "objective"):
+        scene = small_slab()
+        scene["numerics"].update(device="gpu", scheme=scheme)
         scene["events"] = {"max_time": 0.005, "rest_time": 0.005}
-        given.write_small.write_text(json.dumps(scene) + "\n", encoding="utf-8")
-        return 0
-    if not (given.card or given.rehearse):
-        print("gpu_check: NOT MEASURED: this machine has no card; --rehearse tries the rest")
-        return 1
-    given.folder.mkdir(parents=True, exist_ok=True)
-    rows = []
-    end = time.perf_counter() + given.seconds
-    for case in cases_of(given.rehearse):
-        left = end - time.perf_counter()
-        rows.append(measured(given.program, given.folder, case, min(TIME_LIMIT, left)))
-        print("gpu_check:", json.dumps(rows[-1]), flush=True)
-    bounds = verdicts(rows)
-    record = {
+        scene["output"]["energy"] = True
+        file = folder / f"small-{scheme}.json"
+        file.write_text(json.dumps(scene) + "\n", encoding="utf-8")
+
+
+def record_of(given: argparse.Namespace, rows: list[dict[str, Any]]) -> dict[str, Any]:
+    """Return the record of the runs so far."""
+    names = {row["case"] for row in rows}
+    return {
         "date": datetime.date.today().isoformat(),
         "card": given.card,
         "cpu": cpu_name(),
         "cores": given.cores,
-        "failed": given.failed.split(),
         "cases": rows,
-        "bounds": [{"bound": text, "holds": holds} for text, holds in bounds],
+        "bounds": [
+            {"bound": text, "holds": holds}
+            for text, holds in verdicts(rows)
+            if text.partition(":")[0] in names
+        ],
     }
-    target = given.folder if given.rehearse else RESULTS
-    print("gpu_check: written:", write_result(record, target, "gpu"))
-    for text, holds in bounds:
-        print("gpu_check:", {True: "holds", False: "MISSED", None: "-"}[holds], text)
-    if given.rehearse:
+
+
+def main() -> int:
+    """Run the cases of a group, write the record after each, and print the verdicts."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("program", nargs="?", help="snowshed-run")
+    parser.add_argument("folder", nargs="?", type=Path, help="folder for scenes and results")
+    parser.add_argument("--group", choices=("speed", "panel", "rehearsal"), default="speed")
+    parser.add_argument("--write-small", type=Path, help="only write small scenes into this folder")
+    parser.add_argument("--card", default="", help="name and driver of the card")
+    parser.add_argument("--cores", type=int, default=os.cpu_count())
+    parser.add_argument("--seconds", type=float, default=480.0, help="time for all runs")
+    parser.add_argument("--records", type=Path, default=RESULTS, help="folder of the record")
+    given = parser.parse_args()
+    if given.write_small:
+        write_small_scenes(given.write_small)
+        return 0
+    given.folder.mkdir(parents=True, exist_ok=True)
+    rows: list[dict[str, Any]] = []
+    end = time.perf_counter() + given.seconds
+    for case in cases_of(given.group):
+        left = end - time.perf_counter()
+        rows.append(measured(given.program, given.folder, case, min(TIME_LIMIT, left)))
+        print("gpu_check:", json.dumps(rows[-1]), flush=True)
+        target = write_result(record_of(given, rows), given.records, f"gpu-{given.group}")
+    print("gpu_check: written:", target)
+    bounds = record_of(given, rows)["bounds"]
+    for bound in bounds:
+        verdict = {True: "holds", False: "MISSED", None: "-"}[bound["holds"]]
+        print("gpu_check:", verdict, bound["bound"])
+    if given.group == "rehearsal":
         return int(any("error" in row for row in rows))
-    return int(not all(holds for _, holds in bounds))
+    return int(not all(bound["holds"] for bound in bounds))
 
 
 if __name__ == "__main__":

@@ -51,7 +51,7 @@ def compile_kernels(compiler, source, architecture):
 
 @pytest.mark.parametrize("architecture", ["sm_80", "sm_90"])
 def test_all_kernels_compile_without_a_warning(architecture):
-    source = (CPP / "snowshed/methods/mpm/gpu/kernels.cuh").read_bytes()
+    source = (CPP / "snowshed/methods/mpm/gpu/energy_kernels.cuh").read_bytes()
     result, log = compile_kernels(runtime_compiler(), source, architecture)
     assert result == 0, log
     assert "warning" not in log

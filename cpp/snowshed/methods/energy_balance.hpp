@@ -23,6 +23,12 @@ struct EnergyBalance {
     return plastic + friction + sticking + impact + transfer + sleep + damping;
   }
   double residual() const { return stored() + spent() - added; }
+
+  /// Records that snow with this kinetic energy fell asleep.
+  void put_to_sleep(double energy) {
+    sleep += energy;
+    kinetic -= energy;
+  }
 };
 
 /// Energies as tables have them: name with unit, J.

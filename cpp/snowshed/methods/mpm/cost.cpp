@@ -122,7 +122,7 @@ CostEstimate estimate_cost(const Settings& n, const SceneView& scene, const Scen
   estimate.bytes = per_particle * estimate.total_particles + per_voxel * voxels +
                    surroundings_bytes(n, outline, voxels);
   if (n.device != DeviceSetting::cpu)
-    estimate.card_bytes = bytes_on_gpu(n, estimate.total_particles);
+    estimate.card_bytes = bytes_on_gpu(n, scene.output.energy, estimate.total_particles);
   return estimate;
 }
 

@@ -14,8 +14,9 @@ std::string gigabytes(double bytes) { return show_briefly(bytes / 1e9) + " GB"; 
 std::shared_ptr<snowshed::gpu::Device> open_card(const Options& options, double particles) {
   const snowshed::gpu::Card card = snowshed::gpu::find_card();
   require_supported_on_gpu(options);
-  std::shared_ptr<snowshed::gpu::Device> device = snowshed::gpu::open_device(card, gpu_kernels());
-  require_memory(*device, options.settings, particles);
+  std::shared_ptr<snowshed::gpu::Device> device =
+      snowshed::gpu::open_device(card, gpu_kernels(options.energy));
+  require_memory(*device, options, particles);
   return device;
 }
 
@@ -29,8 +30,9 @@ DeviceChoice fall_back(const std::string& reason) {
 
 }  // namespace
 
-void require_memory(const snowshed::gpu::Device& card, const Settings& settings, double particles) {
-  const double needed = bytes_on_gpu(settings, particles), free = double(card.free_bytes());
+void require_memory(const snowshed::gpu::Device& card, const Options& options, double particles) {
+  const double needed = bytes_on_gpu(options.settings, options.energy, particles),
+               free = double(card.free_bytes());
   if (needed > free)
     throw snowshed::gpu::Unavailable(show_rounded(particles) + " particles need " +
                                      gigabytes(needed) + " on the card; free on the " +

@@ -14,6 +14,6 @@ DeviceChoice choose_device(const Options&, double particles);
 
 /// Throws snowshed::gpu::Unavailable, which names both numbers, if a card has too little memory
 /// left.
-void require_memory(const snowshed::gpu::Device& card, const Settings&, double particles);
+void require_memory(const snowshed::gpu::Device& card, const Options&, double particles);
 
 }  // namespace snowshed::methods::mpm

@@ -5,6 +5,7 @@
 
 #include "snowshed/core/parallel.hpp"
 #include "snowshed/geometry/bounds.hpp"
+#include "snowshed/methods/mpm/energy_rule.hpp"
 #include "snowshed/methods/mpm/index_box.hpp"
 
 namespace snowshed::methods::mpm {
@@ -256,7 +257,7 @@ void EventContacts<T, D>::exchange(const StepParameters<T>& step, T friction, Gr
     capacity += i.capacity();
   }
   const T share = used_share(excess, capacity);
-  NodeStats& stats = grid.node_stats[begin->first];
+  NodeEnergies& energy = grid.node_stats[begin->first].energy;
   for (const EventContact<T>* c = begin; c != end; ++c) {
     const EventImpulses<T, D>& i = impulses[c - begin];
     if (!i.any()) continue;
@@ -267,10 +268,8 @@ void EventContacts<T, D>::exchange(const StepParameters<T>& step, T friction, Gr
       const T per_mass = (field == 0 ? T(-1) : T(1)) / sum[0];
       for (int d = 0; d < D; ++d) {
         const T pushed = per_mass * i.push * c->normal[d], rubbed = per_mass * rubbing * i.slip[d];
-        const double mean =
-            0.5 * (double(sum[1 + d]) / double(sum[0]) + double(node[d] + pushed + rubbed));
-        stats.impact -= double(sum[0]) * double(pushed) * mean;
-        stats.friction -= double(sum[0]) * double(rubbed) * mean;
+        add_exchange(double(sum[0]), double(sum[1 + d]), double(pushed), double(rubbed),
+                     double(node[d] + pushed + rubbed), energy);
         node[d] += pushed + rubbed;
         node[node_values / 2 + d] += pushed + rubbed;
       }

@@ -235,6 +235,7 @@ void GpuSolver::end_batch(const Control& c) {
   totals.undamped_time = c.undamped_time;
   totals.counters.particle_updates += steps * awake;
   totals.slept_updates += steps * (std::int64_t(size()) - awake);
+  snow_.replay_energies(host_->state_for_device(), steps);
   record_forces(steps);
   touch_.travel(c.travel);
   since_sort_ += int(steps);
@@ -316,6 +317,7 @@ void GpuSolver::update_sleep() {
   const std::vector<std::int32_t> asleep =
       state.sleep.update(state.layout, time(), steps_between_checks, time_step(), probe);
   if (asleep.empty() && awake == state.sleep.awake_particles()) return;
+  state.totals.energy.put_to_sleep(snow_.kinetic_energy(asleep));
   snow_.stop(asleep);
   snow_.upload_sleep(state);
   if (since_sort_ >= 0) snow_.scatter(control_);

@@ -20,7 +20,6 @@ std::vector<Unsupported> unsupported_on_gpu(const Options& o) {
   refuse(o.dimension != 3, "/dimension", "is 2", "3");
   refuse(n.precision != Precision::float32, "/numerics/precision", "is \"double\"", "\"float\"");
   refuse(n.basis != Basis::quadratic, "/numerics/basis", "is \"cubic\"", "\"quadratic\"");
-  refuse(o.energy, "/output/energy", "is true", "false");
   const bool own_friction =
       std::any_of(o.obstacles.begin(), o.obstacles.end(),
                   [](const Obstacle& obstacle) { return obstacle.law.coefficient != nullptr; });
@@ -40,7 +39,7 @@ void require_supported_on_gpu(const Options& options) {
 
 /// The state, the indices of strays and of the order, and a spare array; and the nodes, for blocks
 /// that are not quite full, of a slab that is five cells thick.
-double bytes_on_gpu(const Settings& n, double particles) {
+double bytes_on_gpu(const Settings& n, bool energy, double particles) {
   constexpr double indices = 8, spare = 4;
   const double state = 15 * 4 + 4 + 2 + 1 + (n.has_affine() ? 9 * 4 : 0);
   constexpr double node = 2 * 64 + 3 * 16 + 8 + 0.4, nodes_per_particle = 0.8;
@@ -53,12 +52,18 @@ double bytes_on_gpu(const Settings& n, double particles) {
     radius = 4;
     event_node = 24 + 2 * 27 * 4 / 64.0;  // a contact; the blocks around those of a pair
   }
-  return particles * (state + indices + spare + radius +
-                      (node + coarse_node + event_node) * nodes_per_particle);
+  double energies = 0, node_energies = 0;
+  if (energy) {
+    energies = sizeof(ParticleEnergies);
+    node_energies = double(sizeof(NodeEnergies) + sizeof(ParticleEnergies)) / 64;
+  }
+  return particles * (state + indices + spare + radius + energies +
+                      (node + coarse_node + event_node + node_energies) * nodes_per_particle);
 }
 
-snowshed::gpu::KernelProgram gpu_kernels() {
-  return {"kernels of mpm", "#include \"snowshed/methods/mpm/gpu/kernels.cuh\"\n"};
+snowshed::gpu::KernelProgram gpu_kernels(bool energy) {
+  const std::string file = energy ? "energy_kernels.cuh" : "kernels.cuh";
+  return {"kernels of mpm", "#include \"snowshed/methods/mpm/gpu/" + file + "\"\n"};
 }
 
 }  // namespace snowshed::methods::mpm

@@ -20,10 +20,11 @@ std::vector<Unsupported> unsupported_on_gpu(const Options&);
 /// Throws InputError, at the first of them with a text on all, if there are any.
 void require_supported_on_gpu(const Options&);
 
-/// Memory of a card that this many particles need with their grid, bytes.
-double bytes_on_gpu(const Settings&, double particles);
+/// Memory of a card that this many particles need with their grid, bytes. `energy`: whether the
+/// balance of energy is kept.
+double bytes_on_gpu(const Settings&, bool energy, double particles);
 
-/// The kernels of a simulation.
-snowshed::gpu::KernelProgram gpu_kernels();
+/// The kernels of a simulation, with the balance of energy or without it.
+snowshed::gpu::KernelProgram gpu_kernels(bool energy);
 
 }  // namespace snowshed::methods::mpm

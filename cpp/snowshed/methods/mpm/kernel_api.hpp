@@ -13,6 +13,7 @@
 #include "snowshed/methods/mpm/contact_rule.hpp"
 #include "snowshed/methods/mpm/settings.hpp"
 #include "snowshed/methods/mpm/snow_constants.hpp"
+#include "snowshed/methods/mpm/step_energies.hpp"
 
 namespace snowshed::methods::mpm {
 
@@ -116,9 +117,7 @@ struct BlockStats {
   bool escaped = false;       // a particle left the tile: the sums are not valid, sort first
   std::int32_t unsound = -1;  // a particle strained beyond `elastic_strain_limit`, or not finite
   double elastic_strain = 0;  // elastic strain of that particle
-  double kinetic = 0, elastic = 0, plastic = 0;  // J; with the energy balance only
-  double damping = 0;       // J, kinetic energy that damping towards the average took
-  double stress_power = 0;  // W, power of the new stresses in the motion of this step
+  ParticleEnergies energy{};  // with the energy balance only
 
   /// Statistics of particles of which only the reach is known.
   static BlockStats reaching(int reach) {
@@ -130,11 +129,8 @@ struct BlockStats {
 
 /// A kernel's report on one block of nodes.
 struct NodeStats {
-  double low[3], high[3];  // bounds of the new velocities; low > high: no snow here
-  // Energy of the grid, J: before forces, after contact.
-  double kinetic_before = 0, kinetic_after = 0;
-  double friction = 0, sticking = 0, impact = 0;  // energy that contact took, J
-  double stress_work = 0;               // J, by the stresses at the velocities before the step
+  double low[3], high[3];               // bounds of the new velocities; low > high: no snow here
+  NodeEnergies energy{};                // contact between events; the rest with the balance only
   double impulse[3] = {0.0, 0.0, 0.0};  // N s, by all contacts on the snow, if it is recorded
 };
 

@@ -192,8 +192,7 @@ void SolverImpl<T, D>::update_sleep() noexcept {
   const auto& newly_asleep =
       state_.sleep.update(state_.layout, time(), steps_between_checks, time_step(), block_probe());
   for (std::int32_t b : newly_asleep) {
-    state_.totals.energy.sleep += workspace_.grid.block_stats[b].kinetic;
-    state_.totals.energy.kinetic -= workspace_.grid.block_stats[b].kinetic;
+    state_.totals.energy.put_to_sleep(workspace_.grid.block_stats[b].energy.kinetic);
     state_.particles.zero_velocity(state_.layout.first[b], state_.layout.first[b + 1]);
     scatter_block(step, view, b);
   }

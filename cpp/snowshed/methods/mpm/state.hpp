@@ -26,7 +26,7 @@ inline constexpr double contact_tolerance = 0.02;
 struct StepTotals {
   double time = 0, dt = 0;  // s; dt is that of the last step
   double speed = 0;         // m/s, of the fastest particle
-  double stress_power = 0;  // W, see SolverImpl::update_energy_balance
+  double stress_power = 0;  // W, see `add_step`
   std::uint32_t next_id = 0;
   StepCounters counters;
   std::int64_t sorts = 0;  // sorts of the particles by blocks
@@ -36,6 +36,9 @@ struct StepTotals {
   double undamped_time = 0;  // s
   EnergyBalance energy;      // the gravitational part as it was when snow was last added
 };
+
+/// Adds a step that was taken to the balance of energy.
+void add_step(StepTotals& totals, const StepEnergies& step) noexcept;
 
 /// The record of forces. Sleeping snow takes part in no step, so it goes on pressing with its
 /// contacts' mean forces.

@@ -72,15 +72,20 @@ TEST(DeviceChoice, TheErrorListsAllThatACardDoesNotCompute) {
 TEST(DeviceChoice, ParticlesThatDoNotFitAreRefusedWithBothNumbers) {
   const FakeCuda fake;  // with 1 MB
   const snowshed::gpu::CudaDevice card(fake.driver(), 0, "Fake card", "machine code");
-  EXPECT_NO_THROW(require_memory(card, Settings(), 4000));
-  EXPECT_EQ(message_of<snowshed::gpu::Unavailable>([&] { require_memory(card, Settings(), 1e6); }),
+  EXPECT_NO_THROW(require_memory(card, Options(), 4000));
+  EXPECT_EQ(message_of<snowshed::gpu::Unavailable>([&] { require_memory(card, Options(), 1e6); }),
             "1e+06 particles need 0.227 GB on the card; free on the Fake card are 0.001 GB; give "
             "fewer particles or a larger dx");
-  Settings affine;
-  affine.transfer = Transfer::affine_flip;
+  Options affine, balance;
+  affine.settings.transfer = Transfer::affine_flip;
   EXPECT_EQ(message_of<snowshed::gpu::Unavailable>([&] {
               require_memory(card, affine, 1e6);
             }).find("1e+06 particles need 0.263 GB"),
+            0u);
+  balance.energy = true;
+  EXPECT_EQ(message_of<snowshed::gpu::Unavailable>([&] {
+              require_memory(card, balance, 1e6);
+            }).find("1e+06 particles need 0.268 GB"),
             0u);
 }
 

@@ -162,12 +162,13 @@ void DeviceEvents::launch_search(ParticleLaunch l, const DeviceArray<std::int32_
 }
 
 void DeviceEvents::launch_step(const GridArrays& grid, const ContactArrays& contacts,
-                               const ForceArrays& forces, Control* control,
-                               const Constants& constants) const {
+                               const ForceArrays& forces, const EnergyArrays& energy,
+                               Control* control, const Constants& constants) const {
   if (!meet()) return;
-  launch(device_, "overlap_step", {unsigned(active_overlaps_.size()), node_threads}, grid, view(),
-         static_cast<const std::int32_t*>(active_overlaps_.data()), contacts, forces, control,
-         constants);
+  launch(device_, energy.nodes ? "overlap_step_energy" : "overlap_step",
+         {unsigned(active_overlaps_.size()), node_threads}, grid, view(),
+         static_cast<const std::int32_t*>(active_overlaps_.data()), contacts, forces, energy,
+         control, constants);
 }
 
 EventArrays DeviceEvents::view() const {

@@ -30,8 +30,8 @@ class DeviceEvents {
   /// enough.
   void search(const ParticleLaunch&, const Control*, const Constants&) const;
   /// Queues the steps of the nodes of these positions.
-  void launch_step(const GridArrays&, const ContactArrays&, const ForceArrays&, Control*,
-                   const Constants&) const;
+  void launch_step(const GridArrays&, const ContactArrays&, const ForceArrays&, const EnergyArrays&,
+                   Control*, const Constants&) const;
 
   /// The blocks of nodes that take part in a step and lie at no such position.
   const DeviceArray<std::int32_t>& lone_blocks() const { return lone_; }

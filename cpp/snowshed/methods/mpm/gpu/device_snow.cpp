@@ -31,6 +31,7 @@ DeviceSnow::DeviceSnow(snowshed::gpu::Device& device, const Model<float, 3>& mod
       forces_(device, model.options.forces ? model.boundary.size() : 0),
       average_(device, model.options.settings),
       events_(device, model),
+      energy_(device, model.options.energy),
       first_(device),
       around_(device),
       order_(device),
@@ -124,6 +125,7 @@ void DeviceSnow::upload_layout(HostState& state) {
   fastest_.clear();
   average_.connect(state);
   events_.connect(state);
+  energy_.connect(state);
   upload_contacts(state);
   upload_sleep(state);
 }
@@ -201,9 +203,11 @@ void DeviceSnow::scatter(Control& control) {
   integers_.clear();
   launch_particles("scatter", awake_, integers_.data());
   launch_strays("scatter_strays", integers_.data());
+  energy_.add_particles(awake_, first_, nullptr);
   if (asleep_.size() == 0) return;
   asleep_.clear();
   launch_particles("scatter", asleep_blocks_, asleep_.data());
+  energy_.add_particles(asleep_blocks_, first_, nullptr);
   if (!average_.exists()) return;
   average_.clear_asleep();
   launch_average(asleep_blocks_, true);
@@ -243,10 +247,12 @@ void DeviceSnow::launch_round() {
            static_cast<const Control*>(control_.data()));
   events_.search(launch_of(awake_, integers_.data()), control_.data(), constants_);
   const DeviceArray<std::int32_t>& lone = events_.meet() ? events_.lone_blocks() : active_;
-  launch(device_, "node_step", {unsigned(lone.size()), node_threads}, grid(),
-         static_cast<const std::int32_t*>(lone.data()), contacts(), forces_.view(), control_.data(),
-         constants_);
-  events_.launch_step(grid(), contacts(), forces_.view(), control_.data(), constants_);
+  launch(device_, energy_.is_kept() ? "node_step_energy" : "node_step",
+         {unsigned(lone.size()), node_threads}, grid(),
+         static_cast<const std::int32_t*>(lone.data()), contacts(), forces_.view(), energy_.view(),
+         control_.data(), constants_);
+  events_.launch_step(grid(), contacts(), forces_.view(), energy_.view(), control_.data(),
+                      constants_);
   launch(device_, "probe", {unsigned(awake_.size()), particle_threads},
          launch_of(awake_, integers_.data()), control_.data(), constants_);
   launch(device_, "judge_step", {1, 1}, control_.data(), constants_);
@@ -260,12 +266,14 @@ void DeviceSnow::launch_round() {
   }
   launch_particles("particle_step", awake_, integers_.data());
   launch_strays("stray_step", integers_.data());
+  energy_.add_particles(awake_, first_, control_.data());
+  energy_.record(active_, control_.data());
   launch(device_, "next_step", {1, 1}, control_.data(), constants_);
 }
 
 std::string DeviceSnow::named(const char* kernel) const {
   return std::string(kernel) + (model_.material_per_particle ? "_several" : "") +
-         (model_.has_affine() ? "_affine" : "");
+         (model_.has_affine() ? "_affine" : "") + (energy_.is_kept() ? "_energy" : "");
 }
 
 void DeviceSnow::launch_particles(const char* kernel, const DeviceArray<std::int32_t>& list,
@@ -308,7 +316,8 @@ ParticleLaunch DeviceSnow::launch_of(const DeviceArray<std::int32_t>& list,
   return {particles_.view(), {first_.data(), around_.data()},
           list.data(),       grid(),
           strays_.data(),    integers,
-          average_.view(),   fastest_.data()};
+          average_.view(),   fastest_.data(),
+          energy_.view()};
 }
 
 GridArrays DeviceSnow::grid() const {
@@ -324,7 +333,8 @@ ContactArrays DeviceSnow::contacts() const {
 }
 
 std::size_t DeviceSnow::bytes() const {
-  std::size_t sum = particles_.bytes() + forces_.bytes() + average_.bytes() + events_.bytes();
+  std::size_t sum =
+      particles_.bytes() + forces_.bytes() + average_.bytes() + events_.bytes() + energy_.bytes();
   const auto add = [&](const auto&... arrays) { sum += (std::size_t(0) + ... + arrays.bytes()); };
   add(first_, around_, order_, strays_, awake_, asleep_blocks_, active_, idle_, listed_, integers_,
       asleep_, carried_, force_, velocity_, change_, ranges_, first_contact_, contacts_, motions_,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "snowshed/methods/mpm/gpu/device_average.hpp"
+#include "snowshed/methods/mpm/gpu/device_energy.hpp"
 #include "snowshed/methods/mpm/gpu/device_events.hpp"
 #include "snowshed/methods/mpm/gpu/device_forces.hpp"
 #include "snowshed/methods/mpm/gpu/device_particles.hpp"
@@ -52,6 +53,13 @@ class DeviceSnow {
 
   /// Gives the host's record of forces the `count` steps of the last run.
   void replay_forces(HostState& state, std::int64_t count) const { forces_.replay(state, count); }
+  /// Gives the host's balance of energy these steps.
+  void replay_energies(HostState& state, std::int64_t count) const { energy_.replay(state, count); }
+  /// Returns the kinetic energy of some blocks of particles after the last step, J; zero without
+  /// the balance of energy.
+  double kinetic_energy(const std::vector<std::int32_t>& blocks) const {
+    return energy_.kinetic(blocks);
+  }
   /// Returns the ranges of the cells of sleeping blocks; the other entries are undefined.
   std::vector<CellRange> cell_ranges_asleep() { return cell_ranges(asleep_blocks_); }
 
@@ -80,6 +88,7 @@ class DeviceSnow {
   DeviceForces forces_;
   DeviceAverage average_;
   DeviceEvents events_;
+  DeviceEnergy energy_;
   DeviceArray<std::int32_t> first_, around_, order_, strays_;
   DeviceArray<float> fastest_;
   DeviceArray<std::int32_t> awake_, asleep_blocks_, active_, idle_, listed_;

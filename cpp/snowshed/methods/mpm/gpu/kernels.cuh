@@ -1,5 +1,5 @@
-// All kernels of the material point method on a graphics card. The course of a simulation there is
-// told in docs/develop/gpu.md.
+// All kernels of the material point method on a graphics card, without the balance of energy. The
+// course of a simulation there is told in docs/develop/gpu.md.
 #pragma once
 
 #include "snowshed/methods/mpm/gpu/events.cuh"

@@ -3,12 +3,14 @@
 #pragma once
 
 #include "snowshed/methods/mpm/contact_rule.hpp"
+#include "snowshed/methods/mpm/gpu/energy.cuh"
 #include "snowshed/methods/mpm/gpu/forces.cuh"
 #include "snowshed/methods/mpm/gpu/sums.cuh"
 
 namespace snowshed::methods::mpm::gpu {
 
-struct NodeMemory {
+template <bool energy>
+struct NodeMemory : RecordMemory<energy> {
   float velocity[3][nodes_of_block], mass[nodes_of_block];
   std::int32_t low[3], high[3];
   double impulse[3][nodes_of_block];  // of the contacts of a thread
@@ -69,44 +71,54 @@ __device__ inline Quad accelerate(const GridArrays& grid, int n, const NodeTry& 
   return carried;
 }
 
-/// Applies a contact to the velocity of its node.
-__device__ inline void hold(const ContactArrays& contacts, Contact<float>& c, float mass,
-                            const FrictionRates<float>& rates, NodeMemory& m) {
+/// Applies a contact to the velocity of its node, in a block whose first node is `first_node`.
+template <bool energy>
+__device__ inline void hold(const GridArrays& grid, int first_node, const ContactArrays& contacts,
+                            Contact<float>& c, const NodeTry& node_try, NodeMemory<energy>& m,
+                            NodeRecord<energy>& record) {
+  const float mass = m.mass[c.node];
   if (!(mass > min_node_mass<float> && (c.acts || c.normal_impulse > 0))) {
     c.next_normal_impulse = 0;
     return;
   }
   const int o = c.obstacle;
-  if (Condition(contacts.conditions[o]) == Condition::sticky) {
-    for (int d = 0; d < 3; ++d) m.velocity[d][c.node] = c.velocity[d];
-    return;
-  }
   float node[3];
   for (int d = 0; d < 3; ++d) node[d] = m.velocity[d][c.node];
-  const auto coefficient = [&](float, float) { return contacts.friction[o]; };
-  push_and_rub<3>(rates, c, mass, contacts.friction_shares[o], coefficient, node);
+  typename NodeRecord<energy>::Motion motion(grid, first_node + c.node, node, node_try.dt);
+  if (Condition(contacts.conditions[o]) == Condition::sticky) {
+    for (int d = 0; d < 3; ++d) node[d] = c.velocity[d];
+    record.stick(motion, node);
+  } else {
+    const auto coefficient = [&](float, float) { return contacts.friction[o]; };
+    const ContactOutcome<float> outcome =
+        push_and_rub<3>(node_try.rates, c, mass, contacts.friction_shares[o], coefficient, node);
+    record.push_and_rub(motion, node, c.normal, outcome);
+  }
   for (int d = 0; d < 3; ++d) m.velocity[d][c.node] = node[d];
 }
 
 /// Applies a contact and records its impulse.
-__device__ inline void hold_and_record(const ContactArrays& contacts, float mass,
-                                       const FrictionRates<float>& rates, bool first_try,
+template <bool energy>
+__device__ inline void hold_and_record(const GridArrays& grid, int first_node,
+                                       const ContactArrays& contacts, const NodeTry& node_try,
                                        ContactForce<float>& force, Contact<float>& c,
-                                       NodeMemory& m) {
+                                       NodeMemory<energy>& m, NodeRecord<energy>& record) {
   float impulse[3];
   for (int d = 0; d < 3; ++d) impulse[d] = m.velocity[d][c.node];
-  hold(contacts, c, mass, rates, m);
+  hold(grid, first_node, contacts, c, node_try, m, record);
   for (int d = 0; d < 3; ++d) {
-    impulse[d] = mass * (m.velocity[d][c.node] - impulse[d]);
+    impulse[d] = m.mass[c.node] * (m.velocity[d][c.node] - impulse[d]);
     m.impulse[d][threadIdx.x] += double(impulse[d]);
   }
-  record_impulse(force, impulse, first_try);
+  record_impulse(force, impulse, node_try.first);
 }
 
 /// Applies the contacts of a block.
-__device__ inline void hold_block(const ContactArrays& contacts, const ForceArrays& forces,
-                                  int block, bool first_try, const FrictionRates<float>& rates,
-                                  NodeMemory& m) {
+template <bool energy>
+__device__ inline void hold_block(const GridArrays& grid, const ContactArrays& contacts,
+                                  const ForceArrays& forces, int block, const NodeTry& node_try,
+                                  NodeMemory<energy>& m, NodeRecord<energy>& record) {
+  const int first_node = block * nodes_of_block;
   const int end = contacts.first[block + 1];
   for (int begin = contacts.first[block]; begin < end;) {
     const int own = begin + int(threadIdx.x);
@@ -114,11 +126,11 @@ __device__ inline void hold_block(const ContactArrays& contacts, const ForceArra
         own < end && contacts.contacts[own].obstacle == contacts.contacts[begin].obstacle;
     if (same_obstacle) {
       Contact<float> c = contacts.contacts[own];
-      if (first_try) c.normal_impulse = c.next_normal_impulse;  // the last step was taken
+      if (node_try.first) c.normal_impulse = c.next_normal_impulse;  // the last step was taken
       if (forces.contacts)
-        hold_and_record(contacts, m.mass[c.node], rates, first_try, forces.contacts[own], c, m);
+        hold_and_record(grid, first_node, contacts, node_try, forces.contacts[own], c, m, record);
       else
-        hold(contacts, c, m.mass[c.node], rates, m);
+        hold(grid, first_node, contacts, c, node_try, m, record);
       contacts.contacts[own].normal_impulse = c.normal_impulse;
       contacts.contacts[own].next_normal_impulse = c.next_normal_impulse;
     }
@@ -131,8 +143,10 @@ __device__ inline void hold_block(const ContactArrays& contacts, const ForceArra
 }
 
 /// Records the range of the velocities of a block.
+template <bool energy>
 __device__ inline void record_range(const GridArrays& grid, int block, bool has_snow,
-                                    const float (&velocity)[3], NodeMemory& m, Control* control) {
+                                    const float (&velocity)[3], NodeMemory<energy>& m,
+                                    Control* control) {
   const int t = int(threadIdx.x);
   if (has_snow)
     for (int d = 0; d < 3; ++d) {
@@ -150,10 +164,12 @@ __device__ inline void record_range(const GridArrays& grid, int block, bool has_
 
 /// Applies the contacts with obstacles to the velocities of a block, and writes them. `carried` and
 /// `velocity` are those of the thread's node.
+template <bool energy>
 __device__ inline void finish_block(const GridArrays& grid, const ContactArrays& contacts,
                                     const ForceArrays& forces, int block, const NodeTry& node_try,
-                                    const Quad& carried, float (&velocity)[3], NodeMemory& m,
-                                    Control* control) {
+                                    const Quad& carried, float (&velocity)[3],
+                                    const EnergyArrays& all, NodeMemory<energy>& m,
+                                    NodeRecord<energy>& record, Control* control) {
   const int t = int(threadIdx.x), n = block * nodes_of_block + t;
   if (t < 3) {
     m.low[t] = ordered(3e38f);
@@ -165,7 +181,7 @@ __device__ inline void finish_block(const GridArrays& grid, const ContactArrays&
   }
   m.mass[t] = carried.x;
   __syncthreads();
-  hold_block(contacts, forces, block, node_try.first, node_try.rates, m);
+  hold_block(grid, contacts, forces, block, node_try, m, record);
   float old[3] = {};
   if (has_snow(carried)) {
     const float momentum[3] = {carried.y, carried.z, carried.w};
@@ -173,31 +189,44 @@ __device__ inline void finish_block(const GridArrays& grid, const ContactArrays&
       velocity[d] = m.velocity[d][t];
       old[d] = momentum[d] / carried.x;
     }
+    record.end(grid, n, velocity, node_try.dt);
   }
+  m.add_up_block(record, all.nodes, block);
   grid.velocity[n] = {velocity[0], velocity[1], velocity[2], velocity[0] - old[0]};
   grid.change[n] = {velocity[1] - old[1], velocity[2] - old[2]};
   record_range(grid, block, has_snow(carried), velocity, m, control);
 }
 
-}  // namespace snowshed::methods::mpm::gpu
-
-/// Finds the new velocities of the listed blocks of nodes.
-extern "C" __global__ void __launch_bounds__(64)
-    node_step(snowshed::methods::mpm::gpu::GridArrays grid, const std::int32_t* list,
-              snowshed::methods::mpm::gpu::ContactArrays contacts,
-              snowshed::methods::mpm::gpu::ForceArrays forces,
-              snowshed::methods::mpm::gpu::Control* control,
-              snowshed::methods::mpm::gpu::Constants k) {
-  using namespace snowshed::methods::mpm;
-  using namespace snowshed::methods::mpm::gpu;
-  __shared__ NodeMemory m;
+/// Finds the new velocities of a block of nodes.
+template <bool energy>
+__device__ inline void step_nodes(const GridArrays& grid, int block, const ContactArrays& contacts,
+                                  const ForceArrays& forces, const EnergyArrays& all,
+                                  Control* control, const Constants& k, NodeMemory<energy>& m) {
   if (control->phase != Phase::trying) return;
   const NodeTry node_try(*control, k);
-  const int block = list[blockIdx.x], n = block * nodes_of_block + int(threadIdx.x);
+  const int n = block * nodes_of_block + int(threadIdx.x);
   float velocity[3];
   const Quad carried = accelerate(grid, n, node_try, k, velocity);
-  finish_block(grid, contacts, forces, block, node_try, carried, velocity, m, control);
+  NodeRecord<energy> record;
+  finish_block(grid, contacts, forces, block, node_try, carried, velocity, all, m, record, control);
 }
+
+}  // namespace snowshed::methods::mpm::gpu
+
+// The step of the listed blocks of nodes, with the balance of energy or without it.
+#define SNOWSHED_NODE_KERNEL(name, energy)                                                       \
+  extern "C" __global__ void __launch_bounds__(64) name(                                         \
+      snowshed::methods::mpm::gpu::GridArrays grid, const std::int32_t* list,                    \
+      snowshed::methods::mpm::gpu::ContactArrays contacts,                                       \
+      snowshed::methods::mpm::gpu::ForceArrays forces,                                           \
+      snowshed::methods::mpm::gpu::EnergyArrays all,                                             \
+      snowshed::methods::mpm::gpu::Control* control, snowshed::methods::mpm::gpu::Constants k) { \
+    using namespace snowshed::methods::mpm::gpu;                                                 \
+    __shared__ NodeMemory<energy> memory;                                                        \
+    step_nodes<energy>(grid, list[blockIdx.x], contacts, forces, all, control, k, memory);       \
+  }
+
+SNOWSHED_NODE_KERNEL(node_step, false)
 
 /// Finds the share of friction that remains for each obstacle with slip, a thread block to an
 /// obstacle; see Contacts::find_friction_shares.

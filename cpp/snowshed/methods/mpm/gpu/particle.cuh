@@ -2,6 +2,7 @@
 #pragma once
 
 #include "snowshed/methods/mpm/gpu/average.cuh"
+#include "snowshed/methods/mpm/gpu/energy.cuh"
 #include "snowshed/methods/mpm/kernels/stress.hpp"
 
 namespace snowshed::methods::mpm::gpu {
@@ -9,10 +10,11 @@ namespace snowshed::methods::mpm::gpu {
 using Strain = material::Sym<float, 3>;
 
 /// Variant of the kernels of particles: one snow or several; FLIP, or a transfer with an affine
-/// velocity. As on the processor, all but the simplest have the regularised law.
-template <bool several_, bool affine_>
+/// velocity; with the balance of energy or without it. As on the processor, all but the simplest
+/// have the regularised law.
+template <bool several_, bool affine_, bool energy_ = false>
 struct Variant {
-  static constexpr bool several = several_, affine = affine_;
+  static constexpr bool several = several_, affine = affine_, energy = energy_;
   static constexpr bool regularised = several || affine;
   using Law = material::CamClayLaw<float, regularised>;
 };
@@ -69,6 +71,11 @@ struct AffineVelocity {
     for (int k = 0; k < 9; ++k) all = ::fmaxf(all, ::fabsf(c[k]));
     return all;
   }
+  __device__ double squared() const {
+    double sum = 0;
+    for (int k = 0; k < 9; ++k) sum += double(c[k]) * double(c[k]);
+    return sum;
+  }
 };
 template <>
 struct AffineVelocity<false> {
@@ -77,6 +84,7 @@ struct AffineVelocity<false> {
   __device__ void take(const NodeMeans<false>&, float) {}
   __device__ void give(Given<false>&, float, float) const {}
   __device__ float largest() const { return 0; }
+  __device__ double squared() const { return 0; }
 };
 
 template <class Variant>
@@ -85,6 +93,7 @@ struct ParticleState {
   float cell[3], velocity[3], plastic, mass;
   AffineVelocity<affine> spin;
   Strain be_minus_identity;
+  ParticleRecord<Variant::energy> record;
 
   __device__ void read_cell(const ParticleArrays& p, int i) {
 #pragma unroll
@@ -131,12 +140,24 @@ struct ParticleState {
                                      bool committed) {
     const typename Variant::Law law = law_of(snow);
     return stress_of(be_minus_identity, law.elastic, [&](material::PQ<float>& pq) {
-      return !committed && law.return_map(pq, plastic, overstress);
+      const material::PQ<float> trial = pq;
+      const bool changed = !committed && law.return_map(pq, plastic, overstress);
+      record.add_return(trial, pq, law.elastic, volume(snow));
+      return changed;
     });
+  }
+
+  /// Volume before any deformation, m3.
+  __device__ double volume(const MaterialConstants<float>& snow) const {
+    return double(mass) * double(snow.specific_volume);
   }
 
   __device__ float speed_squared() const {
     return velocity[0] * velocity[0] + velocity[1] * velocity[1] + velocity[2] * velocity[2];
+  }
+
+  __device__ void record_kinetic(double dx) {
+    record.add_kinetic(mass, velocity, spin.squared(), dx);
   }
 
   __device__ Given<affine> given(const Strain& tau, float specific_volume, float dx) const {
@@ -185,6 +206,7 @@ __device__ inline void move(ParticleState<Variant>& s, const NodeMeans<Variant::
   float change[3];
   find_damping(average, block, step.damping, s.cell, s.velocity, change);
   s.move(m, step);
+  s.record.add_damping(s.mass, s.velocity, change);
   for (int d = 0; d < 3; ++d) s.velocity[d] += change[d];
 }
 
@@ -203,6 +225,8 @@ __device__ inline Moved<Variant::affine> finish_particle(ParticleState<Variant>&
   const MaterialConstants<float> snow = snow_of<Variant>(p, i, k);
   const Stress<float, 3> stress = s.stress(snow, step.overstress, false);
   s.write(p, i);
+  s.record.add_stress_power(s.volume(snow), stress.tau, m.gradient, k.dx);
+  s.record_kinetic(k.dx);
   const float own = s.speed_squared(), u = m.value[0], v = m.value[1], w = m.value[2];
   largest.speed_squared = ::fmaxf(largest.speed_squared, ::fmaxf(own, u * u + v * v + w * w));
   largest.spin = ::fmaxf(largest.spin, s.spin.largest());

@@ -122,6 +122,18 @@ __device__ inline void empty_cells(StepMemory<affine>& m) {
   if (threadIdx.x == 0) m.cell_count = 0;
 }
 
+/// Returns the values that the nodes get from a particle that does not move.
+template <class Variant>
+__device__ inline Given<Variant::affine> give_at_rest(ParticleState<Variant>& s,
+                                                      const ParticleLaunch& l, int i,
+                                                      const Constants& k) {
+  const MaterialConstants<float> snow = snow_of<Variant>(l.particles, i, k);
+  const Strain tau = s.stress(snow, 0.0f, true).tau;
+  s.record_kinetic(k.dx);
+  s.record.write(l.energy, i);
+  return s.given(tau, snow.specific_volume, float(k.dx));
+}
+
 /// Takes the particles of a block through a step. With `moves` false, only adds them to the sums.
 template <class Variant, bool moves>
 __device__ inline void step_block(const ParticleLaunch& l, Control* control, const Constants& k,
@@ -165,11 +177,10 @@ __device__ inline void step_block(const ParticleLaunch& l, Control* control, con
           continue;
         }
         const auto moved = finish_particle(s, means, l.particles, i, k, step, control, largest);
+        s.record.write(l.energy, i);
         if (moved.sound) enter_cell(m, q, Place(s.cell), moved.given);
       } else {
-        const MaterialConstants<float> snow = snow_of<Variant>(l.particles, i, k);
-        const Strain tau = s.stress(snow, 0.0f, true).tau;
-        enter_cell(m, q, Place(s.cell), s.given(tau, snow.specific_volume, float(k.dx)));
+        enter_cell(m, q, Place(s.cell), give_at_rest(s, l, i, k));
       }
     }
     __syncthreads();
@@ -217,6 +228,7 @@ __device__ inline void step_strays(const ParticleLaunch& l, std::int32_t block_c
       move(s, means, l.average, low, step);
       Largest own;
       const auto moved = finish_particle(s, means, l.particles, i, k, step, control, own);
+      s.record.write(l.energy, i);
       raise(l.fastest + low, own.speed_squared);
       largest.speed_squared = ::fmaxf(largest.speed_squared, own.speed_squared);
       largest.spin = ::fmaxf(largest.spin, own.spin);
@@ -224,10 +236,7 @@ __device__ inline void step_strays(const ParticleLaunch& l, std::int32_t block_c
       if (!may_move_on(s.cell)) control->must_sort = 1;
       scatter_stray(Place(s.cell), moved.given, l.integers, around, units);
     } else {
-      const MaterialConstants<float> snow = snow_of<Variant>(l.particles, i, k);
-      const Strain tau = s.stress(snow, 0.0f, true).tau;
-      scatter_stray(Place(s.cell), s.given(tau, snow.specific_volume, float(k.dx)), l.integers,
-                    around, units);
+      scatter_stray(Place(s.cell), give_at_rest(s, l, i, k), l.integers, around, units);
     }
   }
   if (moves && largest.speed_squared > 0) raise(&control->speed_squared, largest.speed_squared);
@@ -249,37 +258,36 @@ extern "C" __global__ void __launch_bounds__(256)
   if (largest > control->spin) raise(&control->spin, largest);
 }
 
-// Kernels, each for every variant.
-#define SNOWSHED_PARTICLE_KERNELS(suffix, several, affine)                                       \
+// The kernels of a variant.
+#define SNOWSHED_PARTICLE_KERNELS(suffix, several, affine, energy)                               \
   extern "C" __global__ void __launch_bounds__(128) particle_step##suffix(                       \
       snowshed::methods::mpm::gpu::ParticleLaunch l,                                             \
       snowshed::methods::mpm::gpu::Control* control, snowshed::methods::mpm::gpu::Constants k) { \
     using namespace snowshed::methods::mpm::gpu;                                                 \
     __shared__ StepMemory<affine> memory;                                                        \
-    step_block<Variant<several, affine>, true>(l, control, k, memory);                           \
+    step_block<Variant<several, affine, energy>, true>(l, control, k, memory);                   \
   }                                                                                              \
   extern "C" __global__ void __launch_bounds__(128) scatter##suffix(                             \
       snowshed::methods::mpm::gpu::ParticleLaunch l,                                             \
       snowshed::methods::mpm::gpu::Control* control, snowshed::methods::mpm::gpu::Constants k) { \
     using namespace snowshed::methods::mpm::gpu;                                                 \
     __shared__ StepMemory<affine> memory;                                                        \
-    step_block<Variant<several, affine>, false>(l, control, k, memory);                          \
+    step_block<Variant<several, affine, energy>, false>(l, control, k, memory);                  \
   }                                                                                              \
   extern "C" __global__ void __launch_bounds__(64) stray_step##suffix(                           \
       snowshed::methods::mpm::gpu::ParticleLaunch l, std::int32_t block_count,                   \
       snowshed::methods::mpm::gpu::Control* control, snowshed::methods::mpm::gpu::Constants k) { \
     using namespace snowshed::methods::mpm::gpu;                                                 \
-    step_strays<Variant<several, affine>, true>(l, block_count, control, k);                     \
+    step_strays<Variant<several, affine, energy>, true>(l, block_count, control, k);             \
   }                                                                                              \
   extern "C" __global__ void __launch_bounds__(64) scatter_strays##suffix(                       \
       snowshed::methods::mpm::gpu::ParticleLaunch l, std::int32_t block_count,                   \
       snowshed::methods::mpm::gpu::Control* control, snowshed::methods::mpm::gpu::Constants k) { \
     using namespace snowshed::methods::mpm::gpu;                                                 \
-    step_strays<Variant<several, affine>, false>(l, block_count, control, k);                    \
+    step_strays<Variant<several, affine, energy>, false>(l, block_count, control, k);            \
   }
 
-SNOWSHED_PARTICLE_KERNELS(, false, false)
-SNOWSHED_PARTICLE_KERNELS(_several, true, false)
-SNOWSHED_PARTICLE_KERNELS(_affine, false, true)
-SNOWSHED_PARTICLE_KERNELS(_several_affine, true, true)
-#undef SNOWSHED_PARTICLE_KERNELS
+SNOWSHED_PARTICLE_KERNELS(, false, false, false)
+SNOWSHED_PARTICLE_KERNELS(_several, true, false, false)
+SNOWSHED_PARTICLE_KERNELS(_affine, false, true, false)
+SNOWSHED_PARTICLE_KERNELS(_several_affine, true, true, false)

@@ -6,6 +6,7 @@
 
 #include "snowshed/methods/mpm/contact.hpp"
 #include "snowshed/methods/mpm/snow_constants.hpp"
+#include "snowshed/methods/mpm/step_energies.hpp"
 
 namespace snowshed::methods::mpm::gpu {
 
@@ -61,6 +62,13 @@ struct ForceArrays {
   ContactForce<float>* contacts;  // one for each of the contacts
   float* blocks;                  // impulses (3) of blocks of nodes with a single obstacle, N s
   double* steps;                  // `recorded_values` of each step since the host looked
+};
+
+/// The balance of energy; null pointers if it is not kept.
+struct EnergyArrays {
+  ParticleEnergies *particles, *blocks;  // for each particle; sums over each block of them
+  NodeEnergies* nodes;                   // sums over each block of nodes in the step being tried
+  StepEnergies* steps;                   // sums over each step since the host looked
 };
 
 /// Values of a step in the record of forces: its end and its length (s), and the impulse (3) of
@@ -130,6 +138,7 @@ struct ParticleLaunch {
   unsigned long long* integers;  // sums to which the particles are added
   AverageArrays average;
   float* fastest;  // m2/s2, of the fastest snow of each block in the last step; asleep: 0
+  EnergyArrays energy;
 };
 
 /// Sums over the particles of a block, by which the host decides whether the block sleeps.

@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "snowshed/methods/mpm/energy_rule.hpp"
 #include "snowshed/methods/mpm/kernels/node.hpp"
 #include "snowshed/methods/mpm/kernels/tile.hpp"
 
@@ -158,68 +159,11 @@ struct NodeKernels {
                                     const T* velocities, NodeStats& stats) {
     for (int k = 0; k < block_nodes<D>; ++k) {
       const T* in = sums + k * node_values;
-      const T* out = velocities + k * node_values;
-      const double mass = double(in[0]);
-      if (!(mass > double(min_mass))) continue;
-      for (int d = 0; d < D; ++d) {
-        stats.kinetic_before += 0.5 * double(in[1 + d]) * double(in[1 + d]) / mass;
-        stats.kinetic_after += 0.5 * mass * double(out[d]) * double(out[d]);
-        stats.stress_work += double(step.dt) * double(in[4 + d]) * double(in[1 + d]) / mass;
-      }
+      if (in[0] > min_mass)
+        add_node_energy<D>(in[0], in + 1, in + 4, velocities + k * node_values, step.dt,
+                           stats.energy);
     }
   }
-
-  /// Returns the energy lost in a contact that set the velocity of a node, or one component of it.
-  /// Over the step the node's velocity went from `before` to `after`; without the contact it would
-  /// have been `free`. Particles move with `after`, so that stresses and gravity did the work m
-  /// (free - before) . after. The contact took the part of this work that did not become kinetic
-  /// energy.
-  static double loss_by_holding(T mass, const T (&before)[D], const T (&free)[D],
-                                const T (&after)[D]) {
-    double sum = 0;
-    for (int d = 0; d < D; ++d) {
-      const double b = before[d], f = free[d], a = after[d];
-      sum += (f - b) * a + 0.5 * (b * b - a * a);
-    }
-    return double(mass) * sum;
-  }
-
-  /// The same for a contact with a bounded impulse, in which the node still reacts to the stresses.
-  /// The energy lost is minus the work of the impulse at the mean velocity.
-  static double loss_by_impulse(T mass, const T (&before)[D], const T (&free)[D],
-                                const T (&after)[D]) {
-    double work = 0;
-    for (int d = 0; d < D; ++d)
-      work += 0.5 * (double(after[d]) - double(free[d])) * (double(before[d]) + double(after[d]));
-    return -double(mass) * work;
-  }
-
-  static double energy_loss(bool held, T mass, const T (&before)[D], const T (&free)[D],
-                            const T (&after)[D]) {
-    return held ? loss_by_holding(mass, before, free, after)
-                : loss_by_impulse(mass, before, free, after);
-  }
-
-  /// Returns the work of a node's stresses in the change of a velocity.
-  static double work(const StepParameters<T>& step, const T* sum, const T (&from)[D],
-                     const T (&to)[D]) {
-    double w = 0;
-    for (int d = 0; d < D; ++d) w += double(sum[4 + d]) * (double(to[d]) - double(from[d]));
-    return double(step.dt) * w;
-  }
-
-  /// The parts of a vector along a normal and across it.
-  struct NormalSplit {
-    T normal[D], tangential[D];
-    NormalSplit(const T (&v)[D], const T (&n)[3]) {
-      T along = 0;
-      for (int d = 0; d < D; ++d) along += v[d] * n[d];
-      for (int d = 0; d < D; ++d) {
-        normal[d] = along * n[d];
-        tangential[d] = v[d] - normal[d];
-      }
-    }
-  };
 
   /// Returns the coefficient of friction at a sliding speed and a normal impulse of the step.
   static T coefficient(const StepParameters<T>& step, const ContactLaw& law, T speed, T impulse) {
@@ -234,38 +178,26 @@ struct NodeKernels {
   /// Applies the condition of an obstacle (sticky, slip or separate) to a node.
   static void apply(const StepParameters<T>& step, Contact<T>& c, const ContactLaw& law,
                     const T* sum, Half& node, NodeStats& stats) {
-    const T mass = sum[0];
-    T before[D], free[D], after[D];
+    NodeMotion<T, D> motion;
+    motion.mass = sum[0];
     for (int d = 0; d < D; ++d) {
-      before[d] = sum[1 + d] / mass;
-      free[d] = node[d];
+      motion.impulse[d] = double(step.dt) * double(sum[4 + d]);
+      motion.before[d] = sum[1 + d] / sum[0];
+      motion.free[d] = node[d];
     }
     if (law.condition == Condition::sticky) {
-      for (int d = 0; d < D; ++d) node[d] = after[d] = c.velocity[d];
-      if constexpr (energy) {
-        stats.sticking += loss_by_holding(mass, before, free, after);
-        stats.stress_work += work(step, sum, before, after);
-      }
+      for (int d = 0; d < D; ++d) node[d] = motion.after[d] = c.velocity[d];
+      if constexpr (energy) add_sticking(motion, stats.energy);
       return;
     }
     const auto coefficient_at = [&](T speed, T impulse) {
       return coefficient(step, law, speed, impulse);
     };
     const FrictionRates<T> rates{step.friction_rate, step.friction_rate_per_speed};
-    const auto [lets_go, slip_share] =
-        push_and_rub<D>(rates, c, mass, step.friction_shares[c.obstacle], coefficient_at, node);
-    for (int d = 0; d < D; ++d) after[d] = node[d];
-    if constexpr (energy) {
-      const NormalSplit split_before(before, c.normal), split_free(free, c.normal),
-          split_after(after, c.normal);
-      stats.impact +=
-          energy_loss(!lets_go, mass, split_before.normal, split_free.normal, split_after.normal);
-      if (!lets_go) stats.stress_work += work(step, sum, split_before.normal, split_after.normal);
-      if (slip_share == T(1))
-        stats.stress_work += work(step, sum, split_before.tangential, split_after.tangential);
-      stats.friction += energy_loss(slip_share == T(1), mass, split_before.tangential,
-                                    split_free.tangential, split_after.tangential);
-    }
+    const ContactOutcome<T> outcome =
+        push_and_rub<D>(rates, c, sum[0], step.friction_shares[c.obstacle], coefficient_at, node);
+    for (int d = 0; d < D; ++d) motion.after[d] = node[d];
+    if constexpr (energy) add_push_and_rub(motion, c.normal, outcome, stats.energy);
   }
 };
 

@@ -5,6 +5,7 @@
 // the particle's state is read and written only once.
 #pragma once
 
+#include "snowshed/methods/mpm/energy_rule.hpp"
 #include "snowshed/methods/mpm/kernels/average_stencil.hpp"
 #include "snowshed/methods/mpm/kernels/material_lookup.hpp"
 #include "snowshed/methods/mpm/kernels/stress.hpp"
@@ -162,8 +163,8 @@ struct ParticleKernels {
     for (int d = 0; d < D; ++d) {
       if constexpr (energy)
         for (int l = 0; l < n; ++l)
-          stats.damping -= double(s.mass[l]) * double(change[d][l]) *
-                           (double(s.velocity[d][l]) + 0.5 * double(change[d][l]));
+          stats.energy.damping -= double(s.mass[l]) * double(change[d][l]) *
+                                  (double(s.velocity[d][l]) + 0.5 * double(change[d][l]));
       s.velocity[d] += change[d];
     }
   }
@@ -202,18 +203,14 @@ struct ParticleKernels {
     return true;
   }
 
-  /// Records the elastic energy p^2/(2 K_d) + q^2/(6 mu) per initial volume, and the plastic work
-  /// of the return, stress times plastic strain. (The loss of elastic energy from the trial would
-  /// also contain the square of each step's plastic strain. This error adds up over the steps.)
+  /// Records the elastic energy, and the plastic work of the return.
   void record_energy(const material::PQ<V>& trial, const material::PQ<V>& now, const V& mass,
                      const Snow& snow, int n) const {
     const auto& el = snow.law.elastic;
     for (int l = 0; l < n; ++l) {
       const double volume = double(mass[l]) * double(snow.specific_volume[l]);
-      const double p = now.p[l], q = now.q[l];
-      const double bulk = el.bulk[l], mu = el.mu[l];
-      stats.elastic += volume * (p * p / (2 * bulk) + q * q / (6 * mu));
-      stats.plastic += volume * (p * (trial.p[l] - p) / bulk + q * (trial.q[l] - q) / (3 * mu));
+      add_strain_energy(volume, el.bulk[l], el.mu[l], {trial.p[l], trial.q[l]},
+                        {now.p[l], now.q[l]}, stats.energy);
     }
   }
 
@@ -224,7 +221,7 @@ struct ParticleKernels {
     for (int i = 0; i < D; ++i)
       for (int j = 0; j < D; ++j) work += tau(i, j) * m.gradient[i][j];
     for (int l = 0; l < n; ++l)
-      stats.stress_power -=
+      stats.energy.stress_power -=
           double(s.mass[l]) * double(snow.specific_volume[l]) * double(work[l]) / double(step.dt);
   }
 
@@ -233,7 +230,7 @@ struct ParticleKernels {
       double v2 = 0;
       for (int d = 0; d < D; ++d) v2 += double(s.velocity[d][l]) * double(s.velocity[d][l]);
       v2 += s.carried.squared(double(step.dx), l);
-      stats.kinetic += 0.5 * double(s.mass[l]) * v2;
+      stats.energy.kinetic += 0.5 * double(s.mass[l]) * v2;
     }
   }
 

@@ -25,7 +25,6 @@ TEST(GpuSupport, NamesEachSetting) {
       {[](Options& o) { o.dimension = 2; }, "/dimension"},
       {[](Options& o) { o.settings.precision = Precision::float64; }, "/numerics/precision"},
       {[](Options& o) { o.settings.basis = Basis::cubic; }, "/numerics/basis"},
-      {[](Options& o) { o.energy = true; }, "/output/energy"},
       {[](Options& o) {
          o.laws.body_force = [](std::int64_t, const double*, const double*, const double*, double,
                                 double*, double*, double*) {};
@@ -41,12 +40,12 @@ TEST(GpuSupport, NamesEachSetting) {
 TEST(GpuSupport, IsRefusedWithAllReasons) {
   Options o;
   o.settings.basis = Basis::cubic;
-  o.energy = true;
+  o.settings.precision = Precision::float64;
   try {
     require_supported_on_gpu(o);
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_EQ(error.where(), "/numerics/basis");
+    EXPECT_EQ(error.where(), "/numerics/precision");
     for (const std::string& path : paths(o))
       EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << path;
     EXPECT_NE(std::string(error.what()).find("numerics.device \"cpu\""), std::string::npos);
