@@ -12,7 +12,7 @@ import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.build import package_digest
 from snowshed.base.callers import either
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import InputNote, issue_note
 from snowshed.io.input_file import read_input
 from snowshed.io.json_file import parse_object, read_object
 from snowshed.io.run_files import RECORD, beyond_scene, file_mark, is_record
@@ -88,7 +88,7 @@ def check_scene_alone(scene: SceneLike, laws: Optional[Laws]) -> None:
         return
     recorded.check_laws(laws)
     if recorded.ageing is not None:
-        issue_note(f"{recorded.path}: the ageing of its run is left out; run repeats it")
+        issue_note(f"{recorded.path}: the ageing of its run is left out; run repeats it", InputNote)
 
 
 def note_run_beside(scene: SceneLike, *, as_it_was: bool) -> None:
@@ -109,5 +109,6 @@ def note_run_beside(scene: SceneLike, *, as_it_was: bool) -> None:
     if more := beyond_scene(read_object(path.parent / RECORD)):
         issue_note(
             f"{path}: its run had {more}, which a scene does not hold; {path.parent / RECORD} "
-            "repeats the run"
+            "repeats the run",
+            InputNote,
         )

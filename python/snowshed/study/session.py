@@ -22,7 +22,7 @@ from snowshed.base.field_type import shown
 from snowshed.base.formatting import plural
 from snowshed.base.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.base.log import LOGGER
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import ResultNote, issue_note
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Progress, Reporter
 from snowshed.io.locks import is_held
@@ -216,9 +216,9 @@ def _compute(
 def _issue_run_notes(notes: Counter[str]) -> None:
     """Issue the notes on runs, the most frequent first."""
     for note, runs in notes.most_common(MAX_NOTES):
-        issue_note(f"{runs} {'run' if runs == 1 else 'runs'}: {note}")
+        issue_note(f"{runs} {'run' if runs == 1 else 'runs'}: {note}", ResultNote)
     if len(notes) > MAX_NOTES:
-        issue_note(f"{len(notes) - MAX_NOTES} further notes on runs")
+        issue_note(f"{len(notes) - MAX_NOTES} further notes on runs", ResultNote)
 
 
 def _check_version(store: Store, pending: Sequence[StoredRun]) -> None:
