@@ -46,8 +46,7 @@ _SUBJECTS = (
     (
         UnusualValueNote,
         re.compile(
-            r"unusual|another unit|check (its|the) units?\b|units right"
-            r"|(\b(is|are) (it|they|the \w+) (in|that of) )"
+            r"unusual|another unit|check (its|the) units?\b|units right|\b(is|are) [^.;?]*\?"
         ),
     ),
     (
