@@ -34,8 +34,15 @@ def only(notes, words):
     return category
 
 
-@pytest.mark.parametrize("path, value", [("panel.tilt", 0.7), ("snow.density", 0.2),
-                                         ("snow.youngs_modulus", 1.0), ("panel.height", 330)])  # fmt: skip
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        ("panel.tilt", 0.7),
+        ("snow.density", 5.0),
+        ("snow.youngs_modulus", 1.0),
+        ("panel.height", 33),
+    ],
+)
 def test_unlikely_units_of_scenes_have_their_class(tiny, path, value):
     note = only(classes(lambda: Simulation(tiny.with_({path: value}))), path.split(".")[1])
     assert note is UnusualValueNote

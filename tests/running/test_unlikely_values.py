@@ -244,3 +244,11 @@ def test_a_width_in_millimetres_is_told(tiny):
     scene = tiny.with_({"dimension": 3, "panel.width": 500})
     with pytest.warns(UnusualValueNote, match=r"/panel/width: 500 m wide beside a panel of .* m"):
         Simulation(scene)
+
+
+def test_a_factor_without_effect_in_2d_is_told(tiny):
+    with pytest.warns(SnowshedNote, match=r"panel\.width: has no effect in 2D"):
+        Study.product(tiny, {"panel.width": [0.1, 0.2], "panel.tilt": [40]})
+    with record_notes() as notes:
+        Study.product(tiny, {"panel.width": [0.1, 0.2], "dimension": [2, 3]})
+    assert notes == []

@@ -49,9 +49,22 @@ class RecordedRun:
             give = either("give them (`laws=`)", "resume it in Python, with its laws (`laws=`)")
             raise InputError(f"{self.path}: made with the laws {then!r}; {give}")
 
-    def differences(self) -> list[str]:
-        """Return notes on what has changed since: the build, and the files of the scene."""
+    def differences(self, laws: Optional[Laws] = None) -> list[str]:
+        """Return notes on what has changed since: the build, the files of the scene, the laws."""
         notes = []
+        if laws is not None and self.record.get("laws"):
+            precision = str(self.record["scene"]["numerics"].get("precision", "double"))
+            then, now = self.record.get("laws_digest"), laws.digest(precision)
+            if then is None or now is None:
+                notes.append(
+                    f"laws of the user: {laws.name}; known by this name only, so they may differ "
+                    f"from those of {self.path}"
+                )
+            elif then != now:
+                notes.append(
+                    f"laws of the user: {laws.name}; their code has changed since the run of "
+                    f"{self.path}"
+                )
         present = {"build": _core.build_id, "package": package_digest()}
         if any(self.record.get(name, digest) != digest for name, digest in present.items()):
             notes.append(f"{self.path} is of another build of snowshed")

@@ -108,10 +108,10 @@ def compute_runs(
     """
     resources = Resources(jobs, threads, scheduler)
     with Store.create(folder) as store:
-        if study in store.studies() and store.axes(study) != list(axes):
+        if study in store.studies() and (other := _difference(store, study, axes, runs)):
             issue_note(
-                f"{study}: replaces a study of that name with other parameters; its results stay "
-                "in the store"
+                f"{study}: replaces a study of that name with {other}; its results stay in the "
+                "store"
             )
         aside = store.register(
             study, axes, runs, keep_particles=keep_particles, same_version=same_version
@@ -123,6 +123,16 @@ def compute_runs(
                 f"{_same_version()} uses them"
             )
         _compute(store, [study], resources, retry_failed, progress)
+
+
+def _difference(store: Store, study: str, axes: Sequence[str], runs: Sequence[RunKey]) -> str:
+    """Return in what a study differs from the stored one of its name; "" if it may extend it."""
+    if store.axes(study) != list(axes):
+        return "other parameters"
+    stored = {run.hash for run in store.runs(study)}
+    return (
+        "" if stored & {run.hash for run in runs} or not stored else "another scene or other values"
+    )
 
 
 @checked

@@ -27,6 +27,10 @@ def note_on_unusual_values(scene: Scene, parts: Sequence[Part]) -> None:
     notes = (note for part in parts for note in _notes_on_part(scene, part))
     for note in dict.fromkeys(notes):  # parts may have the same factors
         issue_note(note)
+    paths = {path for part in parts for factor in part for path in factor.columns}
+    if "dimension" not in paths and scene.dimension == 2:
+        for path in sorted(path for path in paths if path.endswith(".width")):
+            issue_note(f"{path}: has no effect in 2D; all its values give the same results")
 
 
 def _notes_on_part(scene: Scene, part: Part) -> Iterator[str]:
