@@ -275,6 +275,12 @@ def friction_of(folder, value, name="law"):
     return Laws("rough", friction={"panel": ctypes.cast(function, LAW_PROTOTYPES["friction"])})
 
 
+def begun(scene, laws):
+    simulation = Simulation(scene, laws=laws)
+    simulation.begin_event()
+    return simulation
+
+
 def told(action):
     with pytest.warns(SnowshedNote) as log:
         action()
@@ -286,8 +292,7 @@ def test_a_changed_law_of_the_same_name_is_told(tiny, tmp_path):
     same, changed = friction_of(tmp_path / "same", "0.3"), friction_of(tmp_path / "changed", "0.4")
     assert then.digest("double") == same.digest("double") != changed.digest("double")
     told(lambda: run(tiny, tmp_path / "out", laws=then, pictures=False))
-    simulation = Simulation(tiny, laws=then)
-    simulation.save(tmp_path / "saved.bin")
+    begun(tiny, then).save(tmp_path / "saved.bin")
     again = [
         lambda laws: Simulation.load(tmp_path / "out/checkpoint.bin", laws=laws),
         lambda laws: Simulation.load(tmp_path / "saved.bin", laws=laws),
@@ -317,7 +322,7 @@ def test_a_law_without_known_code_is_told_as_such(tiny, tmp_path):
 
     laws = Laws("rough", friction={"panel": LAW_PROTOTYPES["friction"](rough)})
     assert laws.digest("double") is None
-    Simulation(tiny, laws=laws).save(tmp_path / "saved.bin")
+    begun(tiny, laws).save(tmp_path / "saved.bin")
     notes = told(lambda: Simulation.load(tmp_path / "saved.bin", laws=laws))
     assert any("known by this name only" in note for note in notes)
 
