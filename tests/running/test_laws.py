@@ -7,9 +7,10 @@ from contextlib import nullcontext
 
 import numpy as np
 import pytest
+from helpers.interrupted_runs import interrupt_at
 from helpers.paths import ROOT
 
-from snowshed import InputError, Scene, Simulation, SnowshedNote, run
+from snowshed import InputError, Interrupted, Scene, Simulation, SnowshedNote, run
 from snowshed.running import LAW_PROTOTYPES, Laws
 
 COMPILER = shutil.which("cc") or shutil.which("gcc")
@@ -305,11 +306,8 @@ def test_a_changed_law_of_the_same_name_is_told(tiny, tmp_path):
 
 
 def test_a_run_that_resumes_with_a_changed_law_says_so_in_its_record(tiny, tmp_path):
-    def stop(progress):
-        raise KeyboardInterrupt
-
-    laws = friction_of(tmp_path / "then", "0.3")
-    with pytest.raises(BaseException), pytest.warns(SnowshedNote):  # noqa: B017
+    laws, stop = friction_of(tmp_path / "then", "0.3"), interrupt_at(2, 0.0)
+    with pytest.raises(Interrupted), pytest.warns(SnowshedNote):
         run(tiny, tmp_path / "out", laws=laws, pictures=False, progress=stop)
     changed = friction_of(tmp_path / "now", "0.4")
     results = run(tiny, tmp_path / "out", laws=changed, pictures=False, resume=True)
