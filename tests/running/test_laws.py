@@ -282,7 +282,7 @@ def begun(scene, laws):
     return simulation
 
 
-def told(action):
+def notes_on(action):
     with pytest.warns(SnowshedNote) as log:
         action()
     return [str(note.message) for note in log if "rough;" in str(note.message)]
@@ -292,7 +292,7 @@ def test_a_changed_law_of_the_same_name_is_told(tiny, tmp_path):
     then = friction_of(tmp_path / "then", "0.3")
     same, changed = friction_of(tmp_path / "same", "0.3"), friction_of(tmp_path / "changed", "0.4")
     assert then.digest("double") == same.digest("double") != changed.digest("double")
-    told(lambda: run(tiny, tmp_path / "out", laws=then, pictures=False))
+    notes_on(lambda: run(tiny, tmp_path / "out", laws=then, pictures=False))
     begun(tiny, then).save(tmp_path / "saved.bin")
     again = [
         lambda laws: Simulation.load(tmp_path / "out/checkpoint.bin", laws=laws),
@@ -300,9 +300,13 @@ def test_a_changed_law_of_the_same_name_is_told(tiny, tmp_path):
         lambda laws: run(tmp_path / "out/run.json", None, laws=laws, pictures=False),
     ]
     for repeat in again:
-        (usual,) = {note for note in told(lambda: repeat(same)) if "code has changed" not in note}  # noqa: B023
+        (usual,) = {
+            note for note in notes_on(lambda: repeat(same)) if "code has changed" not in note
+        }  # noqa: B023
         assert usual.endswith("neither the scene nor a checkpoint holds them")
-        assert any("their code has changed since" in note for note in told(lambda: repeat(changed)))  # noqa: B023
+        assert any(
+            "their code has changed since" in note for note in notes_on(lambda: repeat(changed))
+        )  # noqa: B023
 
 
 def test_a_run_that_resumes_with_a_changed_law_says_so_in_its_record(tiny, tmp_path):
@@ -321,7 +325,7 @@ def test_a_law_without_known_code_is_told_as_such(tiny, tmp_path):
     laws = Laws("rough", friction={"panel": LAW_PROTOTYPES["friction"](rough)})
     assert laws.digest("double") is None
     begun(tiny, laws).save(tmp_path / "saved.bin")
-    notes = told(lambda: Simulation.load(tmp_path / "saved.bin", laws=laws))
+    notes = notes_on(lambda: Simulation.load(tmp_path / "saved.bin", laws=laws))
     assert any("known by this name only" in note for note in notes)
 
 

@@ -127,5 +127,5 @@ def test_a_season_tells_of_snow_in_warm_air_once(tmp_path):
     flat = Scene.preset("lab-40").set("panel.tilt", 20)
     with record_notes() as notes:
         result = run_season(rows_with(temperature=25.0), flat, tmp_path / "s", pictures=False)
-    for told in (notes, result.notes):
-        assert sum(WARM in note for note in told) == 1
+    for texts in (notes, result.notes):
+        assert sum(WARM in note for note in texts) == 1

@@ -87,15 +87,15 @@ def test_code_that_no_source_shows_belongs_to_the_identity(module, tmp_path):
     pytest.importorskip("numba")
     values = module.with_name(f"values_{module.stem}.py")
     module.write_text(NUMBA.format(values=values.stem))
-    found = []
+    identities = []
     for friction in (0.3, 0.4, 0.3):
-        values.write_text(f"FRICTION = {friction}  {'#' * len(found)}")
+        values.write_text(f"FRICTION = {friction}  {'#' * len(identities)}")
         for name in (module.stem, values.stem):
             sys.modules.pop(name, None)
         _digest.cache_clear()  # as in another process
-        found.append(hashes(NamedLaws(f"{module.stem}:make")))
+        identities.append(hashes(NamedLaws(f"{module.stem}:make")))
     sys.modules.pop(values.stem)
-    assert found[0] == found[2] and not set(found[0]) & set(found[1])
+    assert identities[0] == identities[2] and not set(identities[0]) & set(identities[1])
 
 
 def test_a_folder_elsewhere_does_not_change_the_identity(module, tmp_path, monkeypatch):

@@ -101,8 +101,8 @@ std::string note_on_laws(const io::BinaryReader& in, const methods::UserLaws& la
     return "laws of the user: " + laws.name +
            "; known by this name only, so they may differ from those of " + in.path().string();
   if (then == laws.digest) return "";
-  return "laws of the user: " + laws.name + "; their code has changed since " +
-         in.path().string() + " was made";
+  return "laws of the user: " + laws.name + "; their code has changed since " + in.path().string() +
+         " was made";
 }
 
 /// Throws InputError unless the particles' snows have the same numbers in another scene.

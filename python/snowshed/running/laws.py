@@ -181,13 +181,13 @@ class Laws:
 
         `precision` is as for `addresses`, which raises the same errors.
         """
-        places: dict[str, Any] = self.addresses(precision)
+        addresses: dict[str, Any] = self.addresses(precision)
         digests: dict[str, Optional[str]] = {"own_numbers": str(self.own_numbers)}
         for kind in ("material", "constitutive", "body_force"):
-            if kind in places:
-                digests[kind] = code_digest(getattr(self, kind), places[kind])
+            if kind in addresses:
+                digests[kind] = code_digest(getattr(self, kind), addresses[kind])
         for kind in ("friction", "motion"):
-            for name, place in places.get(kind, {}).items():
+            for name, place in addresses.get(kind, {}).items():
                 digests[f"{kind} {name}"] = code_digest(getattr(self, kind)[name], place)
         return joint_digest(digests)
 
