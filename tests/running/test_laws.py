@@ -302,11 +302,11 @@ def test_a_changed_law_of_the_same_name_is_told(tiny, tmp_path):
     for repeat in again:
         (usual,) = {
             note for note in notes_on(lambda: repeat(same)) if "code has changed" not in note
-        }  # noqa: B023
+        }
         assert usual.endswith("neither the scene nor a checkpoint holds them")
         assert any(
             "their code has changed since" in note for note in notes_on(lambda: repeat(changed))
-        )  # noqa: B023
+        )
 
 
 def test_a_run_that_resumes_with_a_changed_law_says_so_in_its_record(tiny, tmp_path):
