@@ -234,7 +234,7 @@ def test_stacks_that_lie_elsewhere_are_told(shift, values, message):
 
 
 def test_an_angle_of_a_shape_in_radians_is_told(tiny):
-    turned = Shape.transform(Shape.box(size=[0.1, 0.1]), angle=0.7)
+    turned = Shape.transform(Shape.box([0.6, 0.05], [0.1, 0.1]), angle=0.7)
     scene = tiny.with_({"obstacles": [Obstacle(shape=turned, name="board")]})
     with pytest.warns(UnusualValueNote, match=r"/shape/angle: 0\.7 degrees is unusual"):
         Simulation(scene)
