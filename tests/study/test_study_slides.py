@@ -31,12 +31,12 @@ def computed_folder(study, tmp_path_factory):
 
 
 def test_unusual_factors_are_told_before_a_slide_runs(tmp_path):
-    axes = {"numerics.friction": [0.3, 30], "terrain.release.0.thickness": [50, 60]}
+    axes = {"numerics.friction": [0.3, 30], "terrain.release.0.thickness": [5, 6]}
     with pytest.warns(UnusualValueNote) as notes:
         Study.product(example_slide(tmp_path), axes)
     texts = " ".join(str(note.message) for note in notes)
     assert "numerics.friction = 30: /numerics/friction: 30 is unusual" in texts
-    assert "terrain.release.0.thickness = 50: /terrain/release/0/thickness: 50 m is" in texts
+    assert "terrain.release.0.thickness = 5: /terrain/release/0/thickness: 5 m is" in texts
 
 
 def test_the_table_agrees_with_a_single_slide(study, computed_folder, tmp_path):
