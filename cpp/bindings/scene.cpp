@@ -10,6 +10,7 @@
 #include "snowshed/scene/json_text.hpp"
 #include "snowshed/scene/panel_frame.hpp"
 #include "snowshed/scene/presets.hpp"
+#include "snowshed/scene/unusual_values.hpp"
 
 namespace py = pybind11;
 
@@ -96,6 +97,14 @@ void bind_scene(py::module_& m) {
           },
           "path"_a, "The scene of a file; relative file names in it refer to the file's folder.")
       .def_property_readonly("json", [](const ParsedScene& s) { return s.json; })
+      .def_property_readonly(
+          "unusual_values",
+          [](const ParsedScene& s) {
+            std::vector<std::string> notes;
+            scene::add_notes_on_unusual_values(s.scene, notes);
+            return notes;
+          },
+          "Notes on values that are probably in another unit; no file is read for them.")
       .def(
           "panel_frame", [](const ParsedScene& s) { return panel_frame_dict(s.scene); },
           "The position of the panel's face and the thickness of its board; None without a panel.");

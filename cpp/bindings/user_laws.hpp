@@ -21,6 +21,7 @@ inline methods::UserLaws laws_of(const pybind11::object& given) {
   if (given.is_none()) return laws;
   const auto dict = given.cast<pybind11::dict>();
   laws.name = dict["name"].cast<std::string>();
+  if (dict.contains("digest")) laws.digest = dict["digest"].cast<std::string>();
   if (dict.contains("material")) laws.material = function_at<void*>(dict["material"]);
   if (dict.contains("constitutive")) {
     laws.constitutive = function_at<void*>(dict["constitutive"]);

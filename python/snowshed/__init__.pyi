@@ -15,7 +15,11 @@ from .analysis.clearance.clearance import clearance as clearance
 from .analysis.regression.predictor import predict as predict
 from .base.interrupt import Interrupted as Interrupted
 from .base.missing_result import MissingResultError as MissingResultError
+from .base.notes import InputNote as InputNote
+from .base.notes import ResolutionNote as ResolutionNote
+from .base.notes import ResultNote as ResultNote
 from .base.notes import SnowshedNote as SnowshedNote
+from .base.notes import UnusualValueNote as UnusualValueNote
 from .base.progress import Progress as Progress
 from .methods.grains.settings import GrainsSettings as GrainsSettings
 from .methods.mpm.settings import MpmSettings as MpmSettings

@@ -4,6 +4,7 @@ import base64
 import json
 import re
 import shutil
+from html import unescape
 
 import numpy as np
 import pytest
@@ -196,12 +197,19 @@ def test_a_run_is_shown_with_its_measures(finished, tmp_path):
     assert "2 slide-offs" in file.read_text(encoding="utf-8")
 
 
-def test_a_season_shows_its_slide_offs(finished, tmp_path):
+def test_a_run_is_shown_with_its_notes(finished, tmp_path):
+    notes = Results(finished).run["notes"]
+    text = unescape(write_view(finished, tmp_path / "page.html").read_text(encoding="utf-8"))
+    assert notes and all(f"<li>{note}</li>" in text for note in notes)
+
+
+def test_a_season_shows_its_slide_offs_and_its_notes(finished, tmp_path):
     shutil.copytree(finished, tmp_path / "run")
-    (tmp_path / "season.json").write_text("{}", encoding="utf-8")
+    (tmp_path / "season.json").write_text('{"notes": ["no <snow> settles"]}', encoding="utf-8")
     file = write_view(tmp_path)
     assert file == tmp_path / "view.html"
-    assert "2 slide-offs" in file.read_text(encoding="utf-8")
+    text = file.read_text(encoding="utf-8")
+    assert "2 slide-offs" in text and "<li>no &lt;snow&gt; settles</li>" in text
 
 
 def test_without_a_film_no_page_is_written(tmp_path, finished):

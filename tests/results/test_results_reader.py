@@ -24,7 +24,7 @@ def test_tables_are_read_from_files_with_units(finished):
     assert list(results.outline) == ["event", "x", "z"]
     assert results.outline.attrs["units"] == {"x": "m", "z": "m"}
     of_events = read_events(finished).attrs
-    assert of_events and of_events == {name: results.events.attrs[name] for name in of_events}
+    assert of_events == results.events.attrs and of_events["scene"] == results.scene.json
     assert results.run["events"] == 2
     assert results.scene.data["events"]["count"] == 2
 

@@ -52,6 +52,12 @@ def test_a_slide_from_arrays_is_that_of_the_raster(tmp_path, release):
     assert outcomes[0] == outcomes[1] == outcomes[2]
 
 
+@pytest.mark.parametrize("terrain", [as_array, lambda crs: Raster(HILL, 0.0, 0.0, 5.0, crs=crs)])
+def test_a_map_in_degrees_is_refused(terrain, release):
+    with pytest.raises(InputError, match=r"is in degrees \(EPSG:4326\); project it to metres"):
+        slide_scene(terrain(crs="EPSG:4326"), release, thickness=0.5)
+
+
 def test_the_maps_of_a_slide_keep_the_coordinate_system(tmp_path, release):
     results = snowshed.slide(as_array(crs="EPSG:31287"), release, tmp_path / "out", thickness=0.5,
                              max_time=1, pictures=False)  # fmt: skip

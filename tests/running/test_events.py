@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 from helpers.interrupted_runs import compare_tables, interrupt_at
 
-from snowshed import InputError, Interrupted, SimulationError, _core, run_events
+from snowshed import InputError, Interrupted, ResultNote, SimulationError, _core, run_events
 from snowshed.cli.output.results import energy_residual
 from snowshed.results.folder import read_events
 from snowshed.running import sequence, stack_run
@@ -54,8 +54,10 @@ def test_the_residual_of_the_energy_balance_is_recorded_and_warned_of(
     assert last["energy_residual"] == pytest.approx(abs(energy["residual_j"]) / largest)
     assert last["energy_residual"] == energy_residual(finished) < 0.01
     monkeypatch.setattr(stack_run, "MAX_RESIDUAL", 0.0)
-    with pytest.warns(FutureWarning, match=r"event 1: the energy balance has a residual of"):
+    with pytest.warns(ResultNote, match=r"event 1: the energy balance has a residual of"):
         run_events(tiny.set("output.energy", True), tmp_path / "out", pictures=False)
+    notes = json.loads((tmp_path / "out" / "run.json").read_text())["notes"]
+    assert any(note.startswith("event 1: the energy balance") for note in notes)
 
 
 def test_run_json_records_the_run(finished):

@@ -4,12 +4,14 @@ import ctypes
 import shutil
 import subprocess
 from contextlib import nullcontext
+from functools import partial
 
 import numpy as np
 import pytest
+from helpers.interrupted_runs import interrupt_at
 from helpers.paths import ROOT
 
-from snowshed import InputError, Scene, Simulation, SnowshedNote, run
+from snowshed import InputError, Interrupted, Scene, Simulation, SnowshedNote, run
 from snowshed.running import LAW_PROTOTYPES, Laws
 
 COMPILER = shutil.which("cc") or shutil.which("gcc")
@@ -258,3 +260,80 @@ def test_numba_compiles_constitutive_laws(tiny, library):
     c = of_type(library, "count", "constitutive_double")
     mine = positions(scene, Laws("numba", constitutive=liquid))
     assert np.array_equal(mine, positions(scene, Laws("C", constitutive=c, own_numbers=1)))
+
+
+# --- laws that have changed ----------------------------------------------------------------
+
+CHANGED = "double constant(double speed, double stress) { return FRICTION; }"
+
+
+def friction_of(folder, value, name="law"):
+    """Return a law of the same name whose function returns a value."""
+    folder.mkdir(exist_ok=True)
+    (folder / f"{name}.c").write_text(CHANGED.replace("FRICTION", value))
+    command = [COMPILER, "-O2", "-shared", "-fPIC", f"{name}.c", "-o", f"{name}.so"]
+    subprocess.run(command, cwd=folder, check=True)
+    function = ctypes.CDLL(str(folder / f"{name}.so")).constant
+    return Laws("rough", friction={"panel": ctypes.cast(function, LAW_PROTOTYPES["friction"])})
+
+
+def begun(scene, laws):
+    simulation = Simulation(scene, laws=laws)
+    simulation.begin_event()
+    return simulation
+
+
+def notes_on(action):
+    with pytest.warns(SnowshedNote) as log:
+        action()
+    return [str(note.message) for note in log if "rough;" in str(note.message)]
+
+
+def test_a_changed_law_of_the_same_name_is_told(tiny, tmp_path):
+    then = friction_of(tmp_path / "then", "0.3")
+    same, changed = friction_of(tmp_path / "same", "0.3"), friction_of(tmp_path / "changed", "0.4")
+    assert then.digest("double") == same.digest("double") != changed.digest("double")
+    notes_on(lambda: run(tiny, tmp_path / "out", laws=then, pictures=False))
+    begun(tiny, then).save(tmp_path / "saved.bin")
+    again = [
+        lambda laws: Simulation.load(tmp_path / "out/checkpoint.bin", laws=laws),
+        lambda laws: Simulation.load(tmp_path / "saved.bin", laws=laws),
+        lambda laws: run(tmp_path / "out/run.json", None, laws=laws, pictures=False),
+    ]
+    for repeat in again:
+        usual = notes_on(partial(repeat, same))
+        assert usual and not any("code has changed" in note for note in usual)
+        assert any("code has changed since" in note for note in notes_on(partial(repeat, changed)))
+
+
+def test_a_run_that_resumes_with_a_changed_law_says_so_in_its_record(tiny, tmp_path):
+    laws, stop = friction_of(tmp_path / "then", "0.3"), interrupt_at(2, 0.0)
+    with pytest.raises(Interrupted), pytest.warns(SnowshedNote):
+        run(tiny, tmp_path / "out", laws=laws, pictures=False, progress=stop)
+    changed = friction_of(tmp_path / "now", "0.4")
+    results = run(tiny, tmp_path / "out", laws=changed, pictures=False, resume=True)
+    assert any("their code has changed since" in note for note in results.run["notes"])
+
+
+def test_a_law_without_known_code_is_told_as_such(tiny, tmp_path):
+    def rough(speed, stress):
+        return 0.3
+
+    laws = Laws("rough", friction={"panel": LAW_PROTOTYPES["friction"](rough)})
+    assert laws.digest("double") is None
+    begun(tiny, laws).save(tmp_path / "saved.bin")
+    notes = notes_on(lambda: Simulation.load(tmp_path / "saved.bin", laws=laws))
+    assert any("known by this name only" in note for note in notes)
+
+
+def test_a_law_of_numba_is_known_by_its_source_and_its_values():
+    numba = pytest.importorskip("numba")
+
+    def digest(friction):
+        @numba.cfunc("float64(float64, float64)")
+        def rough(speed, stress):
+            return friction
+
+        return Laws("rough", friction={"panel": rough}).digest("double")
+
+    assert digest(0.3) is not None and digest(0.3) == digest(0.3) != digest(0.4)

@@ -15,6 +15,7 @@ from snowshed import InputError, Scene, Simulation, SimulationError, SnowshedNot
 from snowshed.analysis.calibration import read_simulated_stacks
 from snowshed.analysis.calibration.measurements import Measurement
 from snowshed.analysis.clearance.panel_design import check_base
+from snowshed.base.notes import record_notes
 from snowshed.cli import main
 from snowshed.cli.deferred import Deferred
 from snowshed.running import LAW_PROTOTYPES, Laws, extend_run, sequence
@@ -219,6 +220,12 @@ def test_a_study_that_replaces_another_says_so(tiny, tmp_path):
     Study.product(short, {"panel.tilt": [40]}).run(tmp_path / "store", jobs=1)
     with pytest.warns(SnowshedNote, match="replaces a study of that name"):
         Study.product(short, {"panel.friction": [0.2]}).run(tmp_path / "store", jobs=1)
+    changed = short.with_({"panel.tilt": 45})
+    with pytest.warns(SnowshedNote, match="replaces .* with another scene or other values"):
+        Study.product(changed, {"panel.friction": [0.2]}).run(tmp_path / "store", jobs=1)
+    with record_notes() as notes:
+        Study.product(changed, {"panel.friction": [0.2, 0.3]}).run(tmp_path / "store", jobs=1)
+    assert not [note for note in notes if "replaces" in note]
 
 
 def test_coincident_particles_are_refused(falling):

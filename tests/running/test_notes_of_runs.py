@@ -9,7 +9,7 @@ from conftest import tiny_mps, tiny_scene
 from helpers.grain_files import VOXEL, write_labels
 from helpers.slide_files import plane
 
-from snowshed import InputError, Scene, Simulation, SnowshedNote, run_events
+from snowshed import InputError, ResultNote, Scene, Simulation, SnowshedNote, run_events
 from snowshed.base.notes import record_notes
 from snowshed.cli.main import main
 from snowshed.io.raster.raster import write_ascii_grid
@@ -110,6 +110,12 @@ def test_no_notes_on_parts_that_the_scene_lacks():
     assert notes_after(table, {**bare, **shelf}) == [
         "50 % of the snow stays on the panel or on structures"
     ]
+
+
+def test_a_stack_that_still_moves_is_told(tiny, tmp_path):
+    with pytest.warns(ResultNote, match="^2 of 2 events ended before the snow rested; allow a lo"):
+        run_events(tiny.with_({"events.max_time": 0.1}), tmp_path / "out", pictures=False)
+    assert "2 of 2 events ended before the snow rested" in " ".join(notes_of(tmp_path / "out"))
 
 
 def test_added_snow_must_not_overlap_ground_or_snow():

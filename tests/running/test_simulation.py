@@ -93,7 +93,6 @@ def test_fields_have_type_shape_and_unit(dimension, precision):
         integers = {"id": np.uint32, "event": np.uint16, "material_id": np.uint8}
         assert field.dtype == integers.get(name, own if field.stored else np.float64), name
         assert field.unit and field.description
-    assert ("velocity_y" in simulation.fields) == (dimension == 3)
     with pytest.raises(KeyError, match="no field 'masss'; allowed: position, "):
         simulation.fields["masss"]
 
@@ -119,6 +118,23 @@ def test_components_are_columns_of_the_vector(falling):
     assert np.array_equal(fields["velocity"].values[:, 0], fields["velocity_x"].values)
     assert np.array_equal(fields["velocity"].values[:, 2], fields["velocity_z"].values)
     assert not fields["velocity"].values[:, 1].any()
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_components_have_the_same_names_in_fields_tables_and_grids(dimension):
+    simulation = Simulation(random_scene(dimension, "double").set("numerics.dx", 0.04))
+    simulation.begin_event()
+    table = simulation.to_dataframe()
+    for vector in ("position", "velocity"):
+        names = [f"{vector}_{axis}" for axis in "xyz"]
+        assert [name for name in table if name.startswith(vector)] == names
+        for name in names:
+            assert np.array_equal(simulation.fields[name].by_id(), table[name])
+            assert simulation.fields[name].unit == table.attrs["units"][name]
+            assert not simulation.fields[name].values.flags.writeable
+    pytest.importorskip("xarray")
+    for dataset in (simulation.to_xarray(), simulation.grid()):
+        assert dataset.component.values.tolist() == ["x", "y", "z"]
 
 
 def test_density_and_pressure_follow_from_stored_fields(falling):

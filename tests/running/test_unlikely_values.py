@@ -17,6 +17,7 @@ from snowshed import (
     Snow,
     SnowshedNote,
     Study,
+    UnusualValueNote,
 )
 from snowshed.analysis.clearance import SnowRanges
 from snowshed.base.notes import record_notes
@@ -230,3 +231,24 @@ def test_stacks_that_lie_elsewhere_are_told(shift, values, message):
     mass = np.full(len(heap), 0.07)
     with pytest.warns(SnowshedNote, match=message):
         snowshed.measure_stack(heap, mass, 0 * mass + 200, **{"dimension": 2, "dx": 0.02, **values})
+
+
+def test_an_angle_of_a_shape_in_radians_is_told(tiny):
+    turned = Shape.transform(Shape.box([0.6, 0.05], [0.1, 0.1]), angle=0.7)
+    scene = tiny.with_({"obstacles": [Obstacle(shape=turned, name="board")]})
+    with pytest.warns(UnusualValueNote, match=r"/shape/angle: 0\.7 degrees is unusual"):
+        Simulation(scene)
+
+
+def test_a_width_in_millimetres_is_told(tiny):
+    scene = tiny.with_({"dimension": 3, "panel.width": 500})
+    with pytest.warns(UnusualValueNote, match=r"/panel/width: 500 m wide beside a panel of .* m"):
+        Simulation(scene)
+
+
+def test_a_factor_without_effect_in_2d_is_told(tiny):
+    with pytest.warns(SnowshedNote, match=r"panel\.width: has no effect in 2D"):
+        Study.product(tiny, {"panel.width": [0.1, 0.2], "panel.tilt": [40]})
+    with record_notes() as notes:
+        Study.product(tiny, {"panel.width": [0.1, 0.2], "dimension": [2, 3]})
+    assert notes == []

@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 from helpers.processes import modules_after
 
-from snowshed import InputError, Scene, _core
+from snowshed import InputError, ResultNote, Scene, SnowshedNote, _core
 from snowshed.cli.commands.season import print_season
 from snowshed.cli.main import main
 from snowshed.scene.panel_edge import panel_edge
@@ -66,6 +66,17 @@ def test_a_season_writes_a_table_and_a_figure(finished):
     assert summary["burial_event"] == result.burial_event
     assert any("estimates (hedstrom-pomeroy-1998)" in note for note in summary["notes"])
     assert not any("before the snow rested" in note for note in summary["notes"])
+
+
+def test_a_season_issues_its_notes_but_not_its_assumptions(season_file, tmp_path):
+    scene = panel_scene(**{"events.max_time": 0.05})
+    with pytest.warns(SnowshedNote) as notes:
+        result = run_season(season_file, scene, tmp_path / "out", pictures=False)
+    classes = {str(note.message): note.category for note in notes}
+
+    limits = [note for note in result.notes if "ended before" in note or "estimates" in note]
+    assert limits and all(classes[note] is ResultNote for note in limits)
+    assert not [note for note in classes if note.startswith("the ground is bare")]
 
 
 def entries(folder):

@@ -6,7 +6,7 @@ from datetime import date, datetime, timedelta, timezone
 import pandas as pd
 import pytest
 
-from snowshed import InputError, Scene, SnowshedNote
+from snowshed import InputError, Scene, SnowshedNote, UnusualValueNote
 from snowshed.base.notes import record_notes
 from snowshed.season import (
     SeasonSettings,
@@ -92,6 +92,16 @@ def test_snow_in_warm_air_is_told():
             read_season(season)
 
 
+def test_temperatures_of_deep_winter_in_fahrenheit_are_told():
+    cold = [replace(ROW, date=ROW.date + timedelta(days=d), temperature=6.0 + d) for d in range(4)]
+    with record_notes() as notes:
+        read_season(cold)
+    assert notes == []  # a few mild snowfalls are no sign
+    cold.append(replace(ROW, date=ROW.date + timedelta(days=9)))
+    with pytest.warns(UnusualValueNote, match="half of 5 snowfalls in air of 7 °C and more"):
+        read_season(cold)
+
+
 def test_accumulation_tells_of_snow_in_warm_air():
     with pytest.warns(SnowshedNote, match=WARM):
         accumulate(rows_with(temperature=25.0), SeasonSettings(), 40.0)
@@ -117,4 +127,5 @@ def test_a_season_tells_of_snow_in_warm_air_once(tmp_path):
     flat = Scene.preset("lab-40").set("panel.tilt", 20)
     with record_notes() as notes:
         result = run_season(rows_with(temperature=25.0), flat, tmp_path / "s", pictures=False)
-    assert sum(WARM in note for note in (*notes, *result.notes)) == 1
+    for texts in (notes, result.notes):
+        assert sum(WARM in note for note in texts) == 1

@@ -9,6 +9,7 @@ import snowshed
 from snowshed import InputError, Scene, Study
 from snowshed.running import LAW_PROTOTYPES, Laws
 from snowshed.study import NamedLaws, StudyError, resume
+from snowshed.study.named_laws import _digest
 
 MODULE = """
 from snowshed.running import LAW_PROTOTYPES, Laws
@@ -22,6 +23,20 @@ def make():
 
 no_laws = 3
 ready = make()
+"""
+
+
+NUMBA = """
+import numba
+from {values} import FRICTION
+from snowshed.running import Laws
+
+@numba.cfunc("float64(float64, float64)")
+def constant(speed, stress):
+    return FRICTION
+
+def make():
+    return Laws("constant", friction={{"panel": constant}})
 """
 
 
@@ -65,6 +80,22 @@ def test_the_source_belongs_to_the_identity_of_the_runs(module, tmp_path):
     assert not set(hashes(NamedLaws(name, [code]))) & set(with_file)
     module.write_text(MODULE.format(friction=0.35))
     assert not set(hashes(NamedLaws(name))) & set(plain)
+
+
+def test_code_that_no_source_shows_belongs_to_the_identity(module, tmp_path):
+    """A module may take values from another module, which is not listed as a file."""
+    pytest.importorskip("numba")
+    values = module.with_name(f"values_{module.stem}.py")
+    module.write_text(NUMBA.format(values=values.stem))
+    identities = []
+    for friction in (0.3, 0.4, 0.3):
+        values.write_text(f"FRICTION = {friction}  {'#' * len(identities)}")
+        for name in (module.stem, values.stem):
+            sys.modules.pop(name, None)
+        _digest.cache_clear()  # as in another process
+        identities.append(hashes(NamedLaws(f"{module.stem}:make")))
+    sys.modules.pop(values.stem)
+    assert identities[0] == identities[2] and not set(identities[0]) & set(identities[1])
 
 
 def test_a_folder_elsewhere_does_not_change_the_identity(module, tmp_path, monkeypatch):

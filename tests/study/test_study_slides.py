@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from snowshed import InputError
+from snowshed import InputError, UnusualValueNote
 from snowshed.analysis.hazard.maps import hazard_maps, wilson_interval
 from snowshed.io.raster.raster import read_raster
 from snowshed.methods.slide.maps import PeakMaps
@@ -28,6 +28,15 @@ def computed_folder(study, tmp_path_factory):
     folder = tmp_path_factory.mktemp("store") / "runs"
     study.compute(folder, jobs=1, threads=1, keep_particles=True)
     return folder
+
+
+def test_unusual_factors_are_told_before_a_slide_runs(tmp_path):
+    axes = {"numerics.friction": [0.3, 30], "terrain.release.0.thickness": [5, 6]}
+    with pytest.warns(UnusualValueNote) as notes:
+        Study.product(example_slide(tmp_path), axes)
+    texts = " ".join(str(note.message) for note in notes)
+    assert "numerics.friction = 30: /numerics/friction: 30 is unusual" in texts
+    assert "terrain.release.0.thickness = 5: /terrain/release/0/thickness: 5 m is" in texts
 
 
 def test_the_table_agrees_with_a_single_slide(study, computed_folder, tmp_path):

@@ -247,6 +247,7 @@ void RunRecord::write(const std::filesystem::path& file, const Simulation& sim, 
   j["status"] = name_of(status);
   if (!error.empty()) j["error"] = error;
   if (sim.laws().any()) j["laws"] = sim.laws().name;
+  if (!sim.laws().digest.empty()) j["laws_digest"] = sim.laws().digest;
   if (!ageing.empty()) j["ageing"] = ordered_json::parse(ageing);
   j["scene"] = ordered_json::parse(scene::write_scene(sim.scene()));
   io::write_atomic(file, scene::sealed_text(j));

@@ -93,6 +93,18 @@ void check_laws(const io::BinaryReader& in, const methods::UserLaws& laws) {
                                       ", which a checkpoint cannot hold; give them again");
 }
 
+/// Says that the functions of the laws differ from those of the checkpoint, or may; else empty.
+std::string note_on_laws(const io::BinaryReader& in, const methods::UserLaws& laws) {
+  if (!laws.any()) return "";
+  const std::string then = in.has("laws_digest") ? in.text("laws_digest") : "";
+  if (then.empty() || laws.digest.empty())
+    return "laws of the user: " + laws.name +
+           "; known by this name only, so they may differ from those of " + in.path().string();
+  if (then == laws.digest) return "";
+  return "laws of the user: " + laws.name + "; their code has changed since " + in.path().string() +
+         " was made";
+}
+
 /// Throws InputError unless the particles' snows have the same numbers in another scene.
 void check_same_snow(const io::BinaryReader& in, const std::vector<material::Snow>& then,
                      const std::vector<material::Snow>& now) {
@@ -111,6 +123,7 @@ void Simulation::save(const std::filesystem::path& checkpoint) const {
   out.add_text("kernels", kernel_variant_name());
   out.add_text("device", kind_of(device()));
   if (surroundings_.laws.any()) out.add_text("laws", surroundings_.laws.name);
+  if (!surroundings_.laws.digest.empty()) out.add_text("laws_digest", surroundings_.laws.digest);
   if (surroundings_.laws.own_numbers)
     out.add_text("own_numbers", std::to_string(surroundings_.laws.own_numbers));
   if (!shape_fingerprints_.empty()) out.add("shape_files", shape_fingerprints_);
@@ -176,6 +189,7 @@ std::unique_ptr<Simulation> Simulation::from_archive(const io::BinaryReader& in,
   check_kernels(in, sim->device());
   if (const std::string note = note_on_device(in, sim->device()); !note.empty())
     sim->notes_.push_back(note);
+  if (const std::string note = note_on_laws(in, laws); !note.empty()) sim->notes_.push_back(note);
   check_files(in, sim->surroundings_);
   check_shape_files(in, sim->scene_, sim->shape_fingerprints_);
   const auto event = in.get<std::int64_t>("event", 2);

@@ -133,7 +133,7 @@ void describe(V& v, scene::ShapeSpec& s) {
   if (v.variant("transform", "A shape, rotated about the origin and then moved")) {
     v.list("shapes", s.shapes, methods::exactly(1).required(), "The shape");
     v.axis("axis", s.axis, "Rotation axis");
-    v.number("angle", s.angle, "degrees", methods::between(-360.0, 360.0),
+    v.number("angle", s.angle, "degrees", methods::between(-360.0, 360.0).usual(3.2, 360),
              "Rotation about the axis");
     v.vector("translate", s.translate, "m", methods::allowed::coordinate,
              "Translation, after the rotation");

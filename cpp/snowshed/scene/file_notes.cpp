@@ -19,9 +19,9 @@ constexpr double max_size_ratio = 300;
 constexpr double max_panel_ratio = 100;
 /// Thinner slabs on a panel are noted.
 constexpr double min_slab_ratio = 1.0 / 400;
-/// Lowest and highest lower edge, and least width, beside the length of a panel.
+/// Lowest and highest lower edge, and least and largest width, beside the length of a panel.
 constexpr double min_height_ratio = 1.0 / 60, max_height_ratio = 30;
-constexpr double min_width_ratio = 1.0 / 30;
+constexpr double min_width_ratio = 1.0 / 30, max_width_ratio = 100;
 
 struct Solid {
   std::string path;
@@ -86,7 +86,7 @@ void add_notes_on_panel(const Scene& scene, const std::vector<Solid>& solids,
   compare("/panel/height", scene.panel->height, "high", panel, min_height_ratio, max_height_ratio,
           notes);
   if (scene.dimension == 3)
-    compare("/panel/width", scene.panel->width, "wide", panel, min_width_ratio, geometry::infinity,
+    compare("/panel/width", scene.panel->width, "wide", panel, min_width_ratio, max_width_ratio,
             notes);
   if (scene.slab) {
     double thickness = scene.slab->thickness;

@@ -1,32 +1,70 @@
 """Notes: assumptions and changes that a reader made, issued as warnings.
 
-A note is a Python warning of its own class, so that scripts can filter it, turn it into an error or
-record it. The command line prints it as "note: …". `record_notes` collects the notes that results
-store.
+A note is a Python warning, so that scripts can filter it, turn it into an error or record it. Its
+class says what it concerns. The command line prints it as "note: …". `record_notes` collects the
+notes that results store.
 """
 
 from __future__ import annotations
 
+import re
 import sys
 import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from types import FrameType
+from typing import Optional
 
 from snowshed.base.log import LOGGER
 
 
 class SnowshedNote(UserWarning):
-    """A fact that the reader of a result should know; the program has no fault."""
+    """A fact that the reader of a result should know; the program has no fault.
+
+    All notes are of this class or of one below it.
+    """
 
 
-def issue_note(text: str) -> None:
+class UnusualValueNote(SnowshedNote):
+    """A value that is allowed, but so unusual that it may be of another unit or a slip."""
+
+
+class ResolutionNote(SnowshedNote):
+    """Cells or particles are too coarse for what they should resolve."""
+
+
+class InputNote(SnowshedNote):
+    """A reader assumed, converted or left out a part of a file or a table."""
+
+
+class ResultNote(SnowshedNote):
+    """A property of a result, such as snow that stays on the panel, or failed runs of a study."""
+
+
+#: Words of notes that say what they concern. Notes of the core and of stored runs are texts alone.
+_SUBJECTS = (
+    (
+        UnusualValueNote,
+        re.compile(
+            r"unusual|another unit|check (its|the) units?\b|units right|\b(is|are) [^.;?]*\?"
+        ),
+    ),
+    (
+        ResolutionNote,
+        re.compile(r"\bcoarse\b|less than a cell of|that fill no layer|smaller layer_"),
+    ),
+)
+
+
+def issue_note(text: str, subject: type[SnowshedNote] = SnowshedNote) -> None:
     """Issue a note; the warning names the calling line outside the package.
 
     Parameters
     ----------
     text
         A sentence without its full stop.
+    subject
+        The class of the note, unless its words say that it concerns unusual values or resolution.
 
     Examples
     --------
@@ -36,7 +74,11 @@ def issue_note(text: str) -> None:
     ['the raster is in feet; it was converted to metres']
     """
     LOGGER.info("note: %s", text)
-    warnings.warn(text, SnowshedNote, caller_level())
+    warnings.warn(text, _subject_of(text) or subject, caller_level())
+
+
+def _subject_of(text: str) -> Optional[type[SnowshedNote]]:
+    return next((subject for subject, words in _SUBJECTS if words.search(text)), None)
 
 
 def caller_level() -> int:

@@ -15,7 +15,7 @@ from typing import Any
 from snowshed._core import InputError
 from snowshed.base.callers import resuming_call
 from snowshed.base.json_values import JsonValue
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import InputNote, issue_note
 from snowshed.io.csv_table import Table
 from snowshed.io.input_file import read_regular
 from snowshed.io.json_file import check_seal, read_object
@@ -79,7 +79,7 @@ def scene_in(document: JsonValue, content: bytes, where: str) -> JsonValue:
     if isinstance(document, dict) and is_record(document):
         check_seal(content, where)
         if more := beyond_scene(document):
-            issue_note(f"{where}: its run had {more}, which a scene does not hold")
+            issue_note(f"{where}: its run had {more}, which a scene does not hold", InputNote)
     return scene_of_record(document)
 
 

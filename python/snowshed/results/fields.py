@@ -1,17 +1,23 @@
-"""The fields of a simulation: quantities of its particles, read from their memory."""
+"""The fields of a simulation: quantities of its particles, read from their memory.
+
+Positions and velocities have the components x, y and z, in 2D, too, where y is zero.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
-from typing import Literal
+from dataclasses import dataclass, field, replace
+from typing import Literal, Optional
 
 import numpy as np
 
 import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.arrays import Numbers
+from snowshed.results.particle_dataset import AXES
 
+#: Fields whose components are fields, too.
+VECTORS = ("position", "velocity")
 Order = Literal["id", "storage"]
 
 
@@ -57,6 +63,7 @@ class Field:
     dtype: np.dtype[np.generic]
     stored: bool
     _simulation: _core.Simulation = field(repr=False)
+    _part: Optional[tuple[str, int]] = field(default=None, repr=False)  # of a vector: its column
 
     @property
     def values(self) -> Numbers:
@@ -68,10 +75,16 @@ class Field:
         later. The array never points to freed memory. Between two such calls all fields have the
         same order.
         """
+        if self._part is not None:
+            name, column = self._part
+            return self._simulation.field(name)[:, column]
         return self._simulation.field(self.name)
 
     def by_id(self) -> Numbers:
         """Return a copy ordered by the particles' ids, in double precision or 64-bit integers."""
+        if self._part is not None:
+            name, column = self._part
+            return self._simulation.field_by_id(name)[:, column].copy()
         return self._simulation.field_by_id(self.name)
 
     def __repr__(self) -> str:
@@ -79,11 +92,29 @@ class Field:
         return f"Field({self.name!r}, {self.unit!r}, {self.description!r}, {self.dtype}, {how})"
 
 
+def _components(vector: Field) -> list[Field]:
+    return [
+        replace(
+            vector,
+            name=f"{vector.name}_{axis}",
+            description=f"{vector.description}; component {axis}",
+            stored=False,
+            _part=(vector.name, column),
+        )
+        for column, axis in enumerate(AXES)
+    ]
+
+
 class Fields(Mapping[str, Field]):
     """The fields of a simulation by name; a KeyError lists the names."""
 
     def __init__(self, core: _core.Simulation) -> None:
-        self._fields = {info[0]: Field(*info, core) for info in core.fields()}
+        stored = {info[0]: Field(*info, core) for info in core.fields()}
+        self._fields: dict[str, Field] = {}
+        for name, given in stored.items():
+            self._fields.setdefault(name, given)
+            for part in _components(given) if name in VECTORS else ():
+                self._fields[part.name] = stored.get(part.name, part)
 
     def __getitem__(self, name: str) -> Field:
         try:

@@ -13,7 +13,7 @@ import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
 from snowshed.base.extras import require
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import InputNote, issue_note
 from snowshed.io.film import Film, FilmFrame
 from snowshed.io.json_file import is_number
 from snowshed.results.particle_dataset import AXES
@@ -97,7 +97,7 @@ def film_dataset(film: Film, every: int = 1) -> xarray.Dataset:
     if not isinstance(every, int) or every < 1:
         raise InputError(f"every: {every!r}; a whole number from 1 is needed")
     for note in film.notes:
-        issue_note(f"{film.path}: {note}")
+        issue_note(f"{film.path}: {note}", InputNote)
     frames = _selected_frames(film, every)
     ids, first = np.unique(np.concatenate([frame.ids for frame in frames]), return_index=True)
     kinds = {

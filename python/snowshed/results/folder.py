@@ -38,6 +38,7 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 
+import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
@@ -45,8 +46,10 @@ from snowshed.base.paths import PathLike
 from snowshed.base.units import with_units
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import Table, read_csv
+from snowshed.io.input_file import read_input
 from snowshed.io.json_file import read_object
 from snowshed.io.run_files import check_run_file, origin_of_record, read_run_record
+from snowshed.scene.resolved import ResolvedScene
 from snowshed.snow.stack.measure import StackMeasure
 from snowshed.snow.stack.quantities import MEASURES, QUANTITIES
 from snowshed.snow.stack.trimming import TRIMMINGS
@@ -107,7 +110,7 @@ EVENT_COLUMNS = (
 )
 #: Checksums by table; each covers the rows up to an event, whose number is its key.
 Checksums = Mapping[str, Mapping[str, str]]
-EVENTS, ENERGY = "events.csv", "energy.csv"
+SCENE, EVENTS, ENERGY = "scene.json", "events.csv", "energy.csv"
 #: Columns that hold texts.
 WORDS = ("ended", "trimming")
 
@@ -152,7 +155,7 @@ class RunFolder:
 
     def __init__(self, folder: PathLike) -> None:
         self.folder = Path(folder)
-        self.scene = self.folder / "scene.json"
+        self.scene = self.folder / SCENE
         self.checkpoint = self.folder / "checkpoint.bin"
         self.run = self.folder / "run.json"
         self.ageing = self.folder / "ageing.json"
@@ -267,14 +270,14 @@ def _last_known(sums: Mapping[str, str], event: int) -> int:
 def read_events(folder: PathLike) -> pd.DataFrame:
     """Read the table of events from a results folder.
 
-    Its `attrs` have the version and the build of snowshed that made it, if known, and the units of
-    its columns.
+    Its `attrs` have the scene, the version and the build of snowshed that made it, if known, and
+    the units of its columns.
 
     Raises
     ------
     InputError
         If the folder holds no events.csv, or the file is not the table of events that the run
-        wrote.
+        wrote, or scene.json is not the scene of the run.
     """
     path = Path(folder) / EVENTS
     if not path.is_file():
@@ -282,8 +285,26 @@ def read_events(folder: PathLike) -> pd.DataFrame:
     check_run_file(path)
     table = with_units(parse_events(path))
     record = read_run_record(Path(folder))
+    if (Path(folder) / SCENE).is_file():
+        table.attrs["scene"] = read_scene(folder).json
     table.attrs.update(origin_of_record(record) if record else {})
     return table
+
+
+def read_scene(folder: PathLike) -> ResolvedScene:
+    """Read the complete scene of the run in a results folder.
+
+    Raises
+    ------
+    InputError
+        If scene.json is missing or damaged, or not the scene of the run.
+    """
+    path = Path(folder) / SCENE
+    scene = ResolvedScene.load(path)
+    known = read_run_record(Path(folder)).get("scene_checksum")
+    if known and _core.scene_checksum(read_input(path).decode()) != known:
+        raise InputError(f"{path}: damaged: it is not the scene of the run")
+    return scene
 
 
 def parse_events(path: Path) -> pd.DataFrame:

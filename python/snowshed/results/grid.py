@@ -23,6 +23,7 @@ from snowshed.base.paths import PathLike
 from snowshed.io.vtk.vti import write_image
 from snowshed.io.vtk.vtp import read_particles
 from snowshed.methods.registry import method_of
+from snowshed.results.particle_dataset import AXES
 
 if TYPE_CHECKING:
     import xarray
@@ -84,7 +85,7 @@ def grid_dataset(grid: GridFields, event: int, time: float) -> xarray.Dataset:
     Returns
     -------
     xarray.Dataset
-        Dimensions x, (y,) z (coordinates of the nodes, m) and component.
+        Dimensions x, (y,) z (coordinates of the nodes, m) and component (x, y, z, in 2D, too).
 
     Raises
     ------
@@ -104,7 +105,7 @@ def grid_dataset(grid: GridFields, event: int, time: float) -> xarray.Dataset:
             "velocity": ([*axes, "component"], grid.velocity),
             "density": (axes, grid.density),
         },
-        coords={**nodes, "component": axes, "event_number": event, "time": clock},
+        coords={**nodes, "component": list(AXES), "event_number": event, "time": clock},
     )
     for name, (unit, meaning) in MEANINGS.items():
         dataset[name].attrs.update(units=unit, long_name=meaning)
@@ -128,7 +129,6 @@ def write_grid(grid: GridFields, file: PathLike) -> None:
     if grid.mass.ndim == 2:
         origin = np.insert(origin, 1, 0.0)
         values = {name: array[:, None] for name, array in values.items()}
-        values["velocity"] = np.insert(values["velocity"], 1, 0.0, axis=-1)
     write_image(file, origin.tolist(), grid.dx, values)
 
 
@@ -144,8 +144,8 @@ class GridFields:
         Distance of the nodes, m.
     mass : (nx, ny, nz) or (nx, nz)
         kg; in 2D per metre of width.
-    velocity : (nx, ny, nz, d) or (nx, nz, d)
-        m/s; zero where there is no mass.
+    velocity : (nx, ny, nz, 3) or (nx, nz, 3)
+        Components x, y, z, m/s; y is zero in 2D, and all are zero where there is no mass.
     density
         Mass over the volume of a cell, kg/m3. It is too low beside walls and at surfaces, where
         snow fills only part of a node's cell.
@@ -195,7 +195,7 @@ def particles_to_grid(
     >>> grid = particles_to_grid(np.array([[0.3, 0, 0.5]]), np.array([[1.0, 0, 0]]), np.ones(1),
     ...                          dx=0.1, dimension=2)
     >>> grid.mass.shape, float(grid.mass.sum().round(12)), grid.velocity[1, 1].round(12).tolist()
-    ((3, 3), 1.0, [1.0, 0.0])
+    ((3, 3), 1.0, [1.0, 0.0, 0.0])
     """
     if not len(positions):
         raise InputError("no particles: cannot build a grid")
@@ -225,6 +225,8 @@ def particles_to_grid(
     velocity = np.divide(
         momentum, mass[..., None], out=np.zeros_like(momentum), where=mass[..., None] > 0
     )
+    if dimension == 2:
+        velocity = np.insert(velocity, 1, 0.0, axis=-1)
     return GridFields(first * dx, dx, mass, velocity, mass / dx**dimension)
 
 

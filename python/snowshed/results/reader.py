@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, Optional, cast
 
 import numpy as np
 
-import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
 from snowshed.base.extras import require
@@ -18,7 +17,6 @@ from snowshed.base.paths import PathLike
 from snowshed.base.units import unit_of_column, with_units
 from snowshed.io.csv_table import read_csv
 from snowshed.io.film import FILM, Film
-from snowshed.io.input_file import read_input
 from snowshed.io.json_file import read_object
 from snowshed.io.run_files import check_run_file, read_run_record
 from snowshed.io.vtk.pvd import read_series
@@ -26,7 +24,7 @@ from snowshed.io.vtk.vtp import read_particles
 from snowshed.methods.registry import method_of
 from snowshed.methods.summary import Summary
 from snowshed.results.film import film_dataset, run_film
-from snowshed.results.folder import ENERGY, EVENTS, read_events
+from snowshed.results.folder import ENERGY, EVENTS, read_events, read_scene
 from snowshed.results.grid import grid_dataset, stored_grid
 from snowshed.results.html import results_html
 from snowshed.results.method_results import MethodResults
@@ -95,12 +93,7 @@ class Results(MethodResults):
     @cached_property
     def scene(self) -> ResolvedScene:
         """The complete scene that made the results."""
-        path = self.folder / "scene.json"
-        scene = ResolvedScene.load(path)
-        known = read_run_record(self.folder).get("scene_checksum")
-        if known and _core.scene_checksum(read_input(path).decode()) != known:
-            raise InputError(f"{path}: damaged: it is not the scene of the run")
-        return scene
+        return read_scene(self.folder)
 
     @property
     def run(self) -> dict[str, object]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from html import escape
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -13,6 +14,7 @@ import numpy as np
 from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.io.film import Film
+from snowshed.io.json_file import read_object
 from snowshed.io.run_files import read_run_record
 from snowshed.methods.registry import method_of
 from snowshed.plot.caption import scene_caption
@@ -66,7 +68,9 @@ def write_view(results: PathLike, page: Optional[PathLike] = None) -> Path:
     run = shown_results(results)
     file = Path(page) if page is not None else Path(results) / PAGE
     film = run.film
-    write_view_page(file, film, view_content(run, film))
+    content = view_content(run, film)
+    notes = list(dict.fromkeys([*_season_notes(results), *content.notes]))
+    write_view_page(file, film, replace(content, notes=notes))
     return file
 
 
@@ -109,6 +113,13 @@ def shown_results(folder: PathLike) -> Results:
     """
     season = SeasonFolder(folder)
     return Results(season.run.folder if season.summary.is_file() else season.folder)
+
+
+def _season_notes(folder: PathLike) -> list[str]:
+    """Return the notes of a season; none of the folder of a run."""
+    summary = SeasonFolder(folder).summary
+    notes = read_object(summary).get("notes", ()) if summary.is_file() else ()
+    return [str(note) for note in notes]
 
 
 def view_content(results: Results, film: Film) -> ViewContent:
@@ -179,8 +190,10 @@ def _facts(scene: ResolvedScene, folder: Path) -> list[tuple[str, str]]:
 
 
 def _notes(results: Results, film: Film) -> list[str]:
-    status = read_run_record(results.folder).get("status", "begun")
-    notes = []
+    """Return sentences on the film and the notes of the run, as in run.json."""
+    record = read_run_record(results.folder)
+    status = record.get("status", "begun")
+    notes = [str(note) for note in record.get("notes", ())]
     if status != "finished":
         notes.append(f"The run is not finished ({status}); the view ends where its film ends.")
     if film.frames[0].event > 1 or film.frames[0].time > 0:

@@ -15,6 +15,7 @@ from typing import Any, Callable, Optional, Union
 
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
+from snowshed.running.law_digest import code_digest, joint_digest
 
 _DOUBLES = ctypes.POINTER(ctypes.c_double)
 _FLOATS = ctypes.POINTER(ctypes.c_float)
@@ -75,7 +76,7 @@ class Laws:
     ----------
     name
         A name for results and checkpoints, which cannot hold the functions themselves: a run that
-        resumes needs laws of the same name.
+        resumes needs laws of the same name. If their code has changed since, a note says so.
     material
         The law of the snow after its elastic trial: ``material(count, p, q, plastic_strain, snow,
         time_step)`` changes the arrays `p` and `q`, pressure and Mises stress [Pa] (Kirchhoff,
@@ -175,6 +176,25 @@ class Laws:
                 }
         return laws
 
+    def digest(self, precision: str) -> Optional[str]:
+        """Return a digest of the functions' code; None if the code of one is unknown.
+
+        `precision` is as for `addresses`, which raises the same errors.
+        """
+        addresses: dict[str, Any] = self.addresses(precision)
+        digests: dict[str, Optional[str]] = {"own_numbers": str(self.own_numbers)}
+        for kind in ("material", "constitutive", "body_force"):
+            if kind in addresses:
+                digests[kind] = code_digest(getattr(self, kind), addresses[kind])
+        for kind in ("friction", "motion"):
+            for name, place in addresses.get(kind, {}).items():
+                digests[f"{kind} {name}"] = code_digest(getattr(self, kind)[name], place)
+        return joint_digest(digests)
+
+    def for_core(self, precision: str) -> dict[str, object]:
+        """Return the addresses of the functions, with their digest; errors as of `addresses`."""
+        return {**self.addresses(precision), "digest": self.digest(precision) or ""}
+
     def _address(self, kind: str, where: str, function: Compiled) -> int:
         address: Optional[int] = None
         if isinstance(function, int):
@@ -214,7 +234,7 @@ class Laws:
 
 
 def addresses_of(laws: Optional[Laws], scene: Mapping[str, Any]) -> Optional[dict[str, object]]:
-    """Return the addresses of laws for a scene; None without laws.
+    """Return the addresses of laws for a scene, and their digest; None without laws.
 
     Raises
     ------
@@ -223,4 +243,4 @@ def addresses_of(laws: Optional[Laws], scene: Mapping[str, Any]) -> Optional[dic
     """
     if laws is None:
         return None
-    return laws.addresses(str(scene["numerics"].get("precision", "double")))
+    return laws.for_core(str(scene["numerics"].get("precision", "double")))

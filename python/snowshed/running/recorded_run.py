@@ -12,7 +12,7 @@ import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.build import package_digest
 from snowshed.base.callers import either
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import InputNote, issue_note
 from snowshed.io.input_file import read_input
 from snowshed.io.json_file import parse_object, read_object
 from snowshed.io.run_files import RECORD, beyond_scene, file_mark, is_record
@@ -49,9 +49,22 @@ class RecordedRun:
             give = either("give them (`laws=`)", "resume it in Python, with its laws (`laws=`)")
             raise InputError(f"{self.path}: made with the laws {then!r}; {give}")
 
-    def differences(self) -> list[str]:
-        """Return notes on what has changed since: the build, and the files of the scene."""
+    def differences(self, laws: Optional[Laws] = None) -> list[str]:
+        """Return notes on what has changed since: the build, the files of the scene, the laws."""
         notes = []
+        if laws is not None and self.record.get("laws"):
+            precision = str(self.record["scene"]["numerics"].get("precision", "double"))
+            then, now = self.record.get("laws_digest"), laws.digest(precision)
+            if then is None or now is None:
+                notes.append(
+                    f"laws of the user: {laws.name}; known by this name only, so they may differ "
+                    f"from those of {self.path}"
+                )
+            elif then != now:
+                notes.append(
+                    f"laws of the user: {laws.name}; their code has changed since the run of "
+                    f"{self.path}"
+                )
         present = {"build": _core.build_id, "package": package_digest()}
         if any(self.record.get(name, digest) != digest for name, digest in present.items()):
             notes.append(f"{self.path} is of another build of snowshed")
@@ -88,7 +101,7 @@ def check_scene_alone(scene: SceneLike, laws: Optional[Laws]) -> None:
         return
     recorded.check_laws(laws)
     if recorded.ageing is not None:
-        issue_note(f"{recorded.path}: the ageing of its run is left out; run repeats it")
+        issue_note(f"{recorded.path}: the ageing of its run is left out; run repeats it", InputNote)
 
 
 def note_run_beside(scene: SceneLike, *, as_it_was: bool) -> None:
@@ -109,5 +122,6 @@ def note_run_beside(scene: SceneLike, *, as_it_was: bool) -> None:
     if more := beyond_scene(read_object(path.parent / RECORD)):
         issue_note(
             f"{path}: its run had {more}, which a scene does not hold; {path.parent / RECORD} "
-            "repeats the run"
+            "repeats the run",
+            InputNote,
         )

@@ -176,7 +176,7 @@ def run_resolved(
             method_run: MethodRun = method.run_class()(sequence, resolved, Path(folder), options)
             method_run.begin()
             sequence.describe_machine(machine_facts())
-            for note in [] if recorded is None else recorded.differences():
+            for note in [] if recorded is None else recorded.differences(laws):
                 record_note(sequence, note)
             observer = _Observer(method_run, interrupt, progress, begin)
             try:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Optional
 
 import snowshed._core as _core
 from snowshed._core import InputError
+from snowshed.base.formatting import plural
 from snowshed.methods.registry import method_of, resolution_of
 from snowshed.scene.components import Snow
 from snowshed.snow.relations.strength import TENSILE_STRENGTH
@@ -172,7 +173,29 @@ def notes_after(table: pd.DataFrame, scene: Mapping[str, Any]) -> list[str]:
     >>> notes_after(pd.DataFrame({"mass_kg": [0.0], "on_panel_kg": [2.0]}), {"panel": {}})
     ['nothing slid: the snow stays on the panel; there is no stack to measure']
     """
-    return [*_notes_on_records(table, scene), *_notes_on_snow_that_stays(table.iloc[-1], scene)]
+    return [
+        *_notes_on_ends(table),
+        *_notes_on_records(table, scene),
+        *_notes_on_snow_that_stays(table.iloc[-1], scene),
+    ]
+
+
+def _notes_on_ends(table: pd.DataFrame) -> list[str]:
+    """Return a note if snow still moved when its event ended.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> _notes_on_ends(pd.DataFrame({"ended": ["rest", "time_limit"]}))[0][:48]
+    '1 of 2 events ended before the snow rested; allo'
+    """
+    moving = int((table["ended"] == "time_limit").sum()) if "ended" in table else 0
+    if not moving:
+        return []
+    return [
+        f"{moving} of {plural(len(table), 'event')} ended before the snow rested; allow a longer "
+        "events.max_time"
+    ]
 
 
 def _notes_on_snow_that_stays(last: pd.Series[Any], scene: Mapping[str, Any]) -> list[str]:

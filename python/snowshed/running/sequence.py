@@ -13,7 +13,7 @@ from typing import Optional
 
 import snowshed._core as _core
 from snowshed.base.interrupt import Interrupted
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import SnowshedNote, issue_note
 from snowshed.base.paths import PathLike, utf8_path
 from snowshed.io.run_files import file_mark
 from snowshed.running.laws import Laws, addresses_of
@@ -44,10 +44,12 @@ def seal_files(sequence: _core.EventSequence, folder: PathLike, *names: str) -> 
     sequence.files = {**sequence.files, **marks}
 
 
-def record_note(sequence: _core.EventSequence, note: str) -> None:
-    """Issue a note on a run, and add it once to run.json."""
+def record_note(
+    sequence: _core.EventSequence, note: str, subject: type[SnowshedNote] = SnowshedNote
+) -> None:
+    """Issue a note on a run, and add it once to run.json; `subject` as for `issue_note`."""
     sequence.add_note(note)
-    issue_note(note)
+    issue_note(note, subject)
 
 
 @contextmanager

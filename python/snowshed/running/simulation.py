@@ -103,7 +103,8 @@ class Simulation(CallsFunctions, StrictAttributes, ReadsParticles):
         path
             The file.
         laws
-            The laws of one's own with which it was made; a checkpoint holds their name only.
+            The laws of one's own with which it was made. A checkpoint holds their name and a digest
+            of their code; a note says if that has changed, or is unknown.
 
         Raises
         ------
@@ -115,9 +116,11 @@ class Simulation(CallsFunctions, StrictAttributes, ReadsParticles):
         loaded = cls.__new__(cls)
         loaded._laws = laws
         precision = "double" if laws is not None and laws.is_double else "float"
-        addresses = None if laws is None else laws.addresses(precision)
+        addresses = None if laws is None else laws.for_core(precision)
         loaded._core = _core.Simulation.load(os.fspath(path), addresses)
         loaded._scene = ResolvedScene(loaded._core.scene)
+        for note in loaded._core.notes:
+            issue_note(note)
         return loaded
 
     def save(self, path: PathLike) -> None:

@@ -12,7 +12,6 @@ length and outline. A stack that is carried over ages (``snowshed.running.ageing
 from __future__ import annotations
 
 import json
-import warnings
 from collections.abc import Iterable, Mapping
 from importlib.util import find_spec
 from pathlib import Path
@@ -20,7 +19,7 @@ from typing import Any, ClassVar, Optional
 
 import snowshed._core as _core
 from snowshed.base.arrays import Booleans, Floats
-from snowshed.base.notes import caller_level
+from snowshed.base.notes import ResultNote
 from snowshed.io.vtk.vtp import read_particles
 from snowshed.results.energies import write_energy_history
 from snowshed.results.event_particles import read_event_particles
@@ -120,10 +119,20 @@ class StackRun(MethodRun):
         """Measure the stack in memory."""
         self.stack = self._measure()
         self._record(facts, self.stack)
-        _warn_of_residual(facts)
+        self._note_residual(facts)
         if facts["event"] == self.simulation.event_count:
             for note in notes_after(parse_events(self.results.events.path), self.scene.data):
-                record_note(self.sequence, note)
+                record_note(self.sequence, note, ResultNote)
+
+    def _note_residual(self, facts: Mapping[str, Any]) -> None:
+        """Note that the time integration gained or lost too much energy."""
+        share = facts["energy_residual"]
+        if share is not None and share > MAX_RESIDUAL:
+            note = (
+                f"event {facts['event']}: the energy balance has a residual of {share:.2g} of the "
+                f"largest energy, above {MAX_RESIDUAL:g}; a smaller courant_factor or dx may help"
+            )
+            record_note(self.sequence, note, ResultNote)
 
     def before_checkpoint(self) -> None:
         """Store the checksums of the tables, which are cut to the checkpoint when a run resumes.
@@ -200,18 +209,6 @@ class StackRun(MethodRun):
     ) -> StackMeasure:
         return measure_particles(
             self.simulation, self.scene.data, positions, masses, density, on_panel
-        )
-
-
-def _warn_of_residual(facts: Mapping[str, Any]) -> None:
-    """Warn if the time integration gained or lost too much energy."""
-    share = facts["energy_residual"]
-    if share is not None and share > MAX_RESIDUAL:
-        warnings.warn(
-            f"event {facts['event']}: the energy balance has a residual of {share:.2g} of the "
-            f"largest energy, above {MAX_RESIDUAL:g}; a smaller courant_factor or dx may help",
-            FutureWarning,
-            stacklevel=caller_level(),
         )
 
 

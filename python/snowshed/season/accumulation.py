@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Optional
 
 from snowshed.base.arguments import checked
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import InputNote, issue_note
 from snowshed.running.ageing.ageing import Ageing, Interval
 from snowshed.season.release import SnowBalance, snow_balance
 from snowshed.season.settings import SeasonSettings
@@ -93,7 +93,7 @@ def accumulate(
     earlier = season.notes if isinstance(season, ReadSeason) else ()
     for note in warm_snow(check_given_rows(season)):
         if note not in earlier:
-            issue_note(note)
+            issue_note(note, InputNote)
     return snow_on_panel(season, settings, tilt, gravity)
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
+from snowshed.base.notes import InputNote, ResultNote, issue_note
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
 from snowshed.io.atomic import write_text
@@ -93,6 +94,9 @@ def run_season(
 ) -> SeasonResult:
     """Simulate a season: snow accumulates on a panel, is released, and piles up below it.
 
+    Notes on the weather come first, and those on the limits of the results last; the notes of the
+    result have its assumptions, too.
+
     Parameters
     ----------
     season
@@ -145,6 +149,34 @@ def run_season(
         season, scene, settings=settings, coverage=coverage, snow_from=snow_from,
         temperature=temperature,
     )  # fmt: skip
+    earlier = [*plan.record.notes, *plan.winters.shortfalls]
+    for note in earlier:
+        issue_note(note, InputNote)
+    result = simulate_season(
+        plan, folder, settings=settings, resume=resume, overwrite=overwrite, progress=progress,
+        pictures=pictures,
+    )  # fmt: skip
+    issued = {*earlier, *assumptions(result.table, plan.days, settings)}
+    for note in result.notes:
+        if note not in issued:
+            issue_note(note, ResultNote)
+    return result
+
+
+def simulate_season(
+    plan: SeasonPlan,
+    folder: PathLike,
+    *,
+    settings: SeasonSettings,
+    resume: bool = False,
+    overwrite: bool = False,
+    progress: Optional[Reporter] = None,
+    pictures: bool = True,
+) -> SeasonResult:
+    """Simulate a planned season; its notes are in the result, and are not issued.
+
+    Parameters and errors are those of `run_season`.
+    """
     files = SeasonFolder(folder)
     if resume and overwrite:
         raise InputError("resume, overwrite: give one of the two")

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Optional
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
 from snowshed.base.field_type import shown
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import ResultNote, issue_note
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
 from snowshed.io.atomic import write_text
@@ -383,7 +383,7 @@ def _issue_failures(folder: PathLike, study: str) -> None:
     failed = [run for run in runs if run.status == "failed"]
     if failed:
         first = f"{failed[0].hash[:12]}: {failed[0].error}"
-        issue_note(f"{len(failed)} of {len(runs)} runs failed: {first}")
+        issue_note(f"{len(failed)} of {len(runs)} runs failed: {first}", ResultNote)
 
 
 def _check_values(

@@ -1,7 +1,8 @@
 """Laws of one's own in studies: named, so that every process that computes runs can make them.
 
 The JSON object of a run has the additional key ``laws``: the name of the function that makes them,
-and the files of their source. The identity of the run covers the contents of these files.
+and the files of their source. The identity of the run covers the contents of these files, and the
+code of the functions where it can be known (`snowshed.running.law_digest`).
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import inspect
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from types import ModuleType
 from typing import Any, Optional
@@ -84,10 +86,18 @@ class NamedLaws:
             raise InputError(f"laws: {self.make} gives a {type(laws).__name__}; needed: Laws")
         return laws
 
-    def data(self) -> dict[str, object]:
-        """Return the laws as JSON data of a run; raises InputError as `laws` does."""
+    def data(self, precision: str = "double") -> dict[str, object]:
+        """Return the laws as JSON data of a run; raises InputError as `laws` does.
+
+        `precision` is that of the run's scene.
+        """
         sources = [_source(self._module()), *map(str, self.files)]
-        return {"make": self.make, "sources": [{"file": file} for file in sources]}
+        data: dict[str, object] = {
+            "make": self.make,
+            "sources": [{"file": file} for file in sources],
+        }
+        digest = _digest(self, precision, tuple(map(_state, sources)))
+        return data if digest is None else {**data, "digest": digest}
 
     def _module(self) -> ModuleType:
         name = self.make.partition(":")[0]
@@ -97,6 +107,17 @@ class NamedLaws:
             raise InputError(
                 f"laws: no module {error.name} on Python's path; set PYTHONPATH to its folder"
             ) from None
+
+
+@lru_cache(maxsize=16)
+def _digest(named: NamedLaws, precision: str, sources: tuple[object, ...]) -> Optional[str]:
+    """Return the digest of the laws' code; made again when a source changes."""
+    return named.laws().digest(precision)
+
+
+def _state(file: str) -> tuple[int, int]:
+    facts = Path(file).stat()
+    return facts.st_mtime_ns, facts.st_size
 
 
 def laws_of_run(scene: Mapping[str, Any]) -> Optional[Laws]:

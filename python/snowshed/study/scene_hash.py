@@ -97,7 +97,7 @@ class RunKey:
         """
         data = with_ageing(scene.copied_data(), ageing)
         if laws is not None:
-            data[LAWS] = laws.data()
+            data[LAWS] = laws.data(str(data["numerics"].get("precision", "double")))
         data["numerics"]["threads"] = 0
         data["output"].update(snapshot_interval=0.0, film=False, energy=False)
         return cls(content_hash(data), json.dumps(data))

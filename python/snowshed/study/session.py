@@ -22,7 +22,7 @@ from snowshed.base.field_type import shown
 from snowshed.base.formatting import plural
 from snowshed.base.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.base.log import LOGGER
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import ResultNote, issue_note
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Progress, Reporter
 from snowshed.io.locks import is_held
@@ -108,10 +108,10 @@ def compute_runs(
     """
     resources = Resources(jobs, threads, scheduler)
     with Store.create(folder) as store:
-        if study in store.studies() and store.axes(study) != list(axes):
+        if study in store.studies() and (other := _difference(store, study, axes, runs)):
             issue_note(
-                f"{study}: replaces a study of that name with other parameters; its results stay "
-                "in the store"
+                f"{study}: replaces a study of that name with {other}; its results stay in the "
+                "store"
             )
         aside = store.register(
             study, axes, runs, keep_particles=keep_particles, same_version=same_version
@@ -123,6 +123,16 @@ def compute_runs(
                 f"{_same_version()} uses them"
             )
         _compute(store, [study], resources, retry_failed, progress)
+
+
+def _difference(store: Store, study: str, axes: Sequence[str], runs: Sequence[RunKey]) -> str:
+    """Return in what a study differs from the stored one of its name; "" if it may extend it."""
+    if store.axes(study) != list(axes):
+        return "other parameters"
+    stored = {run.hash for run in store.runs(study)}
+    return (
+        "" if stored & {run.hash for run in runs} or not stored else "another scene or other values"
+    )
 
 
 @checked
@@ -216,9 +226,9 @@ def _compute(
 def _issue_run_notes(notes: Counter[str]) -> None:
     """Issue the notes on runs, the most frequent first."""
     for note, runs in notes.most_common(MAX_NOTES):
-        issue_note(f"{runs} {'run' if runs == 1 else 'runs'}: {note}")
+        issue_note(f"{runs} {'run' if runs == 1 else 'runs'}: {note}", ResultNote)
     if len(notes) > MAX_NOTES:
-        issue_note(f"{len(notes) - MAX_NOTES} further notes on runs")
+        issue_note(f"{len(notes) - MAX_NOTES} further notes on runs", ResultNote)
 
 
 def _check_version(store: Store, pending: Sequence[StoredRun]) -> None:

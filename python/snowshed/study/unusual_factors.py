@@ -20,12 +20,17 @@ Point = Mapping[str, object]
 def note_on_unusual_values(scene: Scene, parts: Sequence[Part]) -> None:
     """Issue the scene's note on an unusual value of each factor, at most one for each.
 
-    The points with the smallest and the largest value of each parameter are looked at. Runs note
-    the values of scenes that name files, because reading these takes long, and of wrong scenes.
+    The points with the smallest and the largest value of each parameter are looked at. Of scenes
+    that name files only the values are, not the files, because reading these takes long. Runs note
+    the values of wrong scenes.
     """
     notes = (note for part in parts for note in _notes_on_part(scene, part))
     for note in dict.fromkeys(notes):  # parts may have the same factors
         issue_note(note)
+    paths = {path for part in parts for factor in part for path in factor.columns}
+    if "dimension" not in paths and scene.dimension == 2:
+        for path in sorted(path for path in paths if path.endswith(".width")):
+            issue_note(f"{path}: has no effect in 2D; all its values give the same results")
 
 
 def _notes_on_part(scene: Scene, part: Part) -> Iterator[str]:
@@ -70,7 +75,7 @@ def _notes_at(scene: Scene, point: Point) -> Sequence[str]:
             warnings.simplefilter("ignore")
             resolved = scene.with_(point).resolve()
             if any(named_files(resolved.data)):
-                return []
+                return resolved.core.unusual_values
             return list(_core.Simulation(resolved.core, resolved.base_dir).notes)
     except (InputError, OSError):
         return []

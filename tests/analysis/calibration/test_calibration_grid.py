@@ -118,8 +118,11 @@ def test_measurements_and_tables_that_do_not_match_are_refused():
     stacks = simulated(table)
     value = stack(TRUTH, 40, 1)[0]
     for measurement, message in (
-        (Measurement(30.0, 1, 1, "height", value, 0.01, 7), "tilt 30, measured in line 7"),
-        (Measurement(40.0, 6, 1, "height", value, 0.01, 8), "event 6, measured in line 8"),
+        (
+            Measurement(30.0, 1, 1, "height", value, 0.01, 7, "line 7"),
+            "tilt 30, measured in line 7",
+        ),
+        (Measurement(40.0, 6, 1, "height", value, 0.01, 8, "row 8"), "event 6, measured in row 8"),
     ):
         with pytest.raises(InputError, match=message):
             compare_stacks(stacks, [measurement])

@@ -51,7 +51,9 @@ def test_a_data_frame_is_read_as_its_file(tmp_path, index):
     frame.to_csv(tmp_path / "stacks.csv", index=False)
     from_frame = read_measurements(frame.set_index(index) if index else frame)
     from_file = read_measurements(tmp_path / "stacks.csv")
-    assert from_frame == [replace(row, line=row.line - 1) for row in from_file]
+    assert from_frame == [
+        replace(row, line=row.line - 1, place=f"row {row.line - 1}") for row in from_file
+    ]
     assert len(from_frame) == 3
 
 

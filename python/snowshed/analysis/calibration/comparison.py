@@ -108,7 +108,7 @@ def compare_stacks(stacks: SimulatedStacks, measurements: Sequence[Measurement])
     ------
     InputError
         If the study has no run for a measured tilt or event (the message has the measurement's
-        line), or if no set has all measured stacks.
+        line or row), or if no set has all measured stacks.
     """
     for measurement in measurements:
         _check_simulated(stacks, measurement)
@@ -128,12 +128,14 @@ def _check_simulated(stacks: SimulatedStacks, measurement: Measurement) -> None:
     if measurement.tilt not in tilts:
         listed = ", ".join(f"{tilt:g}" for tilt in tilts)
         raise InputError(
-            f"tilt {measurement.tilt:g}, measured in line {measurement.line}: no such run; there "
-            f"are: {listed}"
+            f"tilt {measurement.tilt:g}{_place(measurement)}: no such run; there are: {listed}"
         )
     last = int(stacks.rows["event"].max())
     if measurement.event > last:
         raise InputError(
-            f"event {measurement.event}, measured in line {measurement.line}: its runs have "
-            f"{last} events"
+            f"event {measurement.event}{_place(measurement)}: its runs have {last} events"
         )
+
+
+def _place(measurement: Measurement) -> str:
+    return f", measured in {measurement.place}" if measurement.place else ""

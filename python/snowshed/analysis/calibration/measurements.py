@@ -96,6 +96,8 @@ class Measurement:
         The measured value and its standard deviation, m.
     line
         Line in the file, or row of the DataFrame, from 1.
+    place
+        The same for messages, such as "line 3" or "row 2".
 
     Raises
     ------
@@ -110,6 +112,7 @@ class Measurement:
     value: float
     uncertainty: float
     line: int = 0
+    place: str = ""
 
     def __post_init__(self) -> None:
         if self.quantity not in QUANTITIES:
@@ -246,7 +249,7 @@ def _check_header(names: Sequence[str], where: str) -> None:
 
 @dataclass(frozen=True)
 class _Row:
-    """One line of the file, as measurements."""
+    """One row of the file or the DataFrame, as measurements."""
 
     row: TableRow
 
@@ -255,11 +258,11 @@ class _Row:
         return self.row.cells
 
     def measurements(self, seen: dict[tuple[float, int, int], str]) -> list[Measurement]:
-        """Return the measurements of the line; `seen` holds the line of every stack so far."""
+        """Return the measurements of the row; `seen` holds the place of every stack so far."""
         key = self._tilt(), self._whole_number("event"), self._whole_number(ROUND, 1)
         values = {quantity: self._value(quantity) for quantity in QUANTITIES}
         measurements = [
-            Measurement(*key, quantity, *value, self.row.number)
+            Measurement(*key, quantity, *value, self.row.number, self.row.place)
             for quantity, value in values.items()
             if value is not None
         ]

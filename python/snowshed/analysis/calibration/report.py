@@ -22,7 +22,7 @@ from snowshed.analysis.calibration.surrogate import EXTRA, Surrogate
 from snowshed.base.arguments import checked
 from snowshed.base.callers import STUDY_RESUME, either
 from snowshed.base.extras import require
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import ResultNote, issue_note
 from snowshed.base.paths import PathLike
 from snowshed.io.atomic import replacing
 from snowshed.io.csv_table import write_csv
@@ -136,7 +136,7 @@ def calibrate(
         stacks, comparison, ranked, sample_posterior(surrogate, used, steps=steps, seed=seed)
     )
     for note in calibration.notes:
-        issue_note(note)
+        issue_note(note, ResultNote)
     return calibration
 
 

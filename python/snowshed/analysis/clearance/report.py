@@ -279,7 +279,7 @@ def _worst_winter(
     from tempfile import TemporaryDirectory
 
     from snowshed.results.view import write_view
-    from snowshed.season.driver import run_season
+    from snowshed.season.driver import plan_season, simulate_season
 
     case, outcomes = answer.cases[answer.worst_case_index], answer.outcomes[answer.worst_case_index]
     if not case.has_releases:
@@ -288,7 +288,8 @@ def _worst_winter(
     with TemporaryDirectory() as folder:
         out = Path(folder) / "season"
         scene = scene_with_forces(answer, answer.worst_case_index, reached[-1])
-        run_season(case.winter.days, scene, out, settings=case.settings)
+        plan = plan_season(case.winter.days, scene, settings=case.settings)
+        simulate_season(plan, out, settings=case.settings)
         write_view(out, view)
         picture = Picture.read(
             out / "season.png",

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
 from snowshed.base.callers import argument
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import InputNote, issue_note
 from snowshed.season.weather.quality import COVERAGE
 from snowshed.season.weather.row import Weather
 from snowshed.season.weather.season_record import SeasonRecord, WinterList, whole_percent
@@ -65,7 +65,7 @@ def split_winters(season: Sequence[Weather], coverage: float = COVERAGE) -> list
     record = SeasonRecord(season).winters(coverage)
     winters = counted_winters(record)
     for note in record.notes:
-        issue_note(note)
+        issue_note(note, InputNote)
     return winters
 
 

@@ -15,7 +15,7 @@ from snowshed.analysis.tomography.ice_image import IceImage
 from snowshed.base.arguments import checked
 from snowshed.base.arrays import AnyIntegers, Labels, positive
 from snowshed.base.callers import argument
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import InputNote, issue_note
 from snowshed.base.paths import PathLike
 from snowshed.io.atomic import replacing
 from snowshed.io.voxels.array_files import open_npy
@@ -198,7 +198,7 @@ def _checked_labels(file: Path, labels: AnyIntegers, split: bool) -> Labels:
     except InputError as error:
         raise InputError(f"{file}: {error}") from None
     if note:
-        issue_note(f"{file}: {note}")
+        issue_note(f"{file}: {note}", InputNote)
     return _core.split_labels(labelled) if split else labelled
 
 

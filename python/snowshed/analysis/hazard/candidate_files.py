@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Union
 
 from snowshed.analysis.hazard.candidates import CAUTION, ReleaseCandidate, ReleaseCandidates
 from snowshed.base.arguments import checked
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import InputNote, issue_note
 from snowshed.base.paths import PathLike
 from snowshed.io.csv_table import write_csv
 from snowshed.io.polygons.output import check_ending, write_polygons
@@ -65,7 +65,9 @@ def write_candidates(path: PathLike, candidates: ReleaseCandidates) -> list[Path
     file = Path(path)
     check_ending(file)
     if not candidates.crs:
-        issue_note(f"{file}: has no coordinate system, because that of the terrain is unknown")
+        issue_note(
+            f"{file}: has no coordinate system, because that of the terrain is unknown", InputNote
+        )
     table = candidate_table(candidates)
     fields: dict[str, list[Union[str, float, None]]] = {
         str(name): [None if value != value else value for value in column.tolist()]

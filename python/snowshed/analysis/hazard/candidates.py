@@ -27,7 +27,7 @@ from snowshed.base.arguments import checked
 from snowshed.base.arrays import Booleans, Floats, Integers
 from snowshed.base.callers import argument
 from snowshed.base.limits import MAX_CORNERS, MAX_POLYGONS
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import InputNote, issue_note
 from snowshed.io.raster.areas import MapArea, Ring
 from snowshed.io.raster.cell_outlines import cell_outlines, corner_count
 from snowshed.io.raster.raster import Raster
@@ -231,7 +231,8 @@ def find_release_areas(
                 f"smaller ones show rougher ground ({averaging} averages them)"
                 if terrain.cell < RULE_CELL
                 else "larger ones hide ridges and rough ground"
-            )
+            ),
+            InputNote,
         )
     shape = terrain_shape(terrain)
     labels, remaining = _labelled(terrain, shape, rules, forest)
@@ -286,7 +287,8 @@ def _forest_cells(forest: Union[Raster, Sequence[MapArea]], terrain: Raster) -> 
     if np.isnan(values).any():
         issue_note(
             f"{forest.name}: has no value in {np.isnan(values).mean():.0%} of the terrain, where "
-            "no forest is assumed"
+            "no forest is assumed",
+            InputNote,
         )
     return values > 0.0
 
@@ -302,7 +304,8 @@ def _check_count(terrain: Raster, labels: Integers, cells: Booleans) -> None:
     if count > MAX_POLYGONS or corners > MAX_CORNERS:
         issue_note(
             f"{facts}; a slide takes {MAX_POLYGONS} areas with {MAX_CORNERS} corners, so select "
-            "some of them"
+            "some of them",
+            InputNote,
         )
 
 

@@ -16,7 +16,7 @@ from snowshed.analysis.tomography.ice_image import IceImage, check_phases
 from snowshed.analysis.tomography.parts import largest_part
 from snowshed.base.arguments import checked
 from snowshed.base.arrays import finite, positive
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import InputNote, issue_note
 from snowshed.io.voxels.voxel_file import VoxelFile
 
 #: Relative difference of the voxel sizes of file and options that a note reports.
@@ -147,7 +147,10 @@ def _voxel_size(file: VoxelFile, given: Optional[float]) -> float:
     size = positive("voxel size", given)
     for stated, source in ((file.voxel_size, "the file"), (file.printed_size, "its resolution")):
         if stated is not None and abs(stated - size) > MAX_SIZE_DEVIATION * size:
-            issue_note(f"{file.name}: voxels of {size:g} m, as given; {source} says {stated:.4g} m")
+            issue_note(
+                f"{file.name}: voxels of {size:g} m, as given; {source} says {stated:.4g} m",
+                InputNote,
+            )
     return size
 
 

@@ -271,13 +271,13 @@ def _run(
     quiet: bool,
 ) -> SeasonResult:
     from snowshed.cli.output.progress import progress_bar
-    from snowshed.season.driver import run_season
+    from snowshed.season.driver import plan_season, simulate_season
 
-    options = {**reading, "resume": resume}
+    plan = plan_season(season_files, scene, settings=settings, **reading)
     try:
         with progress_bar(quiet=quiet) as progress:
-            return run_season(
-                season_files, scene, folder, settings=settings, progress=progress, **options
+            return simulate_season(
+                plan, folder, settings=settings, resume=resume, progress=progress
             )
     except Interrupted:
         raise Stopped("interrupted; resume with the same command and --resume") from None

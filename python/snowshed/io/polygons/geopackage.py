@@ -25,7 +25,7 @@ from snowshed.base.limits import (
     MB,
 )
 from snowshed.base.messages import quoted
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import InputNote, issue_note
 from snowshed.io.atomic import replacing
 from snowshed.io.coordinates.plain_systems import plain_system
 from snowshed.io.coordinates.systems import system_of
@@ -180,7 +180,8 @@ class _Package:
         if len(every) > 1:
             issue_note(
                 f"{self.path}: layer {quoted(str(readable[0][0]))} is read, the only one that "
-                f"may hold {noun}; the layers are {names}"
+                f"may hold {noun}; the layers are {names}",
+                InputNote,
             )
         return str(readable[0][0]), str(readable[0][1]), readable[0][3]
 

@@ -13,7 +13,7 @@ from snowshed._core import InputError
 from snowshed.base.extras import require
 from snowshed.base.limits import MAX_CORNERS, MAX_POLYGONS, MAX_RINGS
 from snowshed.base.messages import shortened
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import InputNote, issue_note
 from snowshed.io.coordinates.gdal_fence import fenced_pyogrio
 from snowshed.io.coordinates.systems import read_system
 from snowshed.io.polygons.layer import PolygonLayer, is_wanted
@@ -55,7 +55,7 @@ def read_shapefile(path: Path, *, lines: bool = False) -> PolygonLayer:
                 f"{path}: not a file of polygons: {shortened(str(error), 300)}"
             ) from None
     for warning in dict.fromkeys(shortened(str(caught.message), 300) for caught in log):
-        issue_note(f"{path}: GDAL says: {warning}")
+        issue_note(f"{path}: GDAL says: {warning}", InputNote)
     rows = zip(*columns) if columns else [()] * len(shapes)
     names = [str(name) for name in meta["fields"]]
     return PolygonLayer(

@@ -17,7 +17,7 @@ from snowshed._core import InputError
 from snowshed.base.callers import argument
 from snowshed.base.extras import require
 from snowshed.base.messages import shortened
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import InputNote, issue_note
 from snowshed.base.paths import PathLike
 from snowshed.io.coordinates.systems import is_in_degrees
 from snowshed.io.polygons import read_layer
@@ -134,7 +134,7 @@ def read_map_layer(
         )
     _check_shapes(features.shapes, path, lines=lines)
     if not features.crs:
-        issue_note(f"{path}: has no coordinate system; that of the terrain is assumed")
+        issue_note(f"{path}: has no coordinate system; that of the terrain is assumed", InputNote)
     return features
 
 

@@ -23,7 +23,7 @@ from snowshed.base.callers import argument
 from snowshed.base.extras import require
 from snowshed.base.limits import MAX_RASTER_BLOCK_BYTES, MAX_RASTER_CELLS
 from snowshed.base.messages import quoted
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import InputNote, issue_note
 from snowshed.io.coordinates.gdal_fence import fenced_rasterio
 from snowshed.io.input_file import read_regular
 from snowshed.io.raster.sidecars import sidecar, small_file
@@ -180,7 +180,7 @@ def _checked_band(source: Any, path: Path, band: Optional[int]) -> int:
         raise InputError(f"{path}: holds {source.dtypes[chosen - 1]} values, which are not heights")
     if len(bands) > 1:
         title = _band_names(source, [chosen])
-        issue_note(f"{path.name}: band {chosen} of {len(bands)} is read ({title})")
+        issue_note(f"{path.name}: band {chosen} of {len(bands)} is read ({title})", InputNote)
     return chosen
 
 
@@ -233,7 +233,10 @@ def _note_on_sidecar(
     if changed:
         shown = [f"{name} {getattr(facts, name)}" for name in changed if name != "system"]
         shown += ["coordinate system"] if "system" in changed else []
-        issue_note(f"{path.name}.aux.xml, beside the raster, gives its {quoted(', '.join(shown))}")
+        issue_note(
+            f"{path.name}.aux.xml, beside the raster, gives its {quoted(', '.join(shown))}",
+            InputNote,
+        )
 
 
 def _missing(source: Any, band: int) -> Booleans:
@@ -272,10 +275,15 @@ def _in_metres(values: Any, facts: BandFacts, factor: float, path: Path) -> Floa
         heights *= scale
         heights += offset
         issue_note(f"{path.name}: its numbers were multiplied by {scale:.10g}"
-             + (f", and {offset:.10g} added" if offset else ""))  # fmt: skip
+             + (f", and {offset:.10g} added" if offset else ""),
+    InputNote,
+)  # fmt: skip
     if factor != 1.0:
         heights *= factor
-        issue_note(f"{path.name}: its values were converted to metres; one unit is {factor:.10g} m")
+        issue_note(
+            f"{path.name}: its values were converted to metres; one unit is {factor:.10g} m",
+            InputNote,
+        )
     return heights
 
 

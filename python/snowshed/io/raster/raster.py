@@ -11,7 +11,7 @@ import numpy as np
 from snowshed._core import InputError, read_ascii_grid
 from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import InputNote, issue_note
 from snowshed.base.paths import PathLike
 from snowshed.io.atomic import replacing
 from snowshed.io.coordinates.systems import read_prj
@@ -136,15 +136,19 @@ def _read_ascii(path: Path) -> Raster:
     heights, west, south, cell, missing, comma_count = read_ascii_grid(str(path))
     refuse_other_facts(path, heights)
     if missing:
-        issue_note(f"{path.name}: {missing} values of -9999 are missing; the header declares none")
+        issue_note(
+            f"{path.name}: {missing} values of -9999 are missing; the header declares none",
+            InputNote,
+        )
     if comma_count:
-        issue_note(f"{path.name}: {comma_count} numbers have a decimal comma")
+        issue_note(f"{path.name}: {comma_count} numbers have a decimal comma", InputNote)
     raster = Raster(heights, west, south, cell, str(path), read_prj(path), plain=True)
     system, metres_per_unit = split_vertical(raster.crs, str(path))
     if metres_per_unit in (None, 1.0):
         return replace(raster, crs=system)
     issue_note(
-        f"{path.name}: its values were converted to metres; one unit is {metres_per_unit:.10g} m"
+        f"{path.name}: its values were converted to metres; one unit is {metres_per_unit:.10g} m",
+        InputNote,
     )
     return replace(raster, crs=system, heights=heights * metres_per_unit, plain=False)
 

@@ -11,7 +11,7 @@ from typing import Any, Optional
 from snowshed._core import InputError
 from snowshed.base.formatting import number_in
 from snowshed.base.messages import quoted
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import InputNote, issue_note
 
 #: Names of the field; the first is AvaFrame's.
 NAMES = ("thickness", "d0")
@@ -104,15 +104,15 @@ def thickness_fields(fields: Sequence[str], file: str) -> list[ThicknessField]:
         candidates.append(ThicknessField(field, METRES[unit[2].lower()]))
     if candidates and candidates[0].name != NAMES[0]:
         in_unit = next(unit for unit, metres in METRES.items() if metres == candidates[0].metres)
-        issue_note(
-            f"{file}: the thickness is that of its field {quoted(candidates[0].name)}, in {in_unit}"
-        )
+        name = quoted(candidates[0].name)
+        issue_note(f"{file}: the thickness is that of its field {name}, in {in_unit}", InputNote)
     if not candidates:
         alike = [field for field in fields if any(word in field.lower() for word in ALIKE)]
         if alike:
             issue_note(
                 f"{file}: no field is called thickness or d0; ignored as a thickness: "
-                f"{', '.join(quoted(field) for field in alike[:5])}"
+                f"{', '.join(quoted(field) for field in alike[:5])}",
+                InputNote,
             )
     return candidates
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from snowshed._core import InputError
 from snowshed.base.damage import DAMAGED
 from snowshed.base.messages import quoted
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import InputNote, issue_note
 from snowshed.io.input_file import open_regular, stored_bytes
 from snowshed.io.voxels.turned import Turn, turned
 from snowshed.io.voxels.voxel_file import VoxelFile, check_size, check_type, check_unpacked
@@ -131,7 +131,9 @@ def numbers_of(
             )
         check_unpacked(str(data), count, stored_bytes(file, count))
     if size > start + count:
-        issue_note(f"{data}: {size - start - count:,} bytes after the image are left out")
+        issue_note(
+            f"{data}: {size - start - count:,} bytes after the image are left out", InputNote
+        )
     nz, ny, nx = shape
     layer = ny * nx
 

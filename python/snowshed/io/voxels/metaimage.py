@@ -13,7 +13,7 @@ from typing import Optional
 
 import numpy as np
 
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import InputNote, issue_note
 from snowshed.io.voxels.array_files import number_type, numbers_of
 from snowshed.io.voxels.metaimage_fields import HeaderFields
 from snowshed.io.voxels.packed_numbers import packed_numbers
@@ -63,7 +63,9 @@ def open_metaimage(path: Path) -> VoxelFile:
     image = VoxelFile(str(path), opened.shape, opened.dtype, opened.read_layers, spacing)
     turn = _turn(fields)
     if not turn.is_none:
-        issue_note(f"{path}: the image is rotated according to its {fields.given(*MATRICES)}")
+        issue_note(
+            f"{path}: the image is rotated according to its {fields.given(*MATRICES)}", InputNote
+        )
     return turned(image, turn)
 
 
@@ -164,7 +166,8 @@ def _note_on_scale(fields: HeaderFields) -> None:
     if (slope, offset) != (1.0, 0.0):
         issue_note(
             f"{fields.path}: the stored numbers are used; ElementToIntensityFunctionSlope "
-            f"{slope:g} and Offset {offset:g} are not applied, also not to thresholds"
+            f"{slope:g} and Offset {offset:g} are not applied, also not to thresholds",
+            InputNote,
         )
 
 
@@ -175,7 +178,8 @@ def _spacing(fields: HeaderFields) -> Optional[float]:
         return None
     if name == "ElementSize":
         issue_note(
-            f"{fields.path}: ElementSize is used as the spacing, because ElementSpacing is missing"
+            f"{fields.path}: ElementSize is used as the spacing, because ElementSpacing is missing",
+            InputNote,
         )
     unit = fields.text("DistanceUnits", "mm").lower()
     unit = {"?": "mm", "\N{MICRO SIGN}m": "um", "\N{GREEK SMALL LETTER MU}m": "um"}.get(unit, unit)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from snowshed._core import InputError
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import InputNote, issue_note
 from snowshed.io.voxels.voxel_file import VoxelFile, check_size, check_unpacked
 
 #: By the tag Orientation: whether the stored picture is transposed, and then mirrored along y and x
@@ -82,9 +82,9 @@ def stacked(
     transposed = ORIENTATIONS[orientation][0]
     shape = (len(pictures), width, height) if transposed else (len(pictures), height, width)
     for note in first.notes:
-        issue_note(f"{name}: {note}")
+        issue_note(f"{name}: {note}", InputNote)
     if orientation != 1:
-        issue_note(f"{name}: turned as the tag Orientation ({orientation}) says")
+        issue_note(f"{name}: turned as the tag Orientation ({orientation}) says", InputNote)
 
     def read(low: int, high: int) -> NDArray[Any]:
         layers = np.empty((high - low, *shape[1:]), dtype=first.dtype.newbyteorder("="))

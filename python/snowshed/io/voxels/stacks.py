@@ -9,7 +9,7 @@ from typing import Optional
 
 from snowshed._core import InputError
 from snowshed.base.limits import MAX_PAGES
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import InputNote, issue_note
 from snowshed.io.voxels.pixel_picture import PixelPicture, stacked
 from snowshed.io.voxels.png_bmp import open_picture
 from snowshed.io.voxels.tiff.description import Description, parse_description
@@ -42,10 +42,11 @@ def open_stack(path: Path) -> VoxelFile:
         else:
             issue_note(
                 f"{path}: its description gives {description.slices} slices; it has "
-                f"{len(pictures)} pages, which are read"
+                f"{len(pictures)} pages, which are read",
+                InputNote,
             )
     for note in description.notes:
-        issue_note(f"{path}: {note}")
+        issue_note(f"{path}: {note}", InputNote)
     return stacked(str(path), pictures, description.voxel_size, printed)
 
 
@@ -102,7 +103,10 @@ def _printed_size(tags: Tags) -> Optional[float]:
     if unit is None or across is None or along is None:
         return None
     if not isclose(across, along, rel_tol=1e-3):
-        issue_note(f"{tags.name}: its resolution tags declare pixels that are not square; ignored")
+        issue_note(
+            f"{tags.name}: its resolution tags declare pixels that are not square; ignored",
+            InputNote,
+        )
         return None
     if any(isclose(across * INCH / unit, usual, rel_tol=1e-2) for usual in USUAL_DPI):
         return None
@@ -136,7 +140,8 @@ def _numbered_slices(folder: Path) -> list[Path]:
     if len(named) > 1:
         first, other = [path.name for path in named.values()][:2]
         issue_note(
-            f"{folder}: its slices have several names, {first} and {other}; all are one stack"
+            f"{folder}: its slices have several names, {first} and {other}; all are one stack",
+            InputNote,
         )
     order = sorted(numbers)
     for one_number, following in zip(order, order[1:]):

@@ -23,6 +23,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, ClassVar
 
+from snowshed.base.notes import InputNote, ResultNote
 from snowshed.io.atomic import write_text
 from snowshed.methods.grains.contacts import CONTACTS, grain_contacts
 from snowshed.methods.grains.curve import CURVE, loading_curve
@@ -45,7 +46,7 @@ class GrainsRun(MethodRun):
         self.stages = self.scene.data["loading"]
         self.sample_notes = [note] if (note := self.simulation.input_note()) else []
         for note in self.sample_notes:
-            record_note(self.sequence, note)
+            record_note(self.sequence, note, InputNote)
         self.written = time.monotonic()
 
     def status_line(self, time_s: float) -> str:
@@ -82,7 +83,7 @@ class GrainsRun(MethodRun):
         )  # fmt: skip
         summary.write(self.folder)
         for note in summary.notes:
-            record_note(self.sequence, note)
+            record_note(self.sequence, note, ResultNote)
         write_text(self.folder / CONTACTS, self.contacts.text())
         self.write_energies(facts, history=False)  # the curve has the energies over time
         seal_files(self.sequence, self.folder, CURVE, GrainsSummary.FILE, CONTACTS)

@@ -27,6 +27,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 import snowshed._core as _core
+from snowshed.base.notes import ResultNote
 from snowshed.io.atomic import replacing
 from snowshed.io.film import FILM, Film
 from snowshed.methods.slide.event_notes import event_notes
@@ -76,7 +77,7 @@ class SlideRun(MethodRun):
             write_maps_of_run(self.folder, self.maps, crs, self.options.map_format)
         self.summary.write(self.folder)
         for note in self.summary.notes:
-            record_note(self.sequence, note)
+            record_note(self.sequence, note, ResultNote)
         self.write_energies(facts)
         seal_files(self.sequence, self.folder, SlideSummary.FILE)
         self.sequence.rewrite_record()

@@ -14,7 +14,7 @@ from snowshed.base.callers import argument
 from snowshed.base.extras import require
 from snowshed.base.limits import MAX_CELLS_PER_BYTE, MAX_RASTER_CELLS, UNCHECKED_RASTER_CELLS
 from snowshed.base.paths import PathLike
-from snowshed.io.coordinates.systems import are_same, is_in_feet
+from snowshed.io.coordinates.systems import are_same, is_in_degrees, is_in_feet
 from snowshed.io.raster.areas import MapArea
 from snowshed.io.raster.raster import Raster, read_raster
 
@@ -172,8 +172,18 @@ def common_system(named: Sequence[tuple[str, str]]) -> str:
     ----------
     named
         Files, and their coordinate systems as text.
+
+    Raises
+    ------
+    InputError
+        If they differ, or a map is in degrees.
     """
     given = [(file, system) for file, system in named if system]
+    for file, system in given:
+        if is_in_degrees(system):
+            raise InputError(
+                f"{file}: its map is in degrees ({system}); project it to metres first"
+            )
     for file, system in given[1:]:
         if not are_same(system, given[0][1]):
             raise InputError(

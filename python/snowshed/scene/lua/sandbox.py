@@ -14,7 +14,7 @@ from typing import Any, Optional, Union
 
 from snowshed._core import InputError
 from snowshed.base.extras import require
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import InputNote, issue_note
 from snowshed.scene.lua.limits import LuaLimits
 
 PROGRAM = Path(__file__).with_name("child.py")
@@ -118,7 +118,8 @@ def run_sandboxed(
     for script, line, name in answer["unset"]:
         place = f"{names[int(script) - 1]}:{line}"
         issue_note(
-            f"{place}: {_printable(name)} has no value; a setting without one stays as it is"
+            f"{place}: {_printable(name)} has no value; a setting without one stays as it is",
+            InputNote,
         )
     return [
         Call(word, arguments, ScriptLine(names[script - 1], line))
@@ -134,7 +135,8 @@ def _note_hidden_words(script: Script, words: set[str]) -> None:
             if name in words:
                 issue_note(
                     f"{ScriptLine(script.name, number)}: the local variable {name} hides the word "
-                    f'{name}; {name} {{...}} without "local" and "=" describes it'
+                    f'{name}; {name} {{...}} without "local" and "=" describes it',
+                    InputNote,
                 )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from datetime import date, datetime
+from statistics import median
 
 from snowshed._core import InputError
 from snowshed.base.field_type import shown
@@ -28,6 +29,8 @@ MIN_LONE_GAP_DAYS = 3 * YEAR
 #: Temperature of a row, degrees C, at which no snow falls. It is well above that of all rain
 #: (`gauge.ALL_RAIN`), because the mean of a day is not the temperature of its snowfall.
 TOO_WARM_FOR_SNOW = 10.0
+#: Median temperature of at least so many snowfalls, degrees C, at which most precipitation is rain.
+MILD_FOR_SNOW, MIN_SNOWFALLS = 5.0, 5
 NO_SNOW = "it never snows"
 HINT = "is it in cm, mm or inches?"
 
@@ -111,12 +114,22 @@ def warm_snow(rows: Sequence[Weather]) -> list[str]:
     """
     warm = [row for row in rows if _is_warm_snow(row)]
     if not warm:
-        return []
+        return _mild_snow([row.temperature for row in rows if row.snowfall])
     warmest = max(warm, key=lambda row: row.temperature)
     return [
         f"{plural(len(warm), 'snowfall')} in air of {TOO_WARM_FOR_SNOW:g} °C and more, the warmest "
         f"{warmest.temperature:g} °C on {warmest.date.date()}, where precipitation is rain; are "
         "temperatures in degrees F, or sums of water in the column of snow?"
+    ]
+
+
+def _mild_snow(temperatures: Sequence[float]) -> list[str]:
+    """Return a note if half of the snow falls in air in which precipitation is usually rain."""
+    if len(temperatures) < MIN_SNOWFALLS or median(temperatures) < MILD_FOR_SNOW:
+        return []
+    return [
+        f"half of {len(temperatures)} snowfalls in air of {median(temperatures):g} °C and more, "
+        "where precipitation is usually rain; are temperatures in degrees F?"
     ]
 
 

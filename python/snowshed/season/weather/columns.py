@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import InputNote, issue_note
 
 #: Largest snowfall of a row, which may hold the snow of several days.
 MAX_SNOWFALL = 3.0  # m
@@ -48,7 +48,8 @@ class MeasuredColumn:
             low, high = (f"{limit:g} {self.unit}".rstrip() for limit in self.usual)
             issue_note(
                 f"{where}: {value:g} {self.unit} is unusual; most values are {low} to {high}, so "
-                "check its unit"
+                "check its unit",
+                InputNote,
             )
 
 

@@ -19,7 +19,7 @@ from snowshed._core import InputError
 from snowshed.base.arguments import checked
 from snowshed.base.formatting import number_in
 from snowshed.base.messages import quoted
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import InputNote, issue_note
 from snowshed.base.paths import PathLike
 from snowshed.io.csv_table import TableRow, frame_as_text, read_text_table
 from snowshed.io.weather.joined import read_stations
@@ -77,7 +77,7 @@ def read_season(season: Season) -> list[Weather]:
     """
     record = read_record(season)
     for note in record.notes:
-        issue_note(note)
+        issue_note(note, InputNote)
     return ReadSeason(record.rows, record.notes)
 
 

@@ -32,7 +32,7 @@ from numpy.typing import ArrayLike
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
 from snowshed.base.arrays import Booleans, Floats, column, finite, flags, points, positive
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import UnusualValueNote, issue_note
 from snowshed.snow.stack.connected_components import largest_body
 from snowshed.snow.stack.support import supports
 from snowshed.snow.stack.surface import outline_particles, surface_particles
@@ -295,7 +295,8 @@ def _note_on_units(
     if not MIN_DENSITY <= middle <= MAX_DENSITY:
         issue_note(
             f"densities: half of them are {middle:.3g} kg/m3 or more, which snow cannot be; are "
-            "they in g/cm3, or masses?"
+            "they in g/cm3, or masses?",
+            UnusualValueNote,
         )
         return False
     sides = np.ptp(positions, axis=0)[[0, 2] if dimension == 2 else [0, 1, 2]]
@@ -305,14 +306,17 @@ def _note_on_units(
         issue_note(
             f"masses: by its mass and density the snow has the volume of "
             f"{'a square' if dimension == 2 else 'a cube'} with sides of {snow:.2g} m, but its "
-            f"particles span only {size:.2g} m; are the masses in g, or is `dimension` another one?"
+            f"particles span only {size:.2g} m; are the masses in g, or is `dimension` "
+            "another one?",
+            UnusualValueNote,
         )
     too_wide = bool(size > MAX_SPREAD * snow)
     if too_wide:
         issue_note(
             f"positions: the particles span {' x '.join(f'{side:.3g}' for side in sides)} m, "
             f"but their snow has the volume of {'a square' if dimension == 2 else 'a cube'} with "
-            f"sides of {snow:.2g} m; are the positions in mm or cm?"
+            f"sides of {snow:.2g} m; are the positions in mm or cm?",
+            UnusualValueNote,
         )
     return too_wide
 
@@ -336,7 +340,8 @@ def _note_on_gaps(snow: Floats, voxel: float) -> None:
         issue_note(
             f"positions: most of the mass is detached, because half of the particles are "
             f"{gap:.3g} m or more from all others, {gap / voxel:.3g} cells; check the unit of the "
-            "positions"
+            "positions",
+            UnusualValueNote,
         )
 
 
@@ -353,17 +358,29 @@ def _note_on_places(snow: Floats, dx: float, ground_tilt_deg: float) -> None:
         Tilt of the ground, degrees.
     """
     if 0.0 < abs(ground_tilt_deg) < MIN_TILT:
-        issue_note(f"ground_tilt_deg: {ground_tilt_deg:g} degrees is unusual; is it in radians?")
+        issue_note(
+            f"ground_tilt_deg: {ground_tilt_deg:g} degrees is unusual; is it in radians?",
+            UnusualValueNote,
+        )
     if not len(snow):
         return
     size = float(np.ptp(snow, axis=0).max())
     if dx > size > 0.0:
-        issue_note(f"dx: {dx:g} m is more than the whole snow of {size:.3g} m; is it in mm?")
+        issue_note(
+            f"dx: {dx:g} m is more than the whole snow of {size:.3g} m; is it in mm?",
+            UnusualValueNote,
+        )
     heights = snow[:, 2]
     if np.median(heights) < -dx:
-        issue_note(f"positions: half of the snow lies {-np.median(heights):.3g} m below the ground")
+        issue_note(
+            f"positions: half of the snow lies {-np.median(heights):.3g} m below the ground",
+            UnusualValueNote,
+        )
     elif heights.min() > max(size, dx):
-        issue_note(f"positions: the lowest snow is {heights.min():.3g} m above the ground")
+        issue_note(
+            f"positions: the lowest snow is {heights.min():.3g} m above the ground",
+            UnusualValueNote,
+        )
 
 
 def _held(

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Optional
 
 from snowshed._core import InputError
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import InputNote, issue_note
 from snowshed.scene.builders.avaframe.ini import ProjectSettings
 from snowshed.scene.builders.hydrographs import read_hydrograph
 from snowshed.scene.terrain_components import Inflow, Pulse, Terrain
@@ -35,7 +35,8 @@ def set_inflows(terrain: Terrain, pulses: Sequence[Pulse]) -> None:
     if len(areas) > 1:
         issue_note(
             f"{len(areas)} release areas: the later snow is seeded area by area, and in AvaFrame "
-            "in all areas together; their numbers of particles may differ"
+            "in all areas together; their numbers of particles may differ",
+            InputNote,
         )
 
 
@@ -52,5 +53,6 @@ def set_dam(terrain: Terrain, project: ProjectSettings, file: Optional[Path]) ->
     if dam.restitution != project.restitution:
         issue_note(
             f"restitutionCoefficient = {project.restitution:g} is taken as 0, as in AvaFrame 2.1, "
-            "which cuts it to a whole number"
+            "which cuts it to a whole number",
+            InputNote,
         )

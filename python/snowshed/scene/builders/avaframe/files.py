@@ -16,7 +16,7 @@ from pathlib import Path
 from snowshed._core import InputError
 from snowshed.base.limits import GB, MAX_PROJECT_BYTES, MAX_PROJECT_DEPTH, MAX_PROJECT_FILES
 from snowshed.base.messages import printable, quoted
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import InputNote, issue_note
 from snowshed.io.atomic import replacing
 
 #: Endings of a project's files: rasters, polygons and lines, settings, tables.
@@ -73,7 +73,7 @@ def project_inputs(root: Path) -> list[InputFile]:
     ]
     if others:
         more = f" and {len(others) - 5} others" if len(others) > 5 else ""
-        issue_note(f"{inputs}: not copied to the results: {', '.join(others[:5])}{more}")
+        issue_note(f"{inputs}: not copied to the results: {', '.join(others[:5])}{more}", InputNote)
     return supported
 
 
