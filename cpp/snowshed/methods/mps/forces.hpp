@@ -17,6 +17,11 @@ void find_neighbours(const Model<D>&, Particles<D>&, double time, Workspace<D>&)
 template <int D>
 const float* slope_without(Kind, const Model<D>&, const Particles<D>&, Neighbourhood<D>&);
 
+/// The first moments, along the normal, of the weights that particles below the first layer lack
+/// above the free surface.
+template <int D>
+void find_open_moments(const Model<D>&, const Particles<D>&, Neighbourhood<D>&);
+
 /// The pressures from which yield stresses follow: the particles' pressures, smoothed and not
 /// negative.
 template <int D>

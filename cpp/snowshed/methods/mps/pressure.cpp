@@ -188,6 +188,15 @@ void balance_sources(Workspace<D>& work, std::size_t n) {
     if (!work.pressure.fixed[i]) work.pressure.source[i] -= sum / count;
 }
 
+/// The weight of the pressure above the free surface, which is zero there, in the equation of a
+/// particle. A linear pressure fulfils the equations of a lattice exactly.
+template <int D>
+double surface_weight(const Model<D>& model, const Neighbourhood<D>& near, std::size_t i) {
+  if (near.surface[i])
+    return model.surface_difference * std::max(0.0, model.kernel.number_density - near.density[i]);
+  return near.open_moment[i] / (layer_depth(2) * model.settings().spacing);
+}
+
 }  // namespace
 
 /// The equation is divided by -2 d/(lambda n0). Its left-hand side is then the sum of w (p_i - p_j)
@@ -211,11 +220,10 @@ void prepare_pressure(const Model<D>& model, const Particles<D>& particles, Work
       const std::size_t j = near.lists.neighbour(e);
       if (particles.kind[j] != Kind::dummy_wall)
         sum += double(near.coupling[e]);
-      else if (mirrored && near.dry[j] && particles.is_wall(i))
-        sum += 2 * double(near.coupling[e]);
+      else if (mirrored && near.dry[j] && (near.surface[i] || particles.is_wall(i)))
+        sum += 2 * double(near.coupling[e]);  // as if the pressure of j were opposite
     }
-    // Missing neighbours at a free surface have the particle's pressure with the opposite sign.
-    if (near.surface[i]) sum += 2 * std::max(0.0, n0 - near.density[i]);
+    if (mirrored) sum += surface_weight(model, near, i);
     work.pressure.diagonal[i] = std::max(sum, 1e-3 * n0);
   });
   work.pressure.enclosed =

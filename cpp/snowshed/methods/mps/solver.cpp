@@ -90,6 +90,7 @@ Model<D>::Model(Options o)
       kernel(kernel_constants(D, options.settings.radius)),
       second_layer(second_layer_share(D, kernel)),
       surface_deficit(second_layer_deficit(D, kernel)),
+      surface_difference(mps::surface_difference(D, kernel)),
       rheology(Rheology::from(options.settings)),
       threads(threads_to_use(options.settings.threads)) {
   for (Obstacle& o : options.obstacles)
