@@ -27,11 +27,9 @@ double open_moment(const Neighbourhood<D>& near, std::size_t i) {
 template <int D>
 void find_open_moments(const Model<D>& model, const Particles<D>& particles,
                        Neighbourhood<D>& near) {
-  near.open_moment.resize(particles.size());
   for_each_particle(particles.size(), model.threads_for(particles.size()), [&](std::size_t i) {
-    const bool below = near.below_surface[i] && !near.surface[i];
-    near.open_moment[i] =
-        below && particles.kind[i] != Kind::dummy_wall ? open_moment(near, i) : 0.0;
+    if (near.below_surface[i] && !near.surface[i] && particles.kind[i] != Kind::dummy_wall)
+      near.open_moment[i] = open_moment(near, i);
   });
 }
 

@@ -246,7 +246,6 @@ void find_neighbours(const Model<D>& model, Particles<D>& particles, double time
   } else {
     near.isotropic_weight = near.weight;
   }
-  find_open_moments(model, particles, near);
 }
 
 template const float* slope_without(Kind, const Model<2>&, const Particles<2>&, Neighbourhood<2>&);

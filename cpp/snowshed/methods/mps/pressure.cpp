@@ -202,14 +202,17 @@ double surface_weight(const Model<D>& model, const Neighbourhood<D>& near, std::
 /// The equation is divided by -2 d/(lambda n0). Its left-hand side is then the sum of w (p_i - p_j)
 /// plus the surface term on the diagonal.
 template <int D>
-void prepare_pressure(const Model<D>& model, const Particles<D>& particles, Workspace<D>& work) {
-  const Neighbourhood<D>& near = work.near;
+void prepare_pressure(const Model<D>& model, const Particles<D>& particles, bool hydrostatic,
+                      Workspace<D>& work) {
+  Neighbourhood<D>& near = work.near;
   const std::size_t n = particles.size();
   const int threads = model.threads_for(n);
   const double n0 = model.kernel.number_density;
   const bool mirrored = model.settings().surface == Surface::mirrored;
   work.pressure.fixed.resize(n);
   work.pressure.diagonal.resize(n);
+  near.open_moment.assign(n, 0.0);
+  if (hydrostatic && mirrored) find_open_moments(model, particles, near);
   for_each_particle(n, threads, [&](std::size_t i) {
     work.pressure.fixed[i] =
         particles.kind[i] == Kind::dummy_wall || (near.surface[i] && !mirrored);
@@ -310,7 +313,7 @@ SolveReport solve_pressure(const Model<D>& model, double dt, Particles<D>& parti
 
 template SolveReport solve_pressure(const Model<2>&, double, Particles<2>&, Workspace<2>&);
 template SolveReport solve_pressure(const Model<3>&, double, Particles<3>&, Workspace<3>&);
-template void prepare_pressure(const Model<2>&, const Particles<2>&, Workspace<2>&);
-template void prepare_pressure(const Model<3>&, const Particles<3>&, Workspace<3>&);
+template void prepare_pressure(const Model<2>&, const Particles<2>&, bool, Workspace<2>&);
+template void prepare_pressure(const Model<3>&, const Particles<3>&, bool, Workspace<3>&);
 
 }  // namespace snowshed::methods::mps
