@@ -118,13 +118,13 @@ TEST(MpsSolver, PressuresOfALatticeBeginAtItsSurface) {
     Options o = tank(dimension, 0.1, spacing);
     o.settings.pressure_tolerance = 1e-9;
     const auto mps = body_of(o, {0.1, 0.1, height});
-    const std::vector<Vec3> places = mps->state().positions;
+    const std::vector<Vec3> positions = mps->state().positions;
     mps->step();
     const std::vector<double> pressures = values_by_id(*mps, "pressure");
     // In 3D the slope of the first step is 1 % too low.
     const double tolerance = dimension == 2 ? 2e-3 : 0.03;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      const double depth = height - places[i].z();
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      const double depth = height - positions[i].z();
       if (dimension == 2 || depth < 3 * spacing) {
         EXPECT_NEAR(pressures[i] / weight, depth, tolerance * spacing) << dimension;
       }
