@@ -109,7 +109,7 @@ def measure_heap(settings: CaseSettings) -> Outcome:
     spacing = float(settings["spacing"])
     width = 2 * spacing
     x = np.asarray(drive.core.positions()[:, 0], dtype=np.float64)
-    middles = (np.arange(int(2.0 / width)) + 0.5) * width
+    middles = (np.arange(int(2.0 / width), dtype=np.float64) + 0.5) * width
     exact = resting_heap(middles)
     heights = column_heights(x, spacing, width)
     difference = exact.copy()
