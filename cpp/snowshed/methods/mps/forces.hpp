@@ -17,6 +17,11 @@ void find_neighbours(const Model<D>&, Particles<D>&, double time, Workspace<D>&)
 template <int D>
 const float* slope_without(Kind, const Model<D>&, const Particles<D>&, Neighbourhood<D>&);
 
+/// The first moments, along the normal, of the weights that particles below the first layer lack
+/// above the free surface.
+template <int D>
+void find_open_moments(const Model<D>&, const Particles<D>&, Neighbourhood<D>&);
+
 /// The pressures from which yield stresses follow: the particles' pressures, smoothed and not
 /// negative.
 template <int D>
@@ -62,9 +67,10 @@ void add_gravity(const Model<D>&, double dt, Particles<D>&);
 template <int D>
 SolveReport apply_viscosity(const Model<D>&, double dt, Particles<D>&, Workspace<D>&);
 
-/// Makes the matrix of the pressure equations of a step.
+/// Makes the matrix of the pressure equations of a step. If `hydrostatic`, the pressure is linear
+/// up to the free surface; stiff fluids and snow have viscous stresses of their own there.
 template <int D>
-void prepare_pressure(const Model<D>&, const Particles<D>&, Workspace<D>&);
+void prepare_pressure(const Model<D>&, const Particles<D>&, bool hydrostatic, Workspace<D>&);
 
 /// Solves the pressure equation (18). A solve that has not converged leaves the pressures unsound.
 template <int D>

@@ -29,6 +29,9 @@ inline double filling_weight(double w) {
   return rest * rest * (1 + 4 * q);
 }
 
+/// Depth of the particles of a layer below the free surface, in l0.
+constexpr double layer_depth(int layer) { return layer - 0.5; }
+
 /// n0 and lambda of a particle within a square or cubic lattice of spacing 1. A neighbour exactly
 /// at the radius weighs nothing.
 inline KernelConstants kernel_constants(int dimension, double radius) {
@@ -47,12 +50,14 @@ inline KernelConstants kernel_constants(int dimension, double radius) {
   return {radius, n, moment / n, filling};
 }
 
-/// Calls visit(w, z) for the lattice points that a particle of the second layer would have beyond
-/// the first layer: behind a wall, or above a surface. z is the distance along the normal in l0.
+/// Calls visit(w, z) for the lattice points that a particle of this layer, counted from one, would
+/// have beyond the first layer: behind a wall, or above a surface. z is the distance along the
+/// normal in l0.
 template <class Visit>
-void visit_beyond_second_layer(int dimension, const KernelConstants& k, const Visit& visit) {
+void visit_beyond_first_layer(int dimension, const KernelConstants& k, int layer,
+                              const Visit& visit) {
   const int reach = int(std::ceil(k.radius)), across = dimension == 3 ? reach : 0;
-  for (int z = 2; z <= reach; ++z)
+  for (int z = layer; z <= reach; ++z)
     for (int y = -across; y <= across; ++y)
       for (int x = -reach; x <= reach; ++x)
         visit(kernel_weight(std::sqrt(double(x * x + y * y + z * z)), k.radius), z);
@@ -63,7 +68,7 @@ void visit_beyond_second_layer(int dimension, const KernelConstants& k, const Vi
 /// add up to one.
 inline double second_layer_share(int dimension, const KernelConstants& k) {
   double sum = 0;
-  visit_beyond_second_layer(dimension, k, [&](double w, int z) { sum += w * z; });
+  visit_beyond_first_layer(dimension, k, 2, [&](double w, int z) { sum += w * z; });
   return 2 * dimension / (k.lambda * k.number_density) * sum;
 }
 
@@ -79,9 +84,21 @@ inline double share_of_wall(double distance, double second) {
 /// The part of the filling that the second layer of a lattice below a surface lacks.
 inline double second_layer_deficit(int dimension, const KernelConstants& k) {
   double sum = 0;
-  visit_beyond_second_layer(dimension, k,
-                            [&](double w, int) { sum += filling_weight(w) / k.filling; });
+  visit_beyond_first_layer(dimension, k, 2,
+                           [&](double w, int) { sum += filling_weight(w) / k.filling; });
   return sum;
+}
+
+/// The pressure of a particle at the surface of a lattice less that of the missing neighbours, in
+/// units of its own; a mean with the weights. The pressure is linear, and zero half a spacing above
+/// the particle.
+inline double surface_difference(int dimension, const KernelConstants& k) {
+  double sum = 0, moment = 0;
+  visit_beyond_first_layer(dimension, k, 1, [&](double w, int z) {
+    sum += w;
+    moment += w * z / layer_depth(1);
+  });
+  return moment / sum;
 }
 
 }  // namespace snowshed::methods::mps

@@ -162,17 +162,19 @@ void find_isotropic_weights(const Model<D>& model, Neighbourhood<D>& near, int t
   });
 }
 
-/// Makes inner walls dummies if no snow touches them, so that no pressure spreads along a wall
-/// beyond the snow.
+/// Makes inner walls dummies if they are above the surface of the snow, so that no pressure spreads
+/// along a wall beyond the snow. Such a wall lacks more neighbours than it has snow: on a lattice
+/// the surface is half a spacing above the topmost snow.
 template <int D>
-void leave_dry_walls(Particles<D>& particles, Neighbourhood<D>& near, int threads) {
+void leave_dry_walls(double n0, Particles<D>& particles, Neighbourhood<D>& near, int threads) {
   near.dry.resize(particles.size());
   for_each_particle(particles.size(), threads, [&](std::size_t i) {
     near.dry[i] = false;
     if (particles.kind[i] != Kind::inner_wall) return;
+    double snow = 0;
     for (std::uint32_t e = near.lists.begin(i); e < near.lists.end(i); ++e)
-      if (!particles.is_wall(near.lists.neighbour(e))) return;
-    near.dry[i] = true;
+      if (!particles.is_wall(near.lists.neighbour(e))) snow += double(near.weight[e]);
+    near.dry[i] = snow == 0 || snow < n0 - double(near.weight_sum[i]);
   });
   for_each_particle(particles.size(), threads, [&](std::size_t i) {
     if (near.dry[i]) particles.kind[i] = Kind::dummy_wall;
@@ -230,8 +232,9 @@ void find_neighbours(const Model<D>& model, Particles<D>& particles, double time
   if (model.has_wall_particles()) {
     near.images.clear(particles.size());
     near.coupling = near.weight;
-    leave_dry_walls(particles, near, threads);
+    leave_dry_walls(model.kernel.number_density, particles, near, threads);
   } else {
+    near.dry.assign(particles.size(), false);
     near.images.update(near.lists, near.contacts, reach, model.settings().spacing, threads,
                        near.weight, near.coupling);
   }

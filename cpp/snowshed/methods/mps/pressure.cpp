@@ -188,19 +188,31 @@ void balance_sources(Workspace<D>& work, std::size_t n) {
     if (!work.pressure.fixed[i]) work.pressure.source[i] -= sum / count;
 }
 
+/// The weight of the pressure above the free surface, which is zero there, in the equation of a
+/// particle. A linear pressure fulfils the equations of a lattice exactly.
+template <int D>
+double surface_weight(const Model<D>& model, const Neighbourhood<D>& near, std::size_t i) {
+  if (near.surface[i])
+    return model.surface_difference * std::max(0.0, model.kernel.number_density - near.density[i]);
+  return near.open_moment[i] / (layer_depth(2) * model.settings().spacing);
+}
+
 }  // namespace
 
 /// The equation is divided by -2 d/(lambda n0). Its left-hand side is then the sum of w (p_i - p_j)
 /// plus the surface term on the diagonal.
 template <int D>
-void prepare_pressure(const Model<D>& model, const Particles<D>& particles, Workspace<D>& work) {
-  const Neighbourhood<D>& near = work.near;
+void prepare_pressure(const Model<D>& model, const Particles<D>& particles, bool hydrostatic,
+                      Workspace<D>& work) {
+  Neighbourhood<D>& near = work.near;
   const std::size_t n = particles.size();
   const int threads = model.threads_for(n);
   const double n0 = model.kernel.number_density;
   const bool mirrored = model.settings().surface == Surface::mirrored;
   work.pressure.fixed.resize(n);
   work.pressure.diagonal.resize(n);
+  near.open_moment.assign(n, 0.0);
+  if (hydrostatic && mirrored) find_open_moments(model, particles, near);
   for_each_particle(n, threads, [&](std::size_t i) {
     work.pressure.fixed[i] =
         particles.kind[i] == Kind::dummy_wall || (near.surface[i] && !mirrored);
@@ -211,11 +223,10 @@ void prepare_pressure(const Model<D>& model, const Particles<D>& particles, Work
       const std::size_t j = near.lists.neighbour(e);
       if (particles.kind[j] != Kind::dummy_wall)
         sum += double(near.coupling[e]);
-      else if (mirrored && near.dry[j] && particles.is_wall(i))
-        sum += 2 * double(near.coupling[e]);
+      else if (mirrored && near.dry[j] && (near.surface[i] || particles.is_wall(i)))
+        sum += 2 * double(near.coupling[e]);  // as if the pressure of j were opposite
     }
-    // Missing neighbours at a free surface have the particle's pressure with the opposite sign.
-    if (near.surface[i]) sum += 2 * std::max(0.0, n0 - near.density[i]);
+    if (mirrored) sum += surface_weight(model, near, i);
     work.pressure.diagonal[i] = std::max(sum, 1e-3 * n0);
   });
   work.pressure.enclosed =
@@ -302,7 +313,7 @@ SolveReport solve_pressure(const Model<D>& model, double dt, Particles<D>& parti
 
 template SolveReport solve_pressure(const Model<2>&, double, Particles<2>&, Workspace<2>&);
 template SolveReport solve_pressure(const Model<3>&, double, Particles<3>&, Workspace<3>&);
-template void prepare_pressure(const Model<2>&, const Particles<2>&, Workspace<2>&);
-template void prepare_pressure(const Model<3>&, const Particles<3>&, Workspace<3>&);
+template void prepare_pressure(const Model<2>&, const Particles<2>&, bool, Workspace<2>&);
+template void prepare_pressure(const Model<3>&, const Particles<3>&, bool, Workspace<3>&);
 
 }  // namespace snowshed::methods::mps

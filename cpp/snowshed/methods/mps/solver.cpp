@@ -90,6 +90,7 @@ Model<D>::Model(Options o)
       kernel(kernel_constants(D, options.settings.radius)),
       second_layer(second_layer_share(D, kernel)),
       surface_deficit(second_layer_deficit(D, kernel)),
+      surface_difference(mps::surface_difference(D, kernel)),
       rheology(Rheology::from(options.settings)),
       threads(threads_to_use(options.settings.threads)) {
   for (Obstacle& o : options.obstacles)
@@ -195,7 +196,7 @@ void SolverImpl<D>::solve_pressure_first(double dt, State<D>& next) {
   const double share = coupled   ? viscous_share_first_iteration
                        : elastic ? viscous_share_elastic
                                  : viscous_share_uncoupled;
-  prepare_pressure(model_, p, workspace_);
+  prepare_pressure(model_, p, model_.rheology.is_newtonian() && !coupled, workspace_);
   SplitForces<D>& split = workspace_.splitting;
   split.predicted_velocity = p.velocity;
   split.flowing.resize(n);
@@ -253,7 +254,7 @@ void SolverImpl<D>::solve_viscosity_first(double dt, State<D>& next) {
     move(dt, p);
     find_neighbours(model_, p, state_.time + dt, workspace_);
   }
-  prepare_pressure(model_, p, workspace_);
+  prepare_pressure(model_, p, model_.rheology.is_newtonian(), workspace_);
   next.solves.pressure = solve_pressure(model_, dt, p, workspace_);
   require_converged(next.solves.pressure, "pressure", s.max_iterations);
   apply_pressure(model_, dt, p, workspace_);

@@ -44,8 +44,9 @@ struct Model {
   Options options;
   VecD<D> gravity;  // m/s2
   KernelConstants kernel;
-  double second_layer;     // see second_layer_share
-  double surface_deficit;  // see second_layer_deficit
+  double second_layer;        // see second_layer_share
+  double surface_deficit;     // see second_layer_deficit
+  double surface_difference;  // see the function of this name
   Rheology rheology;
   const Kernels<D>& kernels = chosen_kernels<D>();
   int threads;
@@ -110,10 +111,12 @@ struct Neighbourhood {
   AlignedVector<Eigen::Matrix<double, D, D>> correction;
   AlignedVector<std::array<float, RowMoments<D>::half>> weight_correction;  // upper half of B
 
+  AlignedVector<double> open_moment;  // m, see find_open_moments
+
   // Classes of particles, and wall velocities.
   AlignedVector<std::uint8_t> surface;         // at the free surface
   AlignedVector<std::uint8_t> below_surface;   // at the free surface or next to it
-  AlignedVector<std::uint8_t> dry;             // inner wall that no snow touches
+  AlignedVector<std::uint8_t> dry;             // inner wall above the surface of the snow
   AlignedVector<VecD<D>> divergence_velocity;  // m/s; inner walls move as the snow around them
 
   /// A particle's contact with an obstacle, or null.

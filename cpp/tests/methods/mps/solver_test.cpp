@@ -110,6 +110,28 @@ TEST(MpsSolver, FirstStepOfAColumnIsHydrostatic) {
   EXPECT_LT(mps->motion(0).rms_speed, 0.05 * 9.81 * mps->time_step());
 }
 
+// The pressure is zero half a spacing above the topmost particles. The second row lacks a neighbour
+// above the surface, too; without its share all pressures were too high by a tenth of a spacing.
+TEST(MpsSolver, PressuresOfALatticeBeginAtItsSurface) {
+  for (const int dimension : {2, 3}) {
+    const double height = 0.2, spacing = 0.02, weight = 1000 * 9.81;
+    Options o = tank(dimension, 0.1, spacing);
+    o.settings.pressure_tolerance = 1e-9;
+    const auto mps = body_of(o, {0.1, 0.1, height});
+    const std::vector<Vec3> positions = mps->state().positions;
+    mps->step();
+    const std::vector<double> pressures = values_by_id(*mps, "pressure");
+    // In 3D the slope of the first step is 1 % too low.
+    const double tolerance = dimension == 2 ? 2e-3 : 0.03;
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      const double depth = height - positions[i].z();
+      if (dimension == 2 || depth < 3 * spacing) {
+        EXPECT_NEAR(pressures[i] / weight, depth, tolerance * spacing) << dimension;
+      }
+    }
+  }
+}
+
 // Water; a lattice of particles is unstable without shifting, or with conservative gradients.
 TEST(MpsSolver, ColumnsOfWaterStayAtRest) {
   for (const int dimension : {2, 3}) {
@@ -141,13 +163,16 @@ TEST(MpsSolver, ABodyFallsByDefault) {
 
 // Gaps that particles at the surface leave behind would make the water rise, and then boil.
 TEST(MpsSolver, AColumnOfWaterDoesNotRise) {
-  Options o = tank(2, 0.2, 0.01);
-  o.settings.viscosity = 1e-3;
-  const auto mps = body_of(o, {0.2, 0, 0.2});
-  flow_until(*mps, 10);
-  EXPECT_NEAR(highest(*mps), 0.195, 0.01 * 0.2);
-  EXPECT_LT(mps->motion(0).rms_speed, 0.006);
-  EXPECT_NEAR(pressure_slope(*mps, o, 0.2), 1, 0.01);
+  for (const Walls walls : {Walls::mirrors, Walls::particles}) {
+    Options o = tank(2, 0.2, 0.01);
+    o.settings.walls = walls;
+    o.settings.viscosity = 1e-3;
+    const auto mps = body_of(o, {0.2, 0, 0.2});
+    flow_until(*mps, 10);
+    EXPECT_NEAR(highest(*mps), 0.195, 0.01 * 0.2) << int(walls);
+    EXPECT_LT(mps->motion(0).rms_speed, 0.006) << int(walls);
+    EXPECT_NEAR(pressure_slope(*mps, o, 0.2), 1, 0.01) << int(walls);
+  }
 }
 
 // Inner walls beside disorder would be taken for a surface, and the pressure would fall by 12 % for

@@ -44,13 +44,14 @@ TEST(WallForces, WaterInATankPressesOnFloorAndSides) {
       solver->add(water);
       advance_to(*solver, 0.5);
       const auto forces = mean_forces(*solver, 0.8);
-      // Between wall particles the pressure is slightly too high; the forces converge with the
-      // spacing.
-      const double exact = walls == Walls::particles && dimension == 3 ? 4 : 1;
-      EXPECT_NEAR(forces[0].total().z() / (-water.total_mass() * g), 1, 1e-4);
+      // The floor carries the weight, apart from the drag of the sides on water that still moves.
+      double lifted = 0;
+      for (const ContactImpulse& force : forces) lifted -= force.total().z();
+      EXPECT_NEAR(lifted / (water.total_mass() * g), 1, 1e-4) << dimension << int(walls);
+      EXPECT_NEAR(forces[0].total().z() / (-water.total_mass() * g), 1, 2e-4);
       const double side = 0.5 * 1000 * g * depth * depth * across;
-      EXPECT_NEAR(forces[1].total().x() / -side, 1, 0.01 * exact) << dimension;
-      EXPECT_NEAR(forces[2].total().x() / side, 1, 0.01 * exact) << dimension;
+      EXPECT_NEAR(forces[1].total().x() / -side, 1, 0.01) << dimension << int(walls);
+      EXPECT_NEAR(forces[2].total().x() / side, 1, 0.01) << dimension << int(walls);
       EXPECT_NEAR(forces[2].center().z() / (depth / 3), 1, 0.05);
       EXPECT_LT(solver->forces()->unbalanced().norm(),
                 1e-3 * water.total_mass() * g * solver->time());

@@ -28,14 +28,32 @@ Particles<D> at_rest(const std::vector<Vec3>& positions) {
   return p;
 }
 
+/// Appends the wall particles to the snow, and finds its neighbours.
+template <int D>
+void append_walls(const Model<D>& model, Particles<D>& p, Workspace<D>& work) {
+  work.walls = WallParticles<D>(model.options.obstacles, model.settings().spacing, model.reach());
+  work.walls.append_near(0, model.options.period, model.particle_mass(), p);
+  find_neighbours(model, p, 0.0, work);
+}
+
+/// z of the highest wall particle that bears pressure, m.
+template <int D>
+double highest_inner_wall(const Options& o, Particles<D> p) {
+  const Model<D> model(o);
+  Workspace<D> work;
+  append_walls(model, p, work);
+  double z = -HUGE_VAL;
+  for (std::size_t i = 0; i < p.size(); ++i)
+    if (p.kind[i] == Kind::inner_wall) z = std::max(z, p.position[i][D - 1]);
+  return z;
+}
+
 /// The smallest and the largest number density of snow and inner walls, relative to a lattice.
 template <int D>
 std::pair<double, double> densities(const Options& o, Particles<D> p) {
   const Model<D> model(o);
   Workspace<D> work;
-  work.walls = WallParticles<D>(model.options.obstacles, o.settings.spacing, model.reach());
-  work.walls.append_near(0, o.period, model.particle_mass(), p);
-  find_neighbours(model, p, 0.0, work);
+  append_walls(model, p, work);
   double min_density = HUGE_VAL, max_density = 0;
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (p.kind[i] == Kind::dummy_wall) continue;
@@ -57,6 +75,19 @@ TEST(MpsWallParticles, ContinueTheLatticeOfTheSnow) {
                                             : densities<3>(o, at_rest<3>(batch.positions));
     EXPECT_NEAR(low, 1, 1e-5) << dimension;
     EXPECT_NEAR(high, 1, 1e-5) << dimension;
+  }
+}
+
+// The surface is half a spacing above the topmost snow: the next wall particle is above it.
+TEST(MpsWallParticles, BearPressureUpToTheSurfaceOnly) {
+  for (const int dimension : {2, 3}) {
+    const double spacing = 0.02, height = 0.1;
+    Options o = tank(dimension, height, spacing);
+    o.settings.walls = Walls::particles;
+    const ParticleBatch batch = block_of(o, Vec3::Zero(), Vec3::Constant(height));
+    const double top = dimension == 2 ? highest_inner_wall<2>(o, at_rest<2>(batch.positions))
+                                      : highest_inner_wall<3>(o, at_rest<3>(batch.positions));
+    EXPECT_NEAR(top, height - 0.5 * spacing, 1e-9) << dimension;
   }
 }
 
