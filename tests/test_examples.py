@@ -27,7 +27,7 @@ LONG = {"image_to_stack.py"}
 #: The notes on thin slabs, which coarse grids cause, on laws, and on slides of a second, and the
 #: lines that caused them.
 NOTE = re.compile(
-    r".*: SnowshedNote: (the slab is .* thick, less than|laws of the user|"
+    r".*: (?:Resolution|Result|Snowshed)Note: (the slab is .* thick, less than|laws of the user|"
     r"Secondary release .* never started|Dam .*: no snow|The slide was still moving).*\n.*\n"
 )
 

@@ -57,7 +57,7 @@ struct UserLaws {
   BodyForce body_force = nullptr;
   std::map<std::string, FrictionLaw> friction;  // by the name of the obstacle
   std::map<std::string, MotionLaw> motion;      // by the name of the obstacle
-  std::string digest;                           // of the functions' code; empty if unknown
+  std::string digest;                           // digest of the functions' code; empty if unknown
 
   bool any() const {
     return material || constitutive || body_force || !friction.empty() || !motion.empty();

@@ -279,16 +279,21 @@ def read_events(folder: PathLike) -> pd.DataFrame:
         If the folder holds no events.csv, or the file is not the table of events that the run
         wrote, or scene.json is not the scene of the run.
     """
-    path = Path(folder) / EVENTS
-    if not path.is_file():
-        raise InputError(f"{folder}: no results; it holds no events.csv")
-    check_run_file(path)
-    table = with_units(parse_events(path))
+    table = event_table(Path(folder))
     record = read_run_record(Path(folder))
     if (Path(folder) / SCENE).is_file():
         table.attrs["scene"] = read_scene(folder).json
     table.attrs.update(origin_of_record(record) if record else {})
     return table
+
+
+def event_table(folder: Path) -> pd.DataFrame:
+    """Return the table of `read_events` with the units of its columns, but without the scene."""
+    path = folder / EVENTS
+    if not path.is_file():
+        raise InputError(f"{folder}: no results; it holds no events.csv")
+    check_run_file(path)
+    return with_units(parse_events(path))
 
 
 def read_scene(folder: PathLike) -> ResolvedScene:

@@ -14,7 +14,7 @@ from snowshed.base.arguments import checked
 from snowshed.base.extras import require
 from snowshed.base.missing_result import MissingResultError
 from snowshed.base.paths import PathLike
-from snowshed.base.units import unit_of_column, with_units
+from snowshed.base.units import unit_of_column
 from snowshed.io.csv_table import read_csv
 from snowshed.io.film import FILM, Film
 from snowshed.io.json_file import read_object
@@ -24,7 +24,7 @@ from snowshed.io.vtk.vtp import read_particles
 from snowshed.methods.registry import method_of
 from snowshed.methods.summary import Summary
 from snowshed.results.film import film_dataset, run_film
-from snowshed.results.folder import ENERGY, EVENTS, read_events, read_scene
+from snowshed.results.folder import ENERGY, EVENTS, event_table, read_scene
 from snowshed.results.grid import grid_dataset, stored_grid
 from snowshed.results.html import results_html
 from snowshed.results.method_results import MethodResults
@@ -112,7 +112,7 @@ class Results(MethodResults):
                 raise method.missing("events", self.folder)
             path = self.folder / EVENTS
             raise MissingResultError(f"{path}: missing; a run that ended an event writes it")
-        return with_origin(with_units(read_events(self.folder)), self._origin)
+        return with_origin(event_table(self.folder), self._origin)
 
     @property
     def outline(self) -> pd.DataFrame:

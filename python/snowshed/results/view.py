@@ -23,7 +23,7 @@ from snowshed.plot.film_summary import summarise_film
 from snowshed.plot.html_page import HtmlTable
 from snowshed.plot.pressed_faces import PressurePicture, pressure_picture
 from snowshed.plot.solids import Box, Solid, scene_solids
-from snowshed.results.folder import read_events
+from snowshed.results.folder import event_table
 from snowshed.results.obstacle_forces import pressed_events, read_pressures
 from snowshed.results.reader import Results
 from snowshed.results.season_folder import SeasonFolder
@@ -149,7 +149,7 @@ def view_content(results: Results, film: Film) -> ViewContent:
 def _events(results: Results) -> Optional[pd.DataFrame]:
     if not (results.folder / "events.csv").is_file():
         return None
-    table = read_events(results.folder)
+    table = event_table(results.folder)
     return table if len(table) else None
 
 

@@ -29,7 +29,6 @@ from snowshed.results.folder import (
     RunFolder,
     measured_columns,
     parse_events,
-    read_events,
 )
 from snowshed.results.reader import HISTORY
 from snowshed.results.solids_file import write_solids
@@ -157,7 +156,8 @@ class StackRun(MethodRun):
         write_solids(self.scene, self.simulation.positions(), self.folder)
         stack, data = self.stack or self._measure(), self.scene.data
         save_figure(stack_figure(self.simulation, stack, data), self.results.stack_picture)
-        save_figure(growth_figure(read_events(self.folder), data), self.results.growth_picture)
+        events = parse_events(self.results.events.path)
+        save_figure(growth_figure(events, data), self.results.growth_picture)
         self.draw_energies()
         self._draw_forces()
 

@@ -19,7 +19,7 @@ from snowshed.base.extras import require
 from snowshed.base.messages import shortened
 from snowshed.base.paths import PathLike
 from snowshed.io.csv_table import read_csv
-from snowshed.results.folder import read_events
+from snowshed.results.folder import event_table
 from snowshed.scene.accuracy_settings import ACCURACY, FORMER_NAMES
 from snowshed.scene.resolved import scene_data
 from snowshed.scene.scene import ResolvedScene
@@ -159,7 +159,7 @@ class StackTable:
         scene = scene_data(run.scene)
         axes = [f"panel.{name}" for name in scene.get("panel", {})]
         facts = {"hash": run.hash, **scene_columns(scene, axes)}
-        return cls.of(read_events(folder).assign(**facts), folder.name)
+        return cls.of(event_table(folder).assign(**facts), folder.name)
 
     def chosen(self, where: Mapping[str, str]) -> StackTable:
         """Return the rows that have some values in some columns.

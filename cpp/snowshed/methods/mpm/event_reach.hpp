@@ -31,7 +31,7 @@ class ReachMap {
   void add(const T (&x)[D], const std::array<int, D>& lowest, int support, T radius) {
     T radii[lanes];
     for (int l = 0; l < lanes; ++l) radii[l] = l < support ? radius : T(-1e9);
-    int first[2] = {}, last[2] = {1, 1};  // rows from the lowest node, along all but one direction
+    int first[2] = {}, last[2] = {1, 1};  // range of rows from the lowest node
     for (int d = 0; d < D - 1; ++d) {
       first[d] = std::max(0, begin_[d] - lowest[d]);
       last[d] = std::min(support, end_[d] - lowest[d]);

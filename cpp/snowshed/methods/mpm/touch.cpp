@@ -109,8 +109,8 @@ template <class T, int D>
 void Touch<T, D>::measure(const Model<T, D>& model, State<T, D>& state,
                           const std::vector<std::int32_t>& blocks, int threads) {
   if (blocks.empty()) return;
-  const std::vector<std::int32_t> nodes = measured_ ? grid_blocks_around(state.layout, blocks)
-                                                    : all_grid_blocks(state.layout);
+  const std::vector<std::int32_t> nodes =
+      measured_ ? grid_blocks_around(state.layout, blocks) : all_grid_blocks(state.layout);
   measured_ = false;  // stays false if this throws
   parallel_for_dynamic(std::ptrdiff_t(blocks.size()), threads, 4,
                        [&](std::ptrdiff_t i) { measure(model, state, blocks[std::size_t(i)]); });
