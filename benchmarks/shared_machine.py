@@ -6,10 +6,9 @@ Each method runs a short scene on two threads, by ``snowshed-run`` and from Pyth
 one and four programs that keep a core busy, and in a container with one and a half cores. The
 repetitions of all cases alternate; medians count.
 
-The *fair share* of n threads beside k busy programs on c cores is n c / (n + k) cores. n is the
-number of cores that the run alone keeps busy, rounded, since small scenes use a single thread. The
-ideal time is the processor time of the run alone over its share, and at least the time of the run
-alone.
+The *fair share* of n threads beside k busy programs on c cores is n c / (n + k) cores. n is one for
+scenes so small that their runs alone keep a single core busy. The ideal time is the processor time
+of the run alone over its share, and at least the time of the run alone.
 Writes benchmarks/results/DATE-shared-NAME.json and prints times over the ideal, and processor times
 over that of the run alone. Nothing else should run on the machine meanwhile.
 """
@@ -46,6 +45,8 @@ QUOTA = 1.5  # cores
 GROUP_V1 = Path("/sys/fs/cgroup/cpu/snowshed-bench")
 GROUP_V2 = Path("/sys/fs/cgroup/snowshed-bench")
 PERIOD_US = 100_000
+#: A run alone that keeps no more cores busy uses a single thread.
+MAX_CORES_OF_ONE_THREAD = 1.25
 RUN_IN_PYTHON = """
 import resource, sys, time
 from snowshed import Scene, Simulation
@@ -189,7 +190,8 @@ def summary(times: pd.DataFrame) -> pd.DataFrame:
     table = times.groupby(keys, sort=False)[["wall_s", "processor_s"]].median().reset_index()
     alone = table[table.condition == "0 busy"].set_index(["method", "run"])
     quiet = alone.loc[pd.MultiIndex.from_frame(table[["method", "run"]])]
-    threads = (quiet.processor_s / quiet.wall_s).round().clip(1, THREADS).astype(int).to_numpy()
+    cores = (alone.processor_s / alone.wall_s).groupby("method").max()
+    threads = table.method.map(cores).gt(MAX_CORES_OF_ONE_THREAD).map({True: THREADS, False: 1})
     share = [fair_share(condition, n) for condition, n in zip(table.condition, threads)]
     ideal = (quiet.processor_s.to_numpy() / share).clip(min=quiet.wall_s.to_numpy())
     return table.assign(
