@@ -14,7 +14,7 @@ from snowshed.season.weather.source import AUTO, CHOICES
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 
-class ShareType(click.ParamType[float]):
+class ShareType(click.ParamType):  # type: ignore[type-arg]  # click 8.1 has no parameter
     """A share from 0 to 1, or in percent from 0 to 100 with or without its sign."""
 
     name = "share"

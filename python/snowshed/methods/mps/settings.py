@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Literal, Optional
 
@@ -153,7 +154,7 @@ class MpsSettings(MethodSettings):
     max_iterations: Optional[int] = default(1000)
     threads: Optional[int] = default(0)
 
-    UNUSED: ClassVar = (
+    UNUSED: ClassVar[Sequence[tuple[str, object, Sequence[str]]]] = (
         (
             "erosion",
             False,
