@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "snowshed/core/parallel.hpp"
 #include "snowshed/geometry/bounds.hpp"
@@ -41,24 +40,14 @@ constexpr int min_majority = 10;
 /// Faces are merged if the cosine between their normals is larger than this.
 constexpr double cosine_of_one_face = 0.99;
 
+/// Flags of the blocks of nodes that the particles of some blocks reach.
 template <int D>
-std::vector<std::int32_t> all_grid_blocks(const BlockLayout<D>& layout) {
-  std::vector<std::int32_t> all(layout.grid_blocks.size());
-  std::iota(all.begin(), all.end(), 0);
-  return all;
-}
-
-/// The blocks of nodes that the particles of some blocks reach.
-template <int D>
-std::vector<std::int32_t> grid_blocks_around(const BlockLayout<D>& layout,
-                                             const std::vector<std::int32_t>& particle_blocks) {
-  std::vector<std::int32_t> around;
+std::vector<std::uint8_t> reached_by(const BlockLayout<D>& layout,
+                                     const std::vector<std::int32_t>& particle_blocks) {
+  std::vector<std::uint8_t> reached(layout.grid_blocks.size(), 0);
   for (const std::int32_t b : particle_blocks)
-    around.insert(around.end(), layout.around_particles[b].begin(),
-                  layout.around_particles[b].end());
-  std::sort(around.begin(), around.end());
-  around.erase(std::unique(around.begin(), around.end()), around.end());
-  return around;
+    for (const std::int32_t g : layout.around_particles[b]) reached[g] = 1;
+  return reached;
 }
 
 template <class T, int D, int size>
@@ -109,13 +98,13 @@ template <class T, int D>
 void Touch<T, D>::measure(const Model<T, D>& model, State<T, D>& state,
                           const std::vector<std::int32_t>& blocks, int threads) {
   if (blocks.empty()) return;
-  const std::vector<std::int32_t> nodes =
-      measured_ ? grid_blocks_around(state.layout, blocks) : all_grid_blocks(state.layout);
+  const std::vector<std::uint8_t> reached = reached_by(state.layout, blocks);
   measured_ = false;  // stays false if this throws
   parallel_for_dynamic(std::ptrdiff_t(blocks.size()), threads, 4,
                        [&](std::ptrdiff_t i) { measure(model, state, blocks[std::size_t(i)]); });
-  parallel_for_dynamic(std::ptrdiff_t(nodes.size()), threads, 16,
-                       [&](std::ptrdiff_t i) { mark(model, state, nodes[std::size_t(i)]); });
+  parallel_for_dynamic(std::ptrdiff_t(reached.size()), threads, 16, [&](std::ptrdiff_t g) {
+    if (reached[std::size_t(g)]) mark(model, state, std::int32_t(g));
+  });
   measured_ = true;
 }
 
