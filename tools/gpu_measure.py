@@ -28,7 +28,7 @@ RESULTS = Path(__file__).parents[1] / "benchmarks" / "results"
 SCENES = Path(__file__).parents[1] / "examples" / "scenes"
 CELL = 1.0 / 32.0  # m, of the slabs
 TIME_LIMIT = 200.0  # s, of a run
-TIME_TO_STOP = 20.0  # s, for a run that was interrupted
+TIME_TO_STOP = 20.0  # s; a run that takes longer to stop is killed
 
 
 @dataclass(frozen=True)

@@ -243,4 +243,15 @@ def addresses_of(laws: Optional[Laws], scene: Mapping[str, Any]) -> Optional[dic
     """
     if laws is None:
         return None
-    return laws.for_core(str(scene["numerics"].get("precision", "double")))
+    return laws.for_core(precision_of(scene))
+
+
+def precision_of(scene: Mapping[str, Any]) -> str:
+    """Return the precision of a scene's numbers, "float" or "double", as `Laws.addresses` has it.
+
+    Examples
+    --------
+    >>> precision_of({"numerics": {"precision": "float"}}), precision_of({"numerics": {}})
+    ('float', 'double')
+    """
+    return str(scene["numerics"].get("precision", "double"))

@@ -17,7 +17,7 @@ from snowshed.io.input_file import read_input
 from snowshed.io.json_file import parse_object, read_object
 from snowshed.io.run_files import RECORD, beyond_scene, file_mark, is_record
 from snowshed.running.ageing.ageing import Ageing
-from snowshed.running.laws import Laws
+from snowshed.running.laws import Laws, precision_of
 from snowshed.scene.scene import SceneLike
 
 
@@ -53,8 +53,8 @@ class RecordedRun:
         """Return notes on what has changed since: the build, the files of the scene, the laws."""
         notes = []
         if laws is not None and self.record.get("laws"):
-            precision = str(self.record["scene"]["numerics"].get("precision", "double"))
-            then, now = self.record.get("laws_digest"), laws.digest(precision)
+            then = self.record.get("laws_digest")
+            now = laws.digest(precision_of(self.record["scene"]))
             if then is None or now is None:
                 notes.append(
                     f"laws of the user: {laws.name}; known by this name only, so they may differ "

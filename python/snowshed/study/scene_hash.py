@@ -21,6 +21,7 @@ from typing import Any, Optional
 import snowshed._core as _core
 from snowshed.io.input_file import read_regular
 from snowshed.running.ageing.ageing import Ageing
+from snowshed.running.laws import precision_of
 from snowshed.scene.named_files import with_named_files
 from snowshed.scene.scene import ResolvedScene
 from snowshed.study.aged_scene import LAWS, with_ageing
@@ -97,7 +98,7 @@ class RunKey:
         """
         data = with_ageing(scene.copied_data(), ageing)
         if laws is not None:
-            data[LAWS] = laws.data(str(data["numerics"].get("precision", "double")))
+            data[LAWS] = laws.data(precision_of(data))
         data["numerics"]["threads"] = 0
         data["output"].update(snapshot_interval=0.0, film=False, energy=False)
         return cls(content_hash(data), json.dumps(data))
