@@ -8,6 +8,7 @@
 #include "snowshed/core/available_cores.hpp"
 #include "snowshed/core/kernel_variant.hpp"
 #include "snowshed/core/memory.hpp"
+#include "snowshed/gpu/card.hpp"
 #include "snowshed/gpu/runtime_compiler.hpp"
 
 namespace snowshed {
@@ -31,6 +32,8 @@ void bind_machine(pybind11::module_& m) {
       "The number of cores that this process may use, by its affinity and its container's quota.");
   m.def("available_memory_bytes", &available_memory_bytes,
         "Memory that is available now without swapping.");
+  m.def("graphics_cards", &gpu::count_cards,
+        "The number of NVIDIA's cards that this process may use; 0 without a driver.");
   m.def("slow_kernels_note", &slow_kernels_note,
         "A sentence on the cost of kernels without AVX2, if these are used; otherwise empty.");
 }

@@ -11,7 +11,8 @@ from typing import Optional, Protocol
 from snowshed._core import InputError
 from snowshed.base.progress import Progress, Reporter
 from snowshed.study import Study, cost_estimate
-from snowshed.study.session import Resources, resume
+from snowshed.study.resources import Resources
+from snowshed.study.session import resume
 from snowshed.study.store import Store, StoredRun
 
 #: Function that receives the finished part of a stage, 0 to 1, and its current step.
@@ -108,7 +109,7 @@ class StudyStage:
         pending = [run.scene for run in self._stored_runs() if run.status == "pending"]
         if not pending:
             return 0.0
-        workers, at_once = Resources(jobs).workers(len(pending))
+        workers, at_once = Resources(jobs).workers(pending)
         try:
             threads = workers.threads(len(pending))
         finally:

@@ -107,7 +107,9 @@ class CaseStage:
         for number in range(done, len(times)):
             start = simulation.time
             for part in range(1, PROGRESS_PARTS + 1):
-                simulation.run(until=start + (times[number] - start) * part / PROGRESS_PARTS)
+                until = start + (times[number] - start) * part / PROGRESS_PARTS
+                if until > simulation.time:  # a long step may have passed it
+                    simulation.run(until=until)
                 text = f"{self.case.name}: {simulation.time:.2f} of {times[-1]:g} s"
                 report(min(1.0, simulation.time / times[-1]), text)
             self._keep(simulation, number)

@@ -103,7 +103,7 @@ def computed_folder(tmp_path_factory):
 def scripted_workers(monkeypatch):
     """Scripted workers instead of processes."""
     workers = ScriptedWorkers()
-    monkeypatch.setattr(session.Resources, "workers", lambda resources, runs: (workers, 2))
+    monkeypatch.setattr(session.Resources, "workers", lambda resources, scenes: (workers, 2))
     monkeypatch.setattr(session, "POLL_S", 0.01)
     monkeypatch.setattr(session, "ELSEWHERE_S", 0.0)
     return workers

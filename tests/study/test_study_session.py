@@ -263,32 +263,6 @@ def test_wrong_resources_are_refused_without_files(tmp_path, options, message):
     assert not (tmp_path / "store").exists()
 
 
-@pytest.mark.parametrize(
-    ("jobs", "threads", "runs", "cores", "processes", "each"),
-    [
-        (None, None, 100, 8, 8, 1),
-        (None, None, 3, 8, 3, 2),
-        (None, None, 1, 8, 1, 8),
-        (4, None, 100, 8, 4, 2),
-        (1, 1, 100, 8, 1, 1),
-        (None, 4, 100, 8, 2, 4),
-        (16, None, 100, 8, 16, 1),
-    ],
-)
-def test_processes_and_threads_fill_the_cores(
-    monkeypatch, jobs, threads, runs, cores, processes, each
-):
-    monkeypatch.setattr(session, "available_cores", lambda: cores)
-    workers, at_once = session.Resources(jobs, threads).workers(runs)
-    assert (at_once, workers.capacity, workers.threads(runs)) == (processes, processes, each)
-
-
-def test_the_last_runs_use_the_free_cores():
-    workers, _ = session.Resources(jobs=4).workers(100)
-    workers._cores = 4
-    assert [workers.threads(unfinished) for unfinished in (100, 4, 3, 2, 1)] == [1, 1, 1, 2, 4]
-
-
 def test_the_expected_duration_of_several_processes():
     assert cost_estimate.makespan([4.0], 2) == 4.0
     assert cost_estimate.makespan([1.0] * 6, 3) == 2.0

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "snowshed/gpu/card_claim.hpp"
 #include "snowshed/gpu/cuda_driver.hpp"
 #include "snowshed/gpu/device.hpp"
 #include "snowshed/gpu/kernel_program.hpp"
@@ -15,14 +16,18 @@ namespace snowshed::gpu {
 struct Card {
   std::shared_ptr<const CudaDriver> driver;
   std::shared_ptr<const RuntimeCompiler> compiler;
+  ClaimedCard claimed;
   cuda::DeviceNumber number;
   std::string name;
   int architecture;
 };
 
-/// The first card. (The environment variable CUDA_VISIBLE_DEVICES chooses and orders the cards that
-/// a process sees.) Nothing is opened or compiled. Throws Unavailable if driver, card or compiler
-/// are missing.
+/// The number of cards that this process may use; 0 without a driver.
+int count_cards();
+
+/// The card on which the fewest other runs compute. (The environment variable CUDA_VISIBLE_DEVICES
+/// chooses and orders the cards that a process sees.) Nothing is opened or compiled. Throws
+/// Unavailable if driver, card or compiler are missing.
 Card find_card();
 Card find_card(std::shared_ptr<const CudaDriver>);
 

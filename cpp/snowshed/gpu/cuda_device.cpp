@@ -80,9 +80,11 @@ class CudaDevice::Current {
 };
 
 CudaDevice::CudaDevice(std::shared_ptr<const CudaDriver> driver, cuda::DeviceNumber number,
-                       std::string name, const std::string& machine_code)
+                       std::string name, const std::string& machine_code,
+                       std::shared_ptr<const io::FolderLock> claim)
     : driver_(std::move(driver)),
       name_(std::move(name)),
+      claim_(std::move(claim)),
       context_(std::make_unique<Context>(*driver_, number, machine_code)) {}
 
 CudaDevice::~CudaDevice() = default;

@@ -7,6 +7,7 @@
 
 #include "snowshed/gpu/cuda_driver.hpp"
 #include "snowshed/gpu/device.hpp"
+#include "snowshed/io/folder_lock.hpp"
 
 namespace snowshed::gpu {
 
@@ -15,9 +16,11 @@ namespace snowshed::gpu {
 /// process.
 class CudaDevice final : public Device {
  public:
-  /// Opens a card and loads the machine code of its kernels. Throws SimulationError.
+  /// Opens a card and loads the machine code of its kernels. The claim on the card ends with the
+  /// device. Throws SimulationError.
   CudaDevice(std::shared_ptr<const CudaDriver>, cuda::DeviceNumber, std::string name,
-             const std::string& machine_code);
+             const std::string& machine_code,
+             std::shared_ptr<const io::FolderLock> claim = nullptr);
   ~CudaDevice() override;
   CudaDevice(const CudaDevice&) = delete;
   CudaDevice& operator=(const CudaDevice&) = delete;
@@ -47,6 +50,7 @@ class CudaDevice final : public Device {
 
   std::shared_ptr<const CudaDriver> driver_;
   std::string name_;
+  std::shared_ptr<const io::FolderLock> claim_;
   std::unique_ptr<Context> context_;
   std::unordered_map<std::string, Kernel> kernels_;
 };

@@ -40,6 +40,7 @@ void CudaDriver::find_functions(const SharedLibrary& library) {
   library.find(DeviceGet, "cuDeviceGet");
   library.find(DeviceGetName, "cuDeviceGetName");
   library.find(DeviceGetAttribute, "cuDeviceGetAttribute");
+  library.find(DeviceGetPCIBusId, "cuDeviceGetPCIBusId");
   library.find(DevicePrimaryCtxRetain, "cuDevicePrimaryCtxRetain");
   library.find(DevicePrimaryCtxRelease, "cuDevicePrimaryCtxRelease_v2");
   library.find(CtxPushCurrent, "cuCtxPushCurrent_v2");
@@ -61,10 +62,9 @@ void CudaDriver::find_functions(const SharedLibrary& library) {
 }
 
 void CudaDriver::start() {
-  int cards = 0;
   cuda::Result result = Init(0);
-  if (result == cuda::success) result = DeviceGetCount(&cards);
-  if (result == cuda::no_device || (result == cuda::success && cards == 0))
+  if (result == cuda::success) result = DeviceGetCount(&cards_);
+  if (result == cuda::no_device || (result == cuda::success && cards_ == 0))
     throw Unavailable(
         "no NVIDIA card: the driver is installed but finds none; the command nvidia-smi lists the "
         "cards, and the environment variable CUDA_VISIBLE_DEVICES may hide them");

@@ -45,6 +45,9 @@ class CudaDriver {
   /// The same with its minor version, such as "13.0".
   std::string cuda_version() const;
 
+  /// The number of cards that this process may use, at least 1.
+  int cards() const { return cards_; }
+
   /// Throws SimulationError unless the result is success. It says what failed and quotes the
   /// driver.
   void check(cuda::Result result, const std::string& action) const;
@@ -59,6 +62,7 @@ class CudaDriver {
   cuda::Result (*DeviceGet)(cuda::DeviceNumber*, int ordinal);
   cuda::Result (*DeviceGetName)(char* name, int length, cuda::DeviceNumber);
   cuda::Result (*DeviceGetAttribute)(int* value, int attribute, cuda::DeviceNumber);
+  cuda::Result (*DeviceGetPCIBusId)(char* id, int length, cuda::DeviceNumber);
   cuda::Result (*DevicePrimaryCtxRetain)(cuda::Context*, cuda::DeviceNumber);
   cuda::Result (*DevicePrimaryCtxRelease)(cuda::DeviceNumber);
   cuda::Result (*CtxPushCurrent)(cuda::Context);
@@ -85,7 +89,7 @@ class CudaDriver {
   void find_functions(const SharedLibrary&);
   void start();
 
-  int cuda_version_ = 0;
+  int cuda_version_ = 0, cards_ = 0;
 };
 
 }  // namespace snowshed::gpu

@@ -1,10 +1,10 @@
 #include "snowshed/gpu/machine_code.hpp"
 
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
 #include <optional>
 
+#include "snowshed/gpu/cache_folder.hpp"
 #include "snowshed/gpu/embedded_sources.hpp"
 #include "snowshed/io/atomic_file.hpp"
 #include "snowshed/io/checksum.hpp"
@@ -67,17 +67,8 @@ void write_code(const std::filesystem::path& file, const std::string& code) try 
 }  // namespace
 
 std::filesystem::path machine_code_folder() {
-  const auto below = [](const char* variable) {
-    const char* value = std::getenv(variable);
-    return std::filesystem::path(value && *value ? value : "");
-  };
-  std::filesystem::path cache = below("XDG_CACHE_HOME");
-  if (!cache.is_absolute()) {
-    const std::filesystem::path home = below("HOME");
-    if (!home.is_absolute()) return {};
-    cache = home / ".cache";
-  }
-  return cache / "snowshed" / "kernels";
+  const std::filesystem::path cache = cache_folder();
+  return cache.empty() ? cache : cache / "kernels";
 }
 
 std::string machine_code(const RuntimeCompiler& compiler, const KernelProgram& program,

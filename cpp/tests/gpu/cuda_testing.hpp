@@ -22,6 +22,7 @@ struct FakeCuda {
     library.find(fail, "fake_cuda_fail");
     library.find(reset, "fake_cuda_reset");
     library.find(calls, "fake_cuda_calls");
+    library.find(set_cards, "fake_cuda_set_cards");
     library.find(leaks, "fake_cuda_leaks");
     reset();
   }
@@ -33,6 +34,7 @@ struct FakeCuda {
   void (*fail)(const char* function, int result);
   void (*reset)();
   const char* (*calls)();
+  void (*set_cards)(int cards);
   std::size_t (*leaks)();
 };
 

@@ -2,6 +2,7 @@
 // card that does not exist. It records calls and fails on demand. Its one kernel is add_one.
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <map>
@@ -17,6 +18,7 @@ struct State {
   std::map<std::string, int> failing;  // results, by function
   std::map<void*, std::size_t> memory;
   int contexts = 0, pushed = 0;
+  int cards = 1;
 
   std::size_t used() const {
     std::size_t sum = 0;
@@ -50,6 +52,7 @@ extern "C" {
 
 void fake_cuda_fail(const char* function, int result) { state.failing[function] = result; }
 void fake_cuda_reset() { state = State(); }
+void fake_cuda_set_cards(int cards) { state.cards = cards; }
 const char* fake_cuda_calls() { return state.calls.c_str(); }
 /// Sum of all that was taken and not given back: bytes, contexts and contexts that are current.
 std::size_t fake_cuda_leaks() { return state.used() + state.contexts + state.pushed; }
@@ -70,7 +73,7 @@ int cuGetErrorString(int, const char** text) {
   return 0;
 }
 int cuDeviceGetCount(int* count) {
-  *count = 1;
+  *count = state.cards;
   return called("cuDeviceGetCount");
 }
 int cuDeviceGet(int* device, int ordinal) {
@@ -80,6 +83,10 @@ int cuDeviceGet(int* device, int ordinal) {
 int cuDeviceGetName(char* name, int length, int) {
   std::strncpy(name, "Fake card", std::size_t(length));
   return called("cuDeviceGetName");
+}
+int cuDeviceGetPCIBusId(char* id, int length, int device) {
+  std::snprintf(id, std::size_t(length), "0000:%02x:00.0", 23 + device);
+  return called("cuDeviceGetPCIBusId");
 }
 int cuDeviceGetAttribute(int* value, int attribute, int) {
   *value = attribute == 75 ? 9 : 0;

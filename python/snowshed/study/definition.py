@@ -235,7 +235,8 @@ class Study:
             Folder of the store: new, empty, or with a store in it, which studies may share. A study
             of the same name is replaced; its computed runs stay.
         jobs
-            Local processes at once; None: as many as there are cores.
+            Local processes at once; None: as many as there are cores, or graphics cards if the runs
+            ask for one.
         threads
             Threads of each run; None: as many as use all cores.
         scheduler

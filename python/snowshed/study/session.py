@@ -9,16 +9,14 @@ import time
 from collections import Counter, deque
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Optional
 
 import snowshed._core as _core
-from snowshed._core import InputError, available_cores
+from snowshed._core import InputError
 from snowshed.base.arguments import checked
 from snowshed.base.build import build_id
 from snowshed.base.callers import STUDY_RUN, argument, either
-from snowshed.base.field_type import shown
 from snowshed.base.formatting import plural
 from snowshed.base.interrupt import InterruptRequest, deferred_interrupts
 from snowshed.base.log import LOGGER
@@ -28,10 +26,10 @@ from snowshed.base.progress import Progress, Reporter
 from snowshed.io.locks import is_held
 from snowshed.study import cost_estimate
 from snowshed.study.errors import StudyError, StudyInterrupted
-from snowshed.study.local import LocalWorkers
 from snowshed.study.locks import is_owner
 from snowshed.study.outcome import RunOutcome, RunTask
 from snowshed.study.owner import ownership, release_dead
+from snowshed.study.resources import Resources
 from snowshed.study.scene_hash import RunKey, is_hash
 from snowshed.study.store import Store, StoredRun
 from snowshed.study.workers import Workers
@@ -40,47 +38,6 @@ POLL_S = 0.25  # s between checks of interrupts and progress
 ELSEWHERE_S = 1.0  # s between checks of what other processes compute
 MAX_NOTES = 10  # notes issued after a session, each once
 MAX_DEATHS = 3  # deaths of workers after which a run counts as failed
-
-
-@dataclass(frozen=True)
-class Resources:
-    """The resources that a study may use; see `Study.run` for the fields."""
-
-    jobs: Optional[int] = None
-    threads: Optional[int] = None
-    scheduler: object = None
-
-    def __post_init__(self) -> None:
-        if not _may_be_scheduler(self.scheduler):
-            raise InputError(
-                f"scheduler: {shown(self.scheduler)}; needed: the address of a Dask scheduler, the "
-                "path of its .json file, a Dask cluster, or a Dask client"
-            )
-        for name in ("jobs", "threads"):
-            value = getattr(self, name)
-            if value is not None and value < 1:
-                raise InputError(f"{name}: {value} is not positive")
-            if value is not None and self.scheduler is not None:
-                raise InputError(f"{name}: not allowed with a scheduler, whose workers set it")
-
-    def workers(self, runs: int) -> tuple[Workers, int]:
-        """Return workers for a number of runs, and how many runs they compute at once."""
-        if self.scheduler is not None:
-            from snowshed.study.cluster import DaskWorkers
-
-            cluster = DaskWorkers(self.scheduler)
-            return cluster, cluster.cores
-        cores = available_cores()
-        processes = max(1, min(self.jobs or max(1, cores // (self.threads or 1)), runs))
-        return LocalWorkers(processes, self.threads, cores), processes
-
-
-def _may_be_scheduler(value: object) -> bool:
-    """Return whether a value is of a type that `DaskWorkers` accepts; Dask is not imported."""
-    if isinstance(value, (str, os.PathLike)):
-        return bool(os.fspath(value))
-    is_client = any(own.__name__ == "Client" for own in type(value).__mro__)
-    return value is None or is_client or hasattr(value, "scheduler_address")
 
 
 def compute_runs(
@@ -187,7 +144,7 @@ def expected_duration(scenes: Sequence[str], *, jobs: Optional[int] = None) -> t
     jobs
         As for `Study.compute`.
     """
-    workers, at_once = Resources(jobs).workers(len(scenes))
+    workers, at_once = Resources(jobs).workers(scenes)
     works = [cost_estimate.work(scene) for scene in scenes]
     threads = workers.threads(len(scenes))
     return cost_estimate.expected_time(scenes, works, at_once, threads), at_once
@@ -211,7 +168,7 @@ def _compute(
     if not pending:
         _issue_run_notes(notes)
         return
-    workers, at_once = resources.workers(len(pending))
+    workers, at_once = resources.workers([run.scene for run in pending])
     try:
         with ownership(store) as owner, deferred_interrupts() as interrupt:
             session = _Session(store, owner, workers, list(runs.values()), interrupt, notes)
