@@ -63,9 +63,7 @@ class WeightQueue {
 
   bool contains(std::uint32_t point) const { return weights_[point] != removed; }
 
-  void lower(std::uint32_t point, std::int64_t by) {
-    if (contains(point)) weights_[point] -= by;
-  }
+  void lower(std::uint32_t point, std::int64_t by) { weights_[point] -= by; }
 
  private:
   using Entry = std::pair<std::int64_t, std::uint32_t>;
@@ -100,8 +98,7 @@ std::vector<Vec3> eliminate_samples(const Candidates& candidates, std::size_t co
     const std::uint32_t i = queue.pop();
     left -= candidates.inside[i];
     grid.for_each_near(points[i], [&](std::uint32_t j, const Vec3& other) {
-      const std::int64_t by = pair_weight(points[i], other);
-      if (by > 0) queue.lower(j, by);
+      if (queue.contains(j)) queue.lower(j, pair_weight(points[i], other));
     });
   }
 
