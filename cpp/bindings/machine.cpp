@@ -31,6 +31,7 @@ void bind_machine(pybind11::module_& m) {
       "The number of cores that this process may use, by its affinity and its container's quota.");
   m.def("available_memory_bytes", &available_memory_bytes,
         "Memory that is available now without swapping.");
+  m.def("kernel_variant", &kernel_variant_name, "Instruction set of the kernels.");
   m.def("slow_kernels_note", &slow_kernels_note,
         "A sentence on the cost of kernels without AVX2, if these are used; otherwise empty.");
 }

@@ -36,7 +36,7 @@ from snowshed.season.settings import SeasonSettings
 
 if TYPE_CHECKING:
     from snowshed.scene.scene import ResolvedScene
-    from snowshed.season.driver import SeasonResult
+    from snowshed.season.driver import SeasonPlan, SeasonResult
 
 DEFAULTS = SeasonSettings()
 
@@ -270,10 +270,19 @@ def _run(
     resume: bool,
     quiet: bool,
 ) -> SeasonResult:
-    from snowshed.cli.output.progress import progress_bar
-    from snowshed.season.driver import plan_season, simulate_season
+    from snowshed.season.driver import plan_season
 
     plan = plan_season(season_files, scene, settings=settings, **reading)
+    return simulate_with_progress(plan, folder, settings, resume=resume, quiet=quiet)
+
+
+def simulate_with_progress(
+    plan: SeasonPlan, folder: Path, settings: SeasonSettings, *, resume: bool, quiet: bool
+) -> SeasonResult:
+    """Simulate a planned season with a progress bar."""
+    from snowshed.cli.output.progress import progress_bar
+    from snowshed.season.driver import simulate_season
+
     try:
         with progress_bar(quiet=quiet) as progress:
             return simulate_season(
