@@ -269,3 +269,14 @@ def test_a_study_in_the_folder_of_a_run_is_refused(run_folder):
         study({"panel.tilt": [40]}).run(run_folder, jobs=1)
     with pytest.raises(InputError, match="holds no study"):
         read_table(run_folder)
+
+
+def test_a_law_of_numba_that_raises_an_error_is_told():
+    numba = pytest.importorskip("numba")
+
+    @numba.cfunc("float64(float64, float64)")
+    def wrong(speed, stress):
+        raise ValueError("the user's own")
+
+    texts = texts_of(Simulation(lab(), laws=Laws("mine", friction={"panel": wrong})).run)
+    assert any("raised ValueError: the user's own" in text for text in texts), texts
