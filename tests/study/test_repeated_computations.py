@@ -79,6 +79,8 @@ def test_a_study_is_made_again_from_its_record_alone(tmp_path, kind):
         again = snowshed.repeat(record, tmp_path / "again", jobs=1)
     same_table(first, again)
     assert not any("another build" in note or "changed" in note for note in notes)
+    planned = CliRunner().invoke(cli, ["repeat", str(record), "--dry-run"])
+    assert planned.exit_code == 0 and f"{len(again.hash.unique())} runs" in planned.output
     done = CliRunner().invoke(cli, ["repeat", str(record), "-o", str(tmp_path / "third"), "-q"])
     assert done.exit_code == 0, done.output
     same_table(first, read_table(tmp_path / "third"))
@@ -166,6 +168,8 @@ def test_a_season_is_made_again_from_its_season_json_alone(tmp_path):
     weather.unlink()
     again = snowshed.repeat(record, tmp_path / "again")
     assert again.notes == first.notes and again.contact == first.contact
+    planned = CliRunner().invoke(cli, ["repeat", str(record), "--dry-run"])
+    assert planned.exit_code == 0 and f"{first.releases} releases" in planned.output
     run = ["repeat", str(record), "-o", str(tmp_path / "third"), "-q"]
     done = CliRunner().invoke(cli, run)
     assert done.exit_code == 0, done.output
@@ -188,6 +192,8 @@ def test_a_clearance_is_made_again_from_its_clearance_json_alone(tmp_path):
     (again,) = snowshed.repeat(record, tmp_path / "again", jobs=1)
     same_table(first.table(), again.table())
     assert np.array_equal(first.required, again.required)
+    planned = CliRunner().invoke(cli, ["repeat", str(record), "--dry-run"])
+    assert planned.exit_code == 0 and "2 winters, 1 panel" in planned.output
     done = CliRunner().invoke(
         cli, ["repeat", str(record), "-o", str(tmp_path / "third"), "-q", "--jobs", "1"]
     )

@@ -48,7 +48,7 @@ def answer(weather, folder, jobs):
 
 
 def files(folder):
-    """Return all files of an answer beside its stores, by name; of its record all but the date."""
+    """Return all files of an answer beside its stores, by name; its record has no date."""
     contents = {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
     return {
         name: undated(content) if name in RECORDS else content for name, content in contents.items()

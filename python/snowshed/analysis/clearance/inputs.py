@@ -8,7 +8,11 @@ from pathlib import Path
 from typing import Any, Optional
 
 from snowshed._core import InputError
-from snowshed.analysis.clearance.answer import ClearanceResult, required_clearance
+from snowshed.analysis.clearance.answer import (
+    ClearanceResult,
+    expected_duration,
+    required_clearance,
+)
 from snowshed.analysis.clearance.panel_design import PanelDesign, SnowRanges
 from snowshed.analysis.clearance.winters import counted_winters
 from snowshed.base.progress import Reporter
@@ -64,6 +68,18 @@ class ClearanceInputs:
             "weather": weather_data(self.weather),
         }
         return record_data(CLEARANCE, inputs, self.files)
+
+    def expected_duration(self, *, jobs: Optional[int] = None) -> tuple[float, int]:
+        """Return the expected time of all answers, s, and their number of seasons."""
+        winters = counted_winters(self.weather.winters(self.coverage))
+        costs = [
+            expected_duration(
+                design, winters, self.heights, ranges=self.ranges, settings=self.settings,
+                scene=self.scene, jobs=jobs,
+            )
+            for design in self.designs
+        ]  # fmt: skip
+        return sum(seconds for seconds, _ in costs), sum(seasons for _, seasons in costs)
 
     def answers(
         self,

@@ -148,7 +148,6 @@ def clearance(
     Example:
       snowshed clearance winters.csv --slope-length 4 --tilt 60 --heights 1.5:4:0.5 -o answer
     """  # noqa: D301 - click wants the control character
-    from snowshed.analysis.clearance.answer import expected_duration
     from snowshed.analysis.clearance.inputs import ClearanceInputs
     from snowshed.analysis.clearance.panel_design import PanelDesign
     from snowshed.analysis.clearance.winters import counted_winters
@@ -166,7 +165,7 @@ def clearance(
     notes = [*record.notes, *winter_list.notes]
     for note in () if quiet else notes:
         say(f"note: {note}")
-    winters = counted_winters(winter_list)
+    counted_winters(winter_list)  # none is an error before anything is computed
     grid, settings = _grid(designs, dx, scheme, accuracy, quiet=quiet)
     inputs = ClearanceInputs(
         designs, record, coverage, candidates, ranges, settings,
@@ -175,19 +174,19 @@ def clearance(
     if price is not None and not math.isfinite(price):
         raise InputError(f"--price: {price:g} is not allowed; give a cost of 0 or more")
     if dry_run or not quiet:
-        options: dict[str, Any] = {"ranges": ranges, "settings": settings, "scene": inputs.scene}
-        costs = [
-            expected_duration(design, winters, candidates, jobs=jobs, **options)
-            for design in designs
-        ]
-        seconds, seasons = (sum(values) for values in zip(*costs))
-        say(
-            f"{winter_list.counted_text}, {plural(len(designs), 'panel')}, "
-            f"about {seasons} seasons: {about(seconds)}"
-        )
+        print_expected(inputs, jobs)
     if dry_run:
         return
     answer_and_report(inputs, folder, notes, quiet=quiet, jobs=jobs, same_version=same_version)
+
+
+def print_expected(inputs: ClearanceInputs, jobs: Optional[int]) -> None:
+    """Print the number of winters, panels and seasons, and the expected time."""
+    seconds, seasons = inputs.expected_duration(jobs=jobs)
+    say(
+        f"{inputs.weather.winters(inputs.coverage).counted_text}, "
+        f"{plural(len(inputs.designs), 'panel')}, about {seasons} seasons: {about(seconds)}"
+    )
 
 
 def answer_and_report(

@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Optional
+from typing import Any, Optional
 
 import click
 
 from snowshed._core import InputError
-from snowshed.cli.options.common import PATH, jobs_option, quiet_option
+from snowshed.cli.options.common import (
+    PATH,
+    ResultsFolder,
+    dry_run_option,
+    jobs_option,
+    quiet_option,
+    resume_flag,
+)
 from snowshed.io.input_file import read_input
 from snowshed.results.computed_record import (
     CLEARANCE,
@@ -21,12 +29,19 @@ from snowshed.results.computed_record import (
 @click.command()
 @click.argument("record", type=PATH)
 @click.option(
-    *("-o", "--output", "folder"), type=PATH, required=True, help="Results folder, new or empty."
+    *("-o", "--output", "folder"),
+    type=PATH,
+    required=True,
+    cls=ResultsFolder,
+    help="Results folder, new or empty.",
 )
-@click.option("--resume", is_flag=True, help="Resume after an interruption.")
+@resume_flag("Resume after an interruption.")
+@dry_run_option()
 @jobs_option("Runs")
 @quiet_option
-def repeat(record: Path, folder: Path, resume: bool, jobs: Optional[int], quiet: bool) -> None:
+def repeat(
+    record: Path, folder: Path, resume: bool, dry_run: bool, jobs: Optional[int], quiet: bool
+) -> None:
     """Compute a run, a study, a season or a clearance again from its record alone.
 
     RECORD is the run.json of a run, the NAME.json of a study, the season.json of a season, or the
@@ -38,37 +53,76 @@ def repeat(record: Path, folder: Path, resume: bool, jobs: Optional[int], quiet:
       snowshed repeat study/cohesion-and-slope.json -o again
     """  # noqa: D301 - click wants the control character
     if not is_computed_record(read_input(record)):
-        _repeat_run(record, folder, resume=resume, quiet=quiet)
+        _repeat_run(record, folder, resume=resume, dry_run=dry_run, quiet=quiet)
         return
     kind, content = read_record(record)
     if kind == CLEARANCE:
-        from snowshed.analysis.clearance.inputs import recorded_clearance
-        from snowshed.cli.commands.clearance import answer_and_report
-
-        inputs = recorded_clearance(content, record)
-        notes = [*inputs.weather.notes, *inputs.weather.winters(inputs.coverage).notes]
-        answer_and_report(inputs, folder, notes, quiet=quiet, jobs=jobs)
+        _repeat_clearance(record, content, folder, dry_run=dry_run, jobs=jobs, quiet=quiet)
     elif kind == SEASON:
-        from snowshed.cli.commands.season import print_season, simulate_with_progress
-        from snowshed.season.repeated import recorded_season
-
-        plan, settings = recorded_season(content, record)
-        result = simulate_with_progress(plan, folder, settings, resume=resume, quiet=quiet)
-        if not quiet:
-            print_season(result, folder, plan.panel)
+        _repeat_season(record, content, folder, resume=resume, dry_run=dry_run, quiet=quiet)
     else:
-        from snowshed.cli.compute_study import compute_study
+        from snowshed.cli.compute_study import compute_study, print_study_cost
         from snowshed.study.definition import Study
 
-        compute_study(Study.load(record), folder, quiet=quiet, jobs=jobs)
+        study = Study.load(record)
+        if dry_run:
+            print_study_cost(study, jobs)
+        else:
+            compute_study(study, folder, quiet=quiet, jobs=jobs)
 
 
-def _repeat_run(record: Path, folder: Path, *, resume: bool, quiet: bool) -> None:
-    from snowshed.cli.run_scene import run_scene
+def _repeat_run(record: Path, folder: Path, *, resume: bool, dry_run: bool, quiet: bool) -> None:
+    from snowshed.cli.run_scene import run_or_cost
     from snowshed.running.recorded_run import recorded_run
     from snowshed.scene.scene import ResolvedScene
 
     recorded = recorded_run(record)
     if recorded is None:
         raise InputError(f"{record}: no record of a run, a study, a season or a clearance")
-    run_scene(ResolvedScene.load(record), folder, resume, quiet, recorded=recorded)
+    scene = ResolvedScene.load(record)
+    run_or_cost(scene, folder, resume=resume, dry_run=dry_run, quiet=quiet, recorded=recorded)
+
+
+def _repeat_season(
+    record: Path,
+    content: Mapping[str, Any],
+    folder: Path,
+    *,
+    resume: bool,
+    dry_run: bool,
+    quiet: bool,
+) -> None:
+    from snowshed.cli.commands.season import (
+        print_plan_cost,
+        print_season,
+        simulate_with_progress,
+    )
+    from snowshed.season.repeated import recorded_season
+
+    plan, settings = recorded_season(content, record)
+    if dry_run:
+        print_plan_cost(plan, quiet=quiet)
+        return
+    result = simulate_with_progress(plan, folder, settings, resume=resume, quiet=quiet)
+    if not quiet:
+        print_season(result, folder, plan.panel)
+
+
+def _repeat_clearance(
+    record: Path,
+    content: Mapping[str, Any],
+    folder: Path,
+    *,
+    dry_run: bool,
+    jobs: Optional[int],
+    quiet: bool,
+) -> None:
+    from snowshed.analysis.clearance.inputs import recorded_clearance
+    from snowshed.cli.commands.clearance import answer_and_report, print_expected
+
+    inputs = recorded_clearance(content, record)
+    if dry_run or not quiet:
+        print_expected(inputs, jobs)
+    if not dry_run:
+        notes = [*inputs.weather.notes, *inputs.weather.winters(inputs.coverage).notes]
+        answer_and_report(inputs, folder, notes, quiet=quiet, jobs=jobs)

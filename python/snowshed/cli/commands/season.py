@@ -303,7 +303,11 @@ def _print_cost(
     """Print the number of releases and the cost of their slide-offs."""
     from snowshed.season.driver import plan_season
 
-    plan = plan_season(season_files, scene, settings=settings, **reading)
+    print_plan_cost(plan_season(season_files, scene, settings=settings, **reading), quiet=quiet)
+
+
+def print_plan_cost(plan: SeasonPlan, *, quiet: bool) -> None:
+    """Print the number of releases of a planned season, and the cost of its slide-offs."""
     for note in () if quiet else plan.record.notes:
         say(f"note: {note}")
     say(f"{sum(day.released for day in plan.days)} releases in {len(plan.days)} days")
