@@ -117,13 +117,13 @@ def read_pages(path: Path, read_page: Callable[[Tags], Page]) -> list[Page]:
     """
     tifffile = require("tifffile", "images", "reading TIFF files")
     with open_regular(path) as file, tiff_errors(path):
-        with tifffile.TiffFile(_Bounded(file), name=path.name, **_without_dialects()) as tiff:
+        off = _without_dialects(tifffile.TiffFile)
+        with tifffile.TiffFile(_Bounded(file), name=path.name, **off) as tiff:
             return [read_page(tags) for tags in _tags(tiff, path)]
 
 
-def _without_dialects() -> dict[str, bool]:
+def _without_dialects(tiff_file: type[TiffFile]) -> dict[str, bool]:
     """Return the arguments by which tifffile follows no dialect; old ones fix some of them."""
-    tiff_file = require("tifffile", "images", "reading TIFF files").TiffFile
     fixed = [name for name in DIALECTS if isinstance(getattr(tiff_file, name, None), property)]
     return {name: False for name in DIALECTS if name not in fixed}
 
