@@ -2,7 +2,11 @@
 
 import ast
 
+import numpy as np
+import pytest
 from helpers.paths import ROOT
+
+from snowshed.io.voxels.open_voxels import open_voxels
 
 SOURCES = sorted((ROOT / "python" / "snowshed").rglob("*.py"))
 
@@ -29,3 +33,12 @@ def test_types_of_click_have_no_parameters():
         if isinstance(base, ast.Subscript) and ast.unparse(base.value).startswith("click.")
     ]
     assert generic == []
+
+
+def test_tiff_files_are_read_where_tifffile_fixes_a_dialect(tmp_path, monkeypatch):
+    """In tifffile 2024.8, the last for Python 3.9, ``is_sis`` cannot be set."""
+    tifffile = pytest.importorskip("tifffile")
+    monkeypatch.setattr(tifffile.TiffFile, "is_sis", property(lambda tiff: False))
+    voxels = np.arange(210, dtype=np.uint8).reshape(5, 6, 7)
+    tifffile.imwrite(tmp_path / "a.tif", voxels)
+    assert np.array_equal(open_voxels(tmp_path / "a.tif").layers(0, 5), voxels)

@@ -34,6 +34,7 @@ void bind_machine(pybind11::module_& m) {
         "Memory that is available now without swapping.");
   m.def("graphics_cards", &gpu::count_cards,
         "The number of NVIDIA's cards that this process may use; 0 without a driver.");
+  m.def("kernel_variant", &kernel_variant_name, "Instruction set of the kernels.");
   m.def("slow_kernels_note", &slow_kernels_note,
         "A sentence on the cost of kernels without AVX2, if these are used; otherwise empty.");
 }

@@ -13,6 +13,7 @@ PYBIND11_MODULE(_core, m) {
   m.attr("version") = SNOWSHED_VERSION;
   m.attr("build_id") = snowshed::build_id();
   m.attr("build_commit") = snowshed::build_commit();
+  m.attr("build_compiler") = snowshed::compiler_name();
   snowshed::register_errors(m);
   snowshed::bind_scene(m);
   snowshed::bind_simulation(m);

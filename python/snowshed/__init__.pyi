@@ -13,6 +13,7 @@ from ._core import InputError as InputError
 from ._core import SimulationError as SimulationError
 from .analysis.clearance.clearance import clearance as clearance
 from .analysis.regression.predictor import predict as predict
+from .analysis.repetition import repeat as repeat
 from .base.interrupt import Interrupted as Interrupted
 from .base.missing_result import MissingResultError as MissingResultError
 from .base.notes import InputNote as InputNote

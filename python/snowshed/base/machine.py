@@ -5,10 +5,12 @@ from __future__ import annotations
 import platform
 import resource
 import sys
+from datetime import datetime, timezone
 from pathlib import Path
 
 import numpy as np
 
+import snowshed._core as _core
 from snowshed.base.build import package_digest
 
 
@@ -36,4 +38,17 @@ def machine_facts() -> dict[str, str]:
         "numpy": np.__version__,
         "machine": platform.platform(),
         "cpu": cpu_name(),
+    }
+
+
+def present_facts() -> dict[str, str]:
+    """Return the facts that run.json holds about its run: program, build, date and machine."""
+    return {
+        "version": _core.version,
+        "build": _core.build_id,
+        "commit": _core.build_commit,
+        "compiler": _core.build_compiler,
+        "kernels": _core.kernel_variant(),
+        "date": datetime.now(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"),
+        **machine_facts(),
     }

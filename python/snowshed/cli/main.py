@@ -51,6 +51,7 @@ def cli() -> None:
 DEFERRED = (
     ("panel", "panel", "Run slide-offs from a panel described by options."),
     ("run", "run", "Run a scene file."),
+    ("repeat", "repeat", "Compute a run, study, season or clearance again from its record."),
     ("extend", "extend", "Add slide-offs to a finished run, in a new folder."),
     ("slide", "slide", "Run a small snow slide on terrain."),
     ("release-areas", "release_areas", "Find candidate release areas by the terrain's shape."),

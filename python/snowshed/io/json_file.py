@@ -17,6 +17,8 @@ from snowshed.io.json_text import loads
 #: Beginning of an object's last value, its checksum, as the core writes it.
 SEAL = b',\n  "checksum": "'
 
+MAX_LINES = 200  # lines of a value in a sealed object
+
 #: Names of the required types of JSON values.
 KINDS = {dict: "an object", list: "a list", str: "a text", float: "a finite number"}
 
@@ -43,6 +45,45 @@ def parse_object(text: str | bytes, where: str) -> dict[str, Any]:
         raise InputError(f"{where}: damaged: not a JSON object")
     check_seal(text if isinstance(text, bytes) else text.encode(), where)
     return data
+
+
+def sealed(data: Mapping[str, Any]) -> str:
+    """Return the text of an object with its checksum; a long value stands in one line.
+
+    Examples
+    --------
+    >>> print(sealed({"wall_s": 2.5}), end="")
+    {
+      "wall_s": 2.5,
+      "checksum": "e0ffe2c4"
+    }
+    """
+    values = (f"  {json.dumps(key)}: {_value_text(value)}" for key, value in data.items())
+    text = "{\n" + ",\n".join(values) + SEAL.decode()
+    content = text.encode()[: -len(SEAL)]
+    return f'{text}{zlib.crc32(content):08x}"\n}}\n'
+
+
+def _value_text(value: Any) -> str:
+    text = json.dumps(value, indent=2, allow_nan=False, default=plain_value)
+    if text.count("\n") < MAX_LINES:
+        return text.replace("\n", "\n  ")
+    return json.dumps(value, default=plain_value)
+
+
+def plain_value(value: Any) -> Any:
+    """Return an array, a path or a part of a scene as JSON data, for `json.dumps`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> json.dumps([np.float32(0.5), np.arange(2)], default=plain_value)
+    '[0.5, [0, 1]]'
+    """
+    for name in ("to_data", "tolist", "__fspath__"):
+        if hasattr(value, name):
+            return getattr(value, name)()
+    raise TypeError(f"JSON has no value of the type {type(value).__name__}")
 
 
 def check_seal(text: bytes, where: str) -> None:

@@ -27,7 +27,7 @@ def kept_inputs(scene: ResolvedScene, folder: PathLike) -> Iterator[ResolvedScen
     results, beside = Path(folder), inputs_beside(folder)
     was_there = beside.exists()
     beside.mkdir(parents=True, exist_ok=True)
-    data = with_named_files(scene.copied_data(), lambda path: _copy(path, beside))
+    data = with_named_files(scene.copied_data(), lambda path: copy_array_file(path, beside))
     try:
         yield ResolvedScene.from_data(data, scene.base_dir)
     except BaseException:
@@ -36,7 +36,8 @@ def kept_inputs(scene: ResolvedScene, folder: PathLike) -> Iterator[ResolvedScen
         raise
 
 
-def _copy(path: str, beside: Path) -> str:
+def copy_array_file(path: str, beside: Path) -> str:
+    """Copy the file of an array in memory, and return the copy's path; other paths stay."""
     if not is_array_file(path):
         return path
     copy = beside / Path(path).name

@@ -35,6 +35,7 @@ from snowshed.results.reader import Results
 from snowshed.results.replacement import new_results
 from snowshed.running.ageing.ageing import Ageing
 from snowshed.running.kept_inputs import kept_inputs
+from snowshed.running.law_errors import law_errors
 from snowshed.running.laws import Laws
 from snowshed.running.method_run import MethodRun, RunOptions
 from snowshed.running.recorded_run import RecordedRun, note_run_beside, recorded_run
@@ -172,13 +173,13 @@ def run_resolved(
             sequence = open_sequence(resolved, folder, resume=resume, laws=laws)
         verb = "resuming" if resume else "running"
         LOGGER.info("%s %s in %s", verb, _title(resolved), folder)
-        with sequence, deferred_interrupts() as interrupt:
+        with sequence, deferred_interrupts() as interrupt, law_errors(laws) as check_laws:
             method_run: MethodRun = method.run_class()(sequence, resolved, Path(folder), options)
             method_run.begin()
             sequence.describe_machine(machine_facts())
             for note in [] if recorded is None else recorded.differences(laws):
                 record_note(sequence, note)
-            observer = _Observer(method_run, interrupt, progress, begin)
+            observer = _Observer(method_run, interrupt, progress, begin, check_laws)
             try:
                 run_sequence(sequence, observer, resolved, folder)
             except Interrupted:
@@ -291,11 +292,13 @@ class _Observer:
         interrupt: InterruptRequest,
         report: Optional[Reporter],
         begin: Callable[[], None],
+        check_laws: Callable[[], None],
     ) -> None:
         self.method_run = method_run
         self.interrupt = interrupt
         self.report = report
         self.begin = begin  # called once the run can be resumed
+        self.check_laws = check_laws  # raises an error of a law of one's own
 
     def between_events(self) -> None:
         """Let the method change the snow between two events."""
@@ -312,11 +315,13 @@ class _Observer:
 
     def progress(self, report: dict[str, Any]) -> None:
         """Report the progress of the event."""
+        self.check_laws()
         self.method_run.progress()
         self._report_progress(report["time_s"], report["progress"], report["updates_per_s"])
 
     def event_ended(self, facts: dict[str, Any]) -> None:
         """Let the method write the results of the event."""
+        self.check_laws()
         self.method_run.event_ended(facts)
         LOGGER.info("event %d ended (%s) after %.4g s", facts["event"], facts["ended"],
                     facts["sim_time_s"])  # fmt: skip

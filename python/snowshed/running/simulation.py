@@ -19,6 +19,7 @@ from snowshed.methods.registry import method_of
 from snowshed.results.provenance import present_origin, with_origin
 from snowshed.running.callback_guard import CallsFunctions, refused_within_calls
 from snowshed.running.event_end import Ended, EventEnd
+from snowshed.running.law_errors import law_errors
 from snowshed.running.laws import Laws, addresses_of
 from snowshed.running.particle_reading import ReadsParticles
 from snowshed.running.recorded_run import check_scene_alone
@@ -91,7 +92,8 @@ class Simulation(CallsFunctions, StrictAttributes, ReadsParticles):
         self._laws = laws  # keeps the functions alive
         addresses = addresses_of(laws, self._scene.data)
         self._core = _core.Simulation(self._scene.core, self._scene.base_dir, addresses)
-        for note in (*notes_before(self._scene.data), *self._core.notes):
+        of_input = filter(None, [self._core.input_note()])
+        for note in (*notes_before(self._scene.data), *self._core.notes, *of_input):
             issue_note(note)
 
     @classmethod
@@ -150,7 +152,7 @@ class Simulation(CallsFunctions, StrictAttributes, ReadsParticles):
         SimulationError
             If the present event has not ended, or the stack cannot be reseeded.
         """
-        with issuing_notes(self._core):
+        with issuing_notes(self._core), law_errors(self._laws):
             self._core.begin_event()
 
     @refused_within_calls
@@ -165,7 +167,8 @@ class Simulation(CallsFunctions, StrictAttributes, ReadsParticles):
             If no event runs, or the simulation cannot continue.
         """
         for left in range(whole_number("count", count, lowest=0), 0, -MAX_STEPS):
-            self._core.step(min(left, MAX_STEPS))
+            with law_errors(self._laws):
+                self._core.step(min(left, MAX_STEPS))
 
     @refused_within_calls
     def run(
@@ -219,11 +222,12 @@ class Simulation(CallsFunctions, StrictAttributes, ReadsParticles):
         while self.time < until:
             # Only half of the steps that would remain, because the time step may grow.
             left = 0.5 * (until - self.time) / self._core.time_step_s if self.time else 1
-            self._core.step(max(1, min(MAX_STEPS, int(left))))
+            self.step(max(1, min(MAX_STEPS, int(left))))
         return "reached"
 
     def _run_to_end(self) -> Ended:
-        return cast(Ended, self._core.run(lambda report: True, CHECK_INTERVAL))
+        with law_errors(self._laws) as check:
+            return cast(Ended, self._core.run(lambda report: check() is None, CHECK_INTERVAL))
 
     def _run_until(
         self,

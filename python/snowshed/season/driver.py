@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed._core import InputError
@@ -16,10 +16,13 @@ from snowshed.base.progress import Reporter
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import Table, read_csv, write_csv
 from snowshed.io.folders import check_empty
+from snowshed.io.json_file import sealed
 from snowshed.methods.registry import resolution_of
+from snowshed.results.computed_record import SEASON, record_data
 from snowshed.results.replacement import replaced_season
 from snowshed.results.season_folder import SeasonFolder
 from snowshed.running.run import instead_of_full, run_events
+from snowshed.scene.named_files import named_files
 from snowshed.scene.scene import ResolvedScene, SceneLike, resolve_scene
 from snowshed.season.accumulation import WinterDay, snow_on_panel, stack_ageing
 from snowshed.season.notes import assumptions, fall_notes, first_staying, notes
@@ -30,7 +33,8 @@ from snowshed.season.slabs import season_scene
 from snowshed.season.table import season_table
 from snowshed.season.weather.quality import COVERAGE
 from snowshed.season.weather.quality_table import caption
-from snowshed.season.weather.reading import Season, read_record
+from snowshed.season.weather.reading import Season, read_record, weather_files
+from snowshed.season.weather.rows_data import weather_data
 from snowshed.season.weather.season_record import SeasonRecord, WinterList
 from snowshed.season.weather.source import AUTO
 
@@ -186,7 +190,7 @@ def simulate_season(
         _slide(plan, settings, files, resume=resume, progress=progress, pictures=pictures)
     files.folder.mkdir(parents=True, exist_ok=True)
     result = _result(plan, settings, files)
-    _write(result, plan.scene, settings, files, pictures=pictures)
+    _write(result, plan, settings, files, pictures=pictures)
     return result
 
 
@@ -231,6 +235,8 @@ class SeasonPlan:
         The scene of the panel.
     slides
         The scene whose events are the releases; None without a release.
+    coverage, files
+        Share of the days on which snow should have been observed, and the files of the weather.
     """
 
     record: SeasonRecord
@@ -238,6 +244,18 @@ class SeasonPlan:
     days: Sequence[WinterDay]
     panel: ResolvedScene
     slides: Optional[ResolvedScene]
+    coverage: float = COVERAGE
+    files: Sequence[str] = ()
+
+    def record_data(self, settings: SeasonSettings) -> dict[str, Any]:
+        """Return what makes the season: enough to simulate it again (`snowshed.repeat`)."""
+        inputs: dict[str, Any] = {
+            "settings": asdict(settings),
+            "scene": self.panel.copied_data(),  # with absolute paths of files
+            "coverage": self.coverage,
+            "weather": weather_data(self.record),
+        }
+        return record_data(SEASON, inputs, [*self.files, *named_files(inputs["scene"])])
 
     @property
     def scene(self) -> Mapping[str, Any]:
@@ -260,15 +278,29 @@ def plan_season(
     Parameters and errors are those of `run_season`.
     """
     record = read_record(season, snow_from, temperature)
+    files = [*weather_files(season), *([] if temperature is None else [Path(temperature)])]
+    return plan_record(record, resolve_scene(scene), settings, coverage, list(map(str, files)))
+
+
+def plan_record(
+    record: SeasonRecord,
+    panel: ResolvedScene,
+    settings: SeasonSettings,
+    coverage: float,
+    files: Sequence[str] = (),
+) -> SeasonPlan:
+    """Return the plan of a season from weather that was read already; see `plan_season`.
+
+    `files` are those of the weather, whose checksums the season records.
+    """
     winters = record.winters(coverage)
-    panel = resolve_scene(scene)
     data = panel.data
     if "panel" not in data:
         raise InputError("/panel: missing; a season needs a panel for the snow to gather on")
     check_rows(settings.rows, data)
     days = snow_on_panel(record.rows, settings, data["panel"]["tilt"], data["gravity"])
     slides = season_scene(panel, days, settings) if any(day.event for day in days) else None
-    return SeasonPlan(record, winters, days, panel, slides)
+    return SeasonPlan(record, winters, days, panel, slides, coverage, files)
 
 
 def _result(plan: SeasonPlan, settings: SeasonSettings, folder: SeasonFolder) -> SeasonResult:
@@ -311,7 +343,7 @@ def _table_or_empty(table: Table) -> pd.DataFrame:
 
 def _write(
     result: SeasonResult,
-    scene: Mapping[str, Any],
+    plan: SeasonPlan,
     settings: SeasonSettings,
     folder: SeasonFolder,
     *,
@@ -321,14 +353,15 @@ def _write(
     summary = {name: value for name, value in vars(result).items() if name not in left_out}
     summary["contact"] = None if result.contact is None else asdict(result.contact)
     summary["winters"] = result.winters.data()
-    text = json.dumps({"settings": asdict(settings), **summary}, indent=2, default=list)
+    summary["notes"] = list(result.notes)
     write_csv(result.table, folder.table, float_format="%.6g")
-    write_text(folder.summary, text + "\n")
+    record = {"settings": asdict(settings), **summary, **plan.record_data(settings)}
+    write_text(folder.summary, sealed(record))
     if pictures:
         from snowshed.plot.figure_style import save_figure
 
         outlines = _table_or_empty(folder.run.outlines)
-        save_figure(season_result_figure(result, outlines, scene), folder.figure)
+        save_figure(season_result_figure(result, outlines, plan.scene), folder.figure)
 
 
 def season_result_figure(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Optional, Union
+from typing import Any, Optional, Union
 
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
@@ -158,3 +158,15 @@ class SeasonSettings:
     def settling_law(self) -> Optional[SettlingLaw]:
         """The law of settling, if there is one."""
         return None if self.settling is None else SETTLING_LAWS[self.settling]
+
+
+def settings_of(data: Mapping[str, Any]) -> SeasonSettings:
+    """Return the settings from JSON data of `dataclasses.asdict`.
+
+    Examples
+    --------
+    >>> from dataclasses import asdict
+    >>> settings_of(asdict(SeasonSettings(friction=0.5))).friction
+    0.5
+    """
+    return SeasonSettings(**{**data, "rows": PanelRows(**data["rows"])})

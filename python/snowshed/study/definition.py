@@ -16,8 +16,11 @@ from snowshed.base.notes import ResultNote, issue_note
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
 from snowshed.io.atomic import write_text
+from snowshed.io.input_file import read_input
+from snowshed.results.computed_record import is_computed_record
 from snowshed.scene.scene import Scene
-from snowshed.study import session, study_file
+from snowshed.study import session, study_file, study_record
+from snowshed.study.errors import StudyInterrupted
 from snowshed.study.factors import SEED, Part, axis
 from snowshed.study.named_laws import NamedLaws
 from snowshed.study.scene_hash import RunKey
@@ -119,7 +122,12 @@ class Study:
 
     @classmethod
     def load(cls, file: PathLike) -> Study:
-        """Read a study file (TOML).
+        """Read a study file (TOML), or the record that `compute` leaves in its folder.
+
+        Warns
+        -----
+        SnowshedNote
+            If a record is of another build, or files that it names have changed.
 
         Raises
         ------
@@ -130,9 +138,12 @@ class Study:
         """
         path = Path(file)
         with study_file.name_in_errors(path):
-            content = study_file.read(path)
+            is_record = is_computed_record(read_input(path))
+            content = study_record.read_study(path) if is_record else study_file.read(path)
             study = cls(**vars(content))
-            study.runs()  # a wrong scene is the file's error
+            runs = study.runs()  # a wrong scene is the file's error
+            if is_record:
+                study_record.note_other_runs(path, runs)
         return study
 
     def to_toml(self) -> str:
@@ -159,17 +170,7 @@ class Study:
         panel.tilt = [40, 50]
         <BLANKLINE>
         """
-        return study_file.text(
-            study_file.Content(
-                self.scene,
-                self.parts,
-                self.name,
-                self.seeds,
-                self.description,
-                self.season,
-                self.laws,
-            )
-        )
+        return study_file.text(self._content)
 
     def save(self, file: PathLike) -> None:
         """Write the study to a study file; see `to_toml`."""
@@ -227,7 +228,8 @@ class Study:
         """Compute the runs that are missing in the store in `folder`.
 
         After an interruption, even a kill, the same call resumes. The results are the same, bit for
-        bit, as without the interruption.
+        bit, as without the interruption. The record ``NAME.json`` in the folder is enough to
+        compute the study again (`snowshed.repeat`).
 
         Parameters
         ----------
@@ -263,19 +265,25 @@ class Study:
         StudyInterrupted
             After Ctrl-C.
         """
-        session.compute_runs(
-            folder,
-            self.name,
-            self.axes,
-            self.runs(),
-            jobs=jobs,
-            threads=threads,
-            scheduler=scheduler,
-            retry_failed=retry_failed,
-            keep_particles=keep_particles,
-            same_version=same_version,
-            progress=progress,
-        )
+        runs = self.runs()
+        try:
+            session.compute_runs(
+                folder,
+                self.name,
+                self.axes,
+                runs,
+                jobs=jobs,
+                threads=threads,
+                scheduler=scheduler,
+                retry_failed=retry_failed,
+                keep_particles=keep_particles,
+                same_version=same_version,
+                progress=progress,
+            )
+        except StudyInterrupted:
+            study_record.write_record(folder, self._content, runs)
+            raise
+        study_record.write_record(folder, self._content, runs)
 
     def run(
         self,
@@ -336,6 +344,18 @@ class Study:
             As for `compute`.
         """
         return session.expected_duration([run.scene for run in self.runs()], jobs=jobs)
+
+    @property
+    def _content(self) -> study_file.Content:
+        return study_file.Content(
+            self.scene,
+            self.parts,
+            self.name,
+            self.seeds,
+            self.description,
+            self.season,
+            self.laws,
+        )
 
     def _seeded_parts(self) -> Iterator[Part]:
         seeds = [] if self.seeds is None else [axis(SEED, self.seeds)]

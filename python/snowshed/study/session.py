@@ -32,6 +32,7 @@ from snowshed.study.owner import ownership, release_dead
 from snowshed.study.resources import Resources
 from snowshed.study.scene_hash import RunKey, is_hash
 from snowshed.study.store import Store, StoredRun
+from snowshed.study.study_record import renew_notes
 from snowshed.study.workers import Workers
 
 POLL_S = 0.25  # s between checks of interrupts and progress
@@ -130,6 +131,8 @@ def resume(
         for name in names:
             _adopt(store, name, same_version=same_version)
         _compute(store, names, resources, retry_failed, progress)
+    for name in names:
+        renew_notes(folder, name)
 
 
 def expected_duration(scenes: Sequence[str], *, jobs: Optional[int] = None) -> tuple[float, int]:

@@ -149,7 +149,7 @@ def text(content: Content) -> str:
     if content.seeds is not None:
         head["seeds"] = list(content.seeds)
     folder = Path(content.scene._base_dir).absolute()
-    scene = _with_absolute_files(content.scene.to_data(), folder)
+    scene = with_absolute_files(content.scene.to_data(), folder)
     blocks = [list(toml_lines(head)), ["[scene]", *toml_lines(scene)]]
     if content.season is not None:
         blocks.append(["[season]", *toml_lines(content.season.data())])
@@ -179,7 +179,7 @@ def _shared_axes(parts: Sequence[Part]) -> Part:
 
 def _factor_blocks(part: Part, prefix: str, folder: Path) -> Iterator[list[str]]:
     """Yield the lines of each table of factors, in the order in which they are read."""
-    columns = [_with_absolute_files(dict(factor.columns), folder) for factor in part]
+    columns = [with_absolute_files(dict(factor.columns), folder) for factor in part]
     single = [len(factor) == 1 for factor in columns]
     first = single.index(False) if False in single else len(columns)
     axes = {path: values for factor in columns[:first] for path, values in factor.items()}
@@ -200,7 +200,7 @@ def _axis_lines(axes: Mapping[str, Any]) -> list[str]:
 def _content(data: dict[str, Any], file: Path) -> Content:
     _check_keys(data, KEYS, "")
     folder = file.absolute().parent
-    data = _with_absolute_files(data, folder)
+    data = with_absolute_files(data, folder)
     common = _factors(data, "")
     parts: list[Part] = [common]
     if "part" in data:
@@ -254,20 +254,20 @@ def _scene(data: Mapping[str, Any], folder: Path) -> Scene:
 
 
 def _scene_file(file: Path) -> dict[str, Any]:
-    data: dict[str, Any] = _with_absolute_files(Scene.load(file).to_data(), file.parent)
+    data: dict[str, Any] = with_absolute_files(Scene.load(file).to_data(), file.parent)
     return data
 
 
-def _with_absolute_files(value: Any, folder: Path) -> Any:
+def with_absolute_files(value: Any, folder: Path) -> Any:
     """Make the path under every key of a file absolute, because a study's scenes have no folder."""
     if isinstance(value, list):
-        return [_with_absolute_files(item, folder) for item in value]
+        return [with_absolute_files(item, folder) for item in value]
     if not isinstance(value, dict):
         return value
     return {
         key: _absolute(inner, folder)
         if key.rpartition(".")[2] in FILES
-        else _with_absolute_files(inner, folder)
+        else with_absolute_files(inner, folder)
         for key, inner in value.items()
     }
 

@@ -5,6 +5,7 @@ from contextlib import closing
 
 import pytest
 from helpers.processes import kill_with_children, snowshed_command, wait_for
+from helpers.records import RECORDS, undated
 
 from snowshed.season.weather.generator import Climate, MonthClimate
 from snowshed.study.database import FILE
@@ -47,8 +48,11 @@ def answer(weather, folder, jobs):
 
 
 def files(folder):
-    """Return all files of an answer beside its stores, by name."""
-    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+    """Return all files of an answer beside its stores, by name; its record has no date."""
+    contents = {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+    return {
+        name: undated(content) if name in RECORDS else content for name, content in contents.items()
+    }
 
 
 @pytest.fixture(scope="module")

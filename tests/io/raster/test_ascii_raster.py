@@ -50,7 +50,7 @@ def gdal_reads(path):
     ],
 )  # fmt: skip
 def test_a_grid_is_read_as_gdal_reads_it(tmp_path, text, missing):
-    (tmp_path / "a.asc").write_text(text, newline="")
+    (tmp_path / "a.asc").write_bytes(text.encode())
     raster = read_raster(tmp_path / "a.asc")
     theirs, west = gdal_reads(tmp_path / "a.asc")
     np.testing.assert_allclose(raster.heights, theirs, rtol=1e-7)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
 from snowshed.analysis.clearance.answer import ClearanceResult, required_clearance
+from snowshed.analysis.clearance.inputs import ClearanceInputs
 from snowshed.analysis.clearance.panel_design import PanelDesign, SnowRanges
 from snowshed.analysis.clearance.winters import counted_winters
 from snowshed.base.arguments import checked
@@ -13,14 +15,19 @@ from snowshed.base.json_values import JsonValue
 from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
+from snowshed.io.atomic import write_text
+from snowshed.io.json_file import sealed
 from snowshed.season.rows import PanelRows
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.weather.quality import COVERAGE
-from snowshed.season.weather.reading import Season, read_record
+from snowshed.season.weather.reading import Season, read_record, weather_files
 from snowshed.season.weather.source import AUTO
 
 if TYPE_CHECKING:
     import pandas as pd  # noqa: F401 - of `Season`
+
+#: The record of an answer, in the folder of its runs.
+FILE = "clearance.json"
 
 
 @checked
@@ -51,7 +58,8 @@ def clearance(
         Years of daily weather: a file of a station or several, or any other input of
         `snowshed.season.read_record`.
     folder
-        Folder of the store of runs; the same call resumes there.
+        Folder of the store of runs; the same call resumes there. The record ``clearance.json`` in
+        it is enough to compute the answer again (`snowshed.repeat`).
     slope_length
         Length of the panel along the slope, m.
     tilt
@@ -111,8 +119,9 @@ def clearance(
     winter_list = record.winters(coverage)
     for note in (*record.notes, *winter_list.notes):
         issue_note(note)
-    return required_clearance(
-        PanelDesign(slope_length, tilt, PanelRows(rows, pitch)),
+    design = PanelDesign(slope_length, tilt, PanelRows(rows, pitch))
+    answer = required_clearance(
+        design,
         counted_winters(winter_list),
         heights,
         folder,
@@ -124,3 +133,16 @@ def clearance(
         same_version=same_version,
         progress=progress,
     )
+    files = [*weather_files(weather), *([] if temperature is None else [Path(temperature)])]
+    inputs = ClearanceInputs(
+        [design],
+        record,
+        coverage,
+        heights,
+        ranges or SnowRanges(),
+        settings or SeasonSettings(),
+        scene or {},
+        files=list(map(str, files)),
+    )
+    write_text(Path(folder) / FILE, sealed(inputs.record_data()))
+    return answer

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import calendar
-import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Optional
@@ -24,6 +23,7 @@ from snowshed.analysis.clearance.statistics import FIRST_PROBABILITY
 from snowshed.analysis.clearance.tables import burials, panel_columns, write_tables
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
+from snowshed.io.json_file import sealed
 from snowshed.plot.clearance_figure import (
     burial_figure,
     causes_figure,
@@ -50,6 +50,7 @@ def write_report(
     folder: Path,
     notes: Sequence[str] = (),
     price: Optional[float] = None,
+    record: Optional[Mapping[str, Any]] = None,
 ) -> None:
     """Write clearance.html, its tables (`write_tables`), clearance.csv and clearance.json.
 
@@ -67,6 +68,8 @@ def write_report(
         Notes from reading the weather.
     price
         Price of a metre of height. With it, the table of panels has costs.
+    record
+        From `ClearanceInputs.record_data`, for clearance.json.
     """
     import pandas as pd
 
@@ -74,7 +77,7 @@ def write_report(
     write_csv(table, folder / "clearance.csv", float_format="%.6g")
     files = write_tables(answers, folder, price)
     data = summary(answers, ranges, notes)
-    write_text(folder / "clearance.json", json.dumps(data, indent=2, allow_nan=False) + "\n")
+    write_text(folder / "clearance.json", sealed({**data, **(record or {})}))
     page = template("snowshed.plot", "clearance.html.j2").render(
         title="How high must the lower edge be?",
         sentence=answer_text.sentence(answers),

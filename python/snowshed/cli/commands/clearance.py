@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
 
@@ -31,8 +31,8 @@ from snowshed.scene.schema import scene_parameters
 
 if TYPE_CHECKING:
     from snowshed.analysis.clearance.answer import ClearanceResult
+    from snowshed.analysis.clearance.inputs import ClearanceInputs
     from snowshed.analysis.clearance.panel_design import PanelDesign, SnowRanges
-    from snowshed.analysis.clearance.winters import Winter
     from snowshed.season.settings import SeasonSettings
     from snowshed.season.weather.season_record import SeasonRecord
 
@@ -148,9 +148,8 @@ def clearance(
     Example:
       snowshed clearance winters.csv --slope-length 4 --tilt 60 --heights 1.5:4:0.5 -o answer
     """  # noqa: D301 - click wants the control character
-    from snowshed.analysis.clearance.answer import expected_duration
+    from snowshed.analysis.clearance.inputs import ClearanceInputs
     from snowshed.analysis.clearance.panel_design import PanelDesign
-    from snowshed.analysis.clearance.report import write_report
     from snowshed.analysis.clearance.winters import counted_winters
     from snowshed.season.rows import PanelRows
 
@@ -166,28 +165,57 @@ def clearance(
     notes = [*record.notes, *winter_list.notes]
     for note in () if quiet else notes:
         say(f"note: {note}")
-    winters = counted_winters(winter_list)
+    counted_winters(winter_list)  # none is an error before anything is computed
     grid, settings = _grid(designs, dx, scheme, accuracy, quiet=quiet)
-    options: dict[str, Any] = {
-        "ranges": ranges,
-        "jobs": jobs,
-        "settings": settings,
-        "scene": {"ground.tilt": ground_tilt, **grid},
-    }
+    inputs = ClearanceInputs(
+        designs, record, coverage, candidates, ranges, settings,
+        {"ground.tilt": ground_tilt, **grid}, price, _files(weather, temperature),
+    )  # fmt: skip
     if price is not None and not math.isfinite(price):
         raise InputError(f"--price: {price:g} is not allowed; give a cost of 0 or more")
     if dry_run or not quiet:
-        costs = [expected_duration(design, winters, candidates, **options) for design in designs]
-        seconds, seasons = (sum(values) for values in zip(*costs))
-        say(
-            f"{winter_list.counted_text}, {plural(len(designs), 'panel')}, "
-            f"about {seasons} seasons: {about(seconds)}"
-        )
+        print_expected(inputs, jobs)
     if dry_run:
         return
-    options.update(winter_list=winter_list, same_version=same_version)
-    answers = _answers(designs, winters, candidates, folder, options, quiet=quiet)
-    write_report(answers, ranges, folder, notes, price)
+    answer_and_report(inputs, folder, notes, quiet=quiet, jobs=jobs, same_version=same_version)
+
+
+def print_expected(inputs: ClearanceInputs, jobs: Optional[int]) -> None:
+    """Print the number of winters, panels and seasons, and the expected time."""
+    seconds, seasons = inputs.expected_duration(jobs=jobs)
+    say(
+        f"{inputs.weather.winters(inputs.coverage).counted_text}, "
+        f"{plural(len(inputs.designs), 'panel')}, about {seasons} seasons: {about(seconds)}"
+    )
+
+
+def answer_and_report(
+    inputs: ClearanceInputs, folder: Path, notes: Sequence[str], *, quiet: bool, **options: Any
+) -> None:
+    """Compute the answer for each panel, write its files, and print it.
+
+    Parameters
+    ----------
+    inputs, folder
+        The inputs, and the results folder.
+    notes
+        Notes from reading the weather.
+    quiet
+        Whether to print nothing.
+    options
+        `jobs` and `same_version`, as for `Study.compute`.
+    """
+    from snowshed.analysis.clearance.report import write_report
+    from snowshed.cli.output.progress import progress_bar
+    from snowshed.study.errors import StudyInterrupted
+
+    try:
+        with progress_bar(quiet=quiet) as progress:
+            answers = inputs.answers(folder, progress=progress, **options)
+    except StudyInterrupted:
+        raise Stopped("interrupted; resume with the same command") from None
+    record = inputs.record_data()
+    write_report(answers, inputs.ranges, folder, notes, inputs.price, record)
     if not quiet:
         print_answers(answers, folder)
 
@@ -222,33 +250,10 @@ def _grid(
     return grid, SeasonSettings(pool_below=MIN_CELLS * usual)
 
 
-def _answers(
-    designs: list[PanelDesign],
-    winters: list[Winter],
-    heights: list[float],
-    folder: Path,
-    options: Mapping[str, Any],
-    *,
-    quiet: bool,
-) -> list[ClearanceResult]:
-    from snowshed.analysis.clearance.answer import required_clearance
-    from snowshed.cli.output.progress import progress_bar
-    from snowshed.study.errors import StudyInterrupted
-
-    folder.mkdir(parents=True, exist_ok=True)
-    answers = []
-    try:
-        for design in designs:
-            store = folder / f"runs-{design.slope_length:g}-{design.tilt:g}"
-            with progress_bar(quiet=quiet) as progress:
-                answers.append(
-                    required_clearance(
-                        design, winters, heights, store, progress=progress, **options
-                    )
-                )
-    except StudyInterrupted:
-        raise Stopped("interrupted; resume with the same command") from None
-    return answers
+def _files(weather: tuple[Path, ...], temperature: Optional[Path]) -> list[str]:
+    """Return the weather files; none for the example."""
+    files = [*weather, *([] if temperature is None else [temperature])]
+    return [] if [str(file) for file in weather] == [EXAMPLE] else list(map(str, files))
 
 
 def _record(weather: tuple[Path, ...], snow_from: str, temperature: Optional[Path]) -> SeasonRecord:

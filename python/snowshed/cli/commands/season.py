@@ -36,7 +36,7 @@ from snowshed.season.settings import SeasonSettings
 
 if TYPE_CHECKING:
     from snowshed.scene.scene import ResolvedScene
-    from snowshed.season.driver import SeasonResult
+    from snowshed.season.driver import SeasonPlan, SeasonResult
 
 DEFAULTS = SeasonSettings()
 
@@ -270,10 +270,19 @@ def _run(
     resume: bool,
     quiet: bool,
 ) -> SeasonResult:
-    from snowshed.cli.output.progress import progress_bar
-    from snowshed.season.driver import plan_season, simulate_season
+    from snowshed.season.driver import plan_season
 
     plan = plan_season(season_files, scene, settings=settings, **reading)
+    return simulate_with_progress(plan, folder, settings, resume=resume, quiet=quiet)
+
+
+def simulate_with_progress(
+    plan: SeasonPlan, folder: Path, settings: SeasonSettings, *, resume: bool, quiet: bool
+) -> SeasonResult:
+    """Simulate a planned season with a progress bar."""
+    from snowshed.cli.output.progress import progress_bar
+    from snowshed.season.driver import simulate_season
+
     try:
         with progress_bar(quiet=quiet) as progress:
             return simulate_season(
@@ -294,7 +303,11 @@ def _print_cost(
     """Print the number of releases and the cost of their slide-offs."""
     from snowshed.season.driver import plan_season
 
-    plan = plan_season(season_files, scene, settings=settings, **reading)
+    print_plan_cost(plan_season(season_files, scene, settings=settings, **reading), quiet=quiet)
+
+
+def print_plan_cost(plan: SeasonPlan, *, quiet: bool) -> None:
+    """Print the number of releases of a planned season, and the cost of its slide-offs."""
     for note in () if quiet else plan.record.notes:
         say(f"note: {note}")
     say(f"{sum(day.released for day in plan.days)} releases in {len(plan.days)} days")

@@ -116,7 +116,7 @@ def read_record(
     if snow_from != AUTO and snow_from not in CHOICES:
         allowed = ", ".join((AUTO, *CHOICES))
         raise InputError(f"snow from: {quoted(snow_from)}; allowed: {allowed}")
-    files = _weather_files(season)
+    files = weather_files(season)
     if temperature is not None and not files:
         raise InputError(
             "a file of temperatures is allowed with weather files only, not with a table"
@@ -150,7 +150,7 @@ def read_record(
     return SeasonRecord(rows, warm_snow(rows))
 
 
-def _weather_files(season: Season) -> list[Path]:
+def weather_files(season: Season) -> list[Path]:
     """Return the weather files of a season; none if it is a table or rows."""
     if isinstance(season, (str, os.PathLike)):
         return [Path(season)]

@@ -288,6 +288,8 @@ def _note_on_units(
     positions: Floats, masses: Floats, densities: Floats, dimension: int, dx: float
 ) -> bool:
     """Issue notes if the arrays cannot be in metres, kg and kg/m3; return whether positions did."""
+    if not len(positions):
+        issue_note("positions: no particles, so the stack is empty", UnusualValueNote)
     dense = densities[masses > 0.0]
     if not len(dense):
         return False

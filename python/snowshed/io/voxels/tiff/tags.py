@@ -117,9 +117,15 @@ def read_pages(path: Path, read_page: Callable[[Tags], Page]) -> list[Page]:
     """
     tifffile = require("tifffile", "images", "reading TIFF files")
     with open_regular(path) as file, tiff_errors(path):
-        off = dict.fromkeys(DIALECTS, False)
+        off = _without_dialects(tifffile.TiffFile)
         with tifffile.TiffFile(_Bounded(file), name=path.name, **off) as tiff:
             return [read_page(tags) for tags in _tags(tiff, path)]
+
+
+def _without_dialects(tiff_file: type[TiffFile]) -> dict[str, bool]:
+    """Return the arguments by which tifffile follows no dialect; old ones fix some of them."""
+    fixed = [name for name in DIALECTS if isinstance(getattr(tiff_file, name, None), property)]
+    return {name: False for name in DIALECTS if name not in fixed}
 
 
 def _tags(tiff: TiffFile, path: Path) -> Iterator[Tags]:

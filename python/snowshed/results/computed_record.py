@@ -1,0 +1,91 @@
+"""Records of what was computed from many inputs: from such a file alone it is computed again.
+
+A study, a season and an answer on clearance each have a record: a JSON object with the inputs under
+a key of its own (`KINDS`), the facts of the program and the machine, checksums of the files that
+the inputs name, notes, and a checksum of itself. A single run has its run.json.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any, Optional
+
+from snowshed._core import InputError
+from snowshed.base.machine import present_facts
+from snowshed.base.notes import InputNote, issue_note
+from snowshed.io.input_file import read_input
+from snowshed.io.json_file import parse_object
+from snowshed.io.json_text import loads
+from snowshed.io.run_files import file_mark
+
+STUDY, SEASON, CLEARANCE = "study", "season", "clearance"
+KINDS = (STUDY, SEASON, CLEARANCE)
+FORMAT = 1  # of the inputs; another one is refused
+
+
+def record_data(kind: str, inputs: Mapping[str, Any], files: Iterable[str]) -> dict[str, Any]:
+    """Return the record of a computation as JSON data; `files` are those that its inputs name."""
+    marks = {}
+    for name in dict.fromkeys(files):
+        if Path(name).is_file():
+            length, checksum = file_mark(Path(name))
+            marks[name] = {"bytes": length, "checksum": checksum}
+    return {**present_facts(), "format": FORMAT, kind: dict(inputs), "inputs": marks}
+
+
+def is_computed_record(content: bytes) -> bool:
+    """Return whether the content of a file is such a record, and not a scene or a study file.
+
+    Examples
+    --------
+    >>> is_computed_record(b'{"study": {}, "format": 1}'), is_computed_record(b'name = "a"')
+    (True, False)
+    """
+    if content.lstrip()[:1] != b"{" or b'"format"' not in content:  # without parsing it
+        return False
+    try:
+        return _kind(loads(content)) is not None
+    except (ValueError, RecursionError):
+        return False
+
+
+def _kind(record: Any) -> Optional[str]:
+    """Return the kind of a record; None: it is none."""
+    if not isinstance(record, dict) or "format" not in record:
+        return None
+    kinds = [kind for kind in KINDS if isinstance(record.get(kind), dict)]
+    return kinds[0] if len(kinds) == 1 else None
+
+
+def read_record(file: Path) -> tuple[str, Mapping[str, Any]]:
+    """Return the kind of a record and the record; note another build, and files that have changed.
+
+    Raises
+    ------
+    InputError
+        If the file is no such record, or damaged, or of another version of the format.
+    """
+    record = parse_object(read_input(file), os.fspath(file))
+    kind = _kind(record)
+    if kind is None:
+        raise InputError(f"{file}: no record of a study, a season or a clearance")
+    if record["format"] != FORMAT:
+        raise InputError(f"{file}: made by another version of snowshed")
+    for note in _differences(record, file):
+        issue_note(note, InputNote)
+    return kind, record
+
+
+def _differences(record: Mapping[str, Any], file: Path) -> list[str]:
+    """Return notes on what has changed since the record: the build, and the files it names."""
+    notes, facts = [], present_facts()
+    if any(record.get(name) != facts[name] for name in ("version", "build", "package")):
+        notes.append(f"{file} is of another build of snowshed")
+    marks = record.get("inputs")
+    for name, mark in marks.items() if isinstance(marks, dict) else ():
+        known = (mark.get("bytes"), mark.get("checksum")) if isinstance(mark, dict) else None
+        if Path(name).is_file() and file_mark(Path(name)) != known:
+            notes.append(f"{name} has changed since {file} was written")
+    return notes
