@@ -8,6 +8,7 @@ from types import ModuleType
 from typing import Optional
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 from snowshed import Scene, run_events
 from snowshed.io import read_station, vdb_available
@@ -22,6 +23,16 @@ for _signal in (signal.SIGINT, signal.SIGHUP):
             signal.default_int_handler if _signal == signal.SIGINT else signal.SIG_DFL
         )
         signal.signal(_signal, _default_handler)
+
+# The same examples in every run, however fast the machine is.
+settings.register_profile(
+    "snowshed",
+    deadline=None,
+    derandomize=True,
+    database=None,
+    suppress_health_check=[HealthCheck.too_slow],
+)
+settings.load_profile("snowshed")
 
 
 def tiny_scene(**values: object) -> Scene:

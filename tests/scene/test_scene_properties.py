@@ -32,8 +32,7 @@ from snowshed.cli.options.scene import option_name
 from snowshed.running.scene_notes import notes_of_beginning
 from snowshed.scene.schema import Parameter, scene_parameters
 
-# The same examples in every run, so that failures can be repeated.
-same_every_time = settings(derandomize=True, database=None, deadline=None, max_examples=50)
+fifty_examples = settings(max_examples=50)
 
 PARAMETERS = {parameter.path: parameter for parameter in scene_parameters()}
 FOLLOWERS = ("slab.length", "slab.width", "seeding.particles_per_voxel")
@@ -127,7 +126,7 @@ def has_value(data: Any, path: str, value: Any) -> bool:
     return bool(value_at(data, path) == (value.tolist() if hasattr(value, "tolist") else value))
 
 
-@same_every_time
+@fifty_examples
 @given(st.sampled_from([Scene.set, Scene.append]), assignments(ANYTHING))
 def test_appending_gives_a_scene_or_an_error_that_names_the_list(change, assignment):
     path, value = assignment
@@ -171,7 +170,7 @@ def test_values_beyond_all_bounds_are_refused():
         Scene().set("obstacles", [None]).set("obstacles.0.name", "x")
 
 
-@same_every_time
+@fifty_examples
 @given(st.lists(assignments(), max_size=6) | st.lists(assignments(ANYTHING), max_size=3))
 def test_sets_give_a_stable_scene_or_an_error_that_names_a_path(sets):
     scene = Scene.preset("lab-50")
@@ -204,7 +203,7 @@ def wrong_values(parameter: Parameter) -> st.SearchStrategy:
     )
 
 
-@same_every_time
+@fifty_examples
 @given(
     st.sampled_from(list(PARAMETERS.values())).flatmap(
         lambda p: st.tuples(st.just(p), wrong_values(p))
@@ -239,7 +238,7 @@ def damaged_texts(draw: Callable) -> str:
     return text[:start] + draw(st.text(max_size=5)) + text[min(end, start + 20) :]
 
 
-@same_every_time
+@fifty_examples
 @given(st.one_of(st.text(), JSON_VALUES.map(json.dumps), damaged_scenes(), damaged_texts()))
 def test_any_text_gives_a_stable_scene_or_an_input_error(text):
     try:
@@ -251,7 +250,7 @@ def test_any_text_gives_a_stable_scene_or_an_input_error(text):
         assert Scene.from_data(resolved.data).resolve() == resolved
 
 
-@same_every_time
+@fifty_examples
 @given(st.binary() | damaged_scenes().map(str.encode) | damaged_texts().map(str.encode))
 def test_any_file_gives_a_scene_or_an_input_error(tmp_path_factory, content):
     file = tmp_path_factory.getbasetemp() / "any.json"
@@ -279,7 +278,7 @@ def as_options(path: str, value: Any) -> list[str]:
     return [f"{name}={','.join(map(str, value)) if isinstance(value, list) else value}"]
 
 
-@same_every_time
+@fifty_examples
 @given(st.lists(assignments(), max_size=6))
 def test_options_make_the_same_scene_as_sets_or_the_same_error(sets):
     assume(
