@@ -55,16 +55,18 @@ OF_THE_CORE = {"gpu"}
 def required() -> tuple[set[str], dict[str, set[str]]]:
     """Return the required packages of snowshed and of each extra of Python modules.
 
-    Extras that combine others are left out.
+    Extras that combine others are left out, and so are required packages whose version an extra
+    narrows.
     """
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    always = {_name(requirement) for requirement in project["dependencies"]}
     extras = {
-        extra: {_name(requirement) for requirement in listed}
+        extra: {_name(requirement) for requirement in listed} - always
         for extra, listed in project["optional-dependencies"].items()
         if extra not in OF_THE_CORE
         and not any(requirement.startswith("snowshed[") for requirement in listed)
     }
-    return {_name(requirement) for requirement in project["dependencies"]}, extras
+    return always, extras
 
 
 def _name(requirement: str) -> str:
