@@ -79,7 +79,7 @@ def holds_any(kind):
     shape."""
     if kind is typing.Any:
         return True
-    if typing.get_origin(kind) in (np.ndarray, np.dtype):
+    if typing.get_origin(kind) in (np.ndarray, np.dtype, np.typing.NDArray):
         return False
     arguments = typing.get_args(kind)
     nested = [argument for part in arguments if isinstance(part, list) for argument in part]

@@ -16,7 +16,7 @@ from click.testing import CliRunner
 import snowshed
 from snowshed import InputError, Scene, Study
 from snowshed.analysis.clearance import SnowRanges
-from snowshed.base.arguments import checked
+from snowshed.base.arguments import check_type, checked
 from snowshed.base.paths import PathLike
 from snowshed.cli import main
 from snowshed.running import Ageing
@@ -222,3 +222,14 @@ def test_the_command_line_finds_the_home_of_the_user(monkeypatch, tmp_path):
     Scene.preset("lab-50").resolve().save(tmp_path / "lab.json")
     outcome = CliRunner().invoke(main.cli, ["run", "~/lab.json", "--dry-run"])
     assert outcome.exit_code == 0, outcome.output
+
+
+def test_a_name_of_a_type_stands_for_the_type():
+    """NumPy 2.5 names its types; the stand-in is such a name for older Pythons."""
+
+    class NumberOrNumbers:
+        __value__ = Union[float, Sequence[float]]
+
+    check_type("height", 2.0, NumberOrNumbers())
+    with pytest.raises(InputError, match="height: 'tall'; needed: a number"):
+        check_type("height", "tall", NumberOrNumbers())

@@ -8,6 +8,7 @@ import numbers
 import operator
 import os
 import sys
+import types
 import typing
 from collections.abc import Callable, Collection, Iterable, Mapping
 from pathlib import PurePath
@@ -180,8 +181,24 @@ class _ByName(type):
 _LIBRARIES = {name: _ByName(name, (), {}) for name in ("pd", "xarray", "xr")}
 
 
+#: The origins of ``Union[A, B]`` and of ``A | B``.
+_UNIONS = (Union, getattr(types, "UnionType", Union))
+
+
 def _alternatives(kind: object) -> tuple[object, ...]:
-    return typing.get_args(kind) if typing.get_origin(kind) is Union else (kind,)
+    kind = _behind_name(kind)
+    if typing.get_origin(kind) not in _UNIONS:
+        return (kind,)
+    return tuple(each for part in typing.get_args(kind) for each in _alternatives(part))
+
+
+def _behind_name(kind: object) -> object:
+    """Return the type behind a name such as that of NumPy 2.5 for what may be an array."""
+    behind = getattr(typing.get_origin(kind) or kind, "__value__", None)
+    if behind is None:
+        return kind
+    arguments = typing.get_args(kind)
+    return behind[arguments] if arguments else behind
 
 
 def _fits(value: object, kind: object) -> bool:

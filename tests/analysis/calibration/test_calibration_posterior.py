@@ -1,5 +1,7 @@
 """Recovery: ranges contain the snow whose noisy measurements they come from."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -7,7 +9,7 @@ import xarray as xr
 from stand_in import COHESION, HIGH, LOW, measured, study_table, thesis_triplets
 
 from snowshed import InputError
-from snowshed.analysis.calibration import Surrogate, calibrate, sample_posterior
+from snowshed.analysis.calibration import Surrogate, calibrate, posterior, sample_posterior
 from snowshed.analysis.calibration.comparison import SimulatedStacks, simulated
 from snowshed.analysis.calibration.posterior import Posterior, outputs_of
 
@@ -184,3 +186,17 @@ def test_parameters_without_effect_keep_their_prior():
     ranges = sample_posterior(surrogate, measurements, steps=STEPS).ranges().set_index("parameter")
     assert ranges.loc[friction, "open"] == "both" and ranges.loc[COHESION, "open"] == ""
     assert ranges.loc[COHESION, "lower_95"] < 0.12 < ranges.loc[COHESION, "upper_95"]
+
+
+def test_diagnostics_leave_the_draws_as_they_were(surrogate, monkeypatch):
+    """Arviz 1 adds attributes to what it is given, as the stand-in does; no NetCDF file can hold
+    them."""
+
+    def summary(draws, **options):
+        draws.attrs["sample_dims"] = ["chain", "draw"]
+        return pd.DataFrame(1.0, index=list(draws), columns=[*posterior.DIAGNOSTICS])
+
+    monkeypatch.setattr(posterior, "require", lambda *names: SimpleNamespace(summary=summary))
+    identical = posterior_with(surrogate, np.full((2, 4, 3), 0.5))
+    assert (identical.diagnostics == 1).all(axis=None)
+    assert identical.draws.attrs == {}

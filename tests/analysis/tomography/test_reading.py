@@ -143,7 +143,8 @@ def test_a_voxel_size_that_contradicts_the_file_is_noted(tmp_path, stated):
 @pytest.mark.parametrize("kind", ["uint32", "uint64", "int64", "int8"])
 def test_the_full_range_of_a_type(tmp_path, kind):
     low, high = np.iinfo(kind).min, np.iinfo(kind).max
-    voxels = np.where(SNOW.ice, high - 9, high - 99 if kind == "int8" else low + 9).astype(kind)
+    ice, air = np.array([high - 9, high - 99 if kind == "int8" else low + 9], dtype=kind)
+    voxels = np.where(SNOW.ice, ice, air)
     voxels[0, 0, 0] += 3  # not two values
     read = read_ice(opened(tmp_path, voxels), settings())
     assert (read.image.ice == largest_part(SNOW.ice)).all()

@@ -110,7 +110,8 @@ class Posterior:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # arviz warns of its own next version
             arviz = require("arviz", EXTRA, PURPOSE)
-            summary = arviz.summary(self.draws, kind="diagnostics", round_to="none")
+            # A copy, because arviz 1 adds attributes that no NetCDF file can hold.
+            summary = arviz.summary(self.draws.copy(), kind="diagnostics", round_to="none")
         columns: pd.DataFrame = summary[[*DIAGNOSTICS]]
         return columns
 
