@@ -3,6 +3,7 @@
 import json
 import shutil
 import sys
+import warnings
 from datetime import datetime, timedelta
 
 import numpy as np
@@ -126,8 +127,12 @@ def test_a_record_of_another_build_or_changed_files_says_so(tmp_path):
     np.save(mesh, np.hypot(*axes) - 0.4)
     with record_notes() as notes:
         Study.load(tmp_path / "other.json")
+    with warnings.catch_warnings(record=True) as issued:
+        warnings.simplefilter("always")
+        snowshed.repeat(tmp_path / "other.json", tmp_path / "again", jobs=1)
     for text in ("is of another build", "ball.npy has changed since", "its runs are others now"):
         assert any(text in note for note in notes), text
+        assert sum(text in str(warning.message) for warning in issued) == 1, text
 
 
 @pytest.mark.parametrize("fault", ["changed", "cut", "format", "kind"])

@@ -63,6 +63,7 @@ class WeightQueue {
 
   bool contains(std::uint32_t point) const { return weights_[point] != removed; }
 
+  /// Lowers the weight of a point that the queue contains.
   void lower(std::uint32_t point, std::int64_t by) { weights_[point] -= by; }
 
  private:

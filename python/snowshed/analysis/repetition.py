@@ -6,15 +6,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Optional, Union
 
 from snowshed._core import InputError
-from snowshed.analysis.clearance.clearance import FILE
 from snowshed.analysis.clearance.inputs import recorded_clearance
 from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
-from snowshed.io.atomic import write_text
 from snowshed.io.input_file import read_input
-from snowshed.io.json_file import sealed
-from snowshed.results.computed_record import CLEARANCE, SEASON, is_computed_record, read_record
+from snowshed.results.computed_record import CLEARANCE, SEASON, record_kind
 from snowshed.running.recorded_run import recorded_run
 from snowshed.running.run import run
 from snowshed.season.driver import simulate_season
@@ -81,17 +78,17 @@ def repeat(
     True
     """
     file = Path(record)
-    if not is_computed_record(read_input(file)):
+    kind = record_kind(read_input(file))
+    if kind is None:
         if recorded_run(file) is None:
             raise InputError(f"{file}: no record of a run, a study, a season or a clearance")
         return run(file, folder, progress=progress)
-    kind, content = read_record(file)
     if kind == SEASON:
-        plan, settings = recorded_season(content, file)
+        plan, settings = recorded_season(file)
         return simulate_season(plan, folder, settings=settings, progress=progress)
     if kind == CLEARANCE:
-        inputs = recorded_clearance(content, file)
+        inputs = recorded_clearance(file)
         answers = inputs.answers(Path(folder), jobs=jobs, progress=progress)
-        write_text(Path(folder) / FILE, sealed(inputs.record_data()))
+        inputs.write_record(Path(folder))
         return answers
     return Study.load(file).run(folder, jobs=jobs, progress=progress)

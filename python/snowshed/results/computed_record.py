@@ -8,7 +8,8 @@ the inputs name, notes, and a checksum of itself. A single run has its run.json.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Optional
 
@@ -35,20 +36,20 @@ def record_data(kind: str, inputs: Mapping[str, Any], files: Iterable[str]) -> d
     return {**present_facts(), "format": FORMAT, kind: dict(inputs), "inputs": marks}
 
 
-def is_computed_record(content: bytes) -> bool:
-    """Return whether the content of a file is such a record, and not a scene or a study file.
+def record_kind(content: bytes) -> Optional[str]:
+    """Return the kind of the record that a file holds; None: it is a scene or a study file, say.
 
     Examples
     --------
-    >>> is_computed_record(b'{"study": {}, "format": 1}'), is_computed_record(b'name = "a"')
-    (True, False)
+    >>> record_kind(b'{"study": {}, "format": 1}'), record_kind(b'name = "a"')
+    ('study', None)
     """
     if content.lstrip()[:1] != b"{" or b'"format"' not in content:  # without parsing it
-        return False
+        return None
     try:
-        return _kind(loads(content)) is not None
+        return _kind(loads(content))
     except (ValueError, RecursionError):
-        return False
+        return None
 
 
 def _kind(record: Any) -> Optional[str]:
@@ -59,23 +60,30 @@ def _kind(record: Any) -> Optional[str]:
     return kinds[0] if len(kinds) == 1 else None
 
 
-def read_record(file: Path) -> tuple[str, Mapping[str, Any]]:
-    """Return the kind of a record and the record; note another build, and files that have changed.
+@contextmanager
+def recorded_inputs(file: Path, kind: str) -> Iterator[Mapping[str, Any]]:
+    """Yield the inputs in a record; note another build, and files that have changed.
 
     Raises
     ------
     InputError
-        If the file is no such record, or damaged, or of another version of the format.
+        If the file is no record of this kind, or of another version of the format, or damaged: also
+        if its inputs cannot be read in the block.
     """
     record = parse_object(read_input(file), os.fspath(file))
-    kind = _kind(record)
-    if kind is None:
+    given = _kind(record)
+    if given is None:
         raise InputError(f"{file}: no record of a study, a season or a clearance")
+    if given != kind:
+        raise InputError(f"{file}: the record of a {given}, not of a {kind}")
     if record["format"] != FORMAT:
         raise InputError(f"{file}: made by another version of snowshed")
     for note in _differences(record, file):
         issue_note(note, InputNote)
-    return kind, record
+    try:
+        yield record[kind]
+    except (AttributeError, KeyError, TypeError) as error:
+        raise InputError(f"{file}: damaged: {error}") from None
 
 
 def _differences(record: Mapping[str, Any], file: Path) -> list[str]:

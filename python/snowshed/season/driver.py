@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import asdict, dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
 
 from snowshed._core import InputError
@@ -33,7 +32,7 @@ from snowshed.season.slabs import season_scene
 from snowshed.season.table import season_table
 from snowshed.season.weather.quality import COVERAGE
 from snowshed.season.weather.quality_table import caption
-from snowshed.season.weather.reading import Season, read_record, weather_files
+from snowshed.season.weather.reading import Season, input_files, read_record
 from snowshed.season.weather.rows_data import weather_data
 from snowshed.season.weather.season_record import SeasonRecord, WinterList
 from snowshed.season.weather.source import AUTO
@@ -278,8 +277,8 @@ def plan_season(
     Parameters and errors are those of `run_season`.
     """
     record = read_record(season, snow_from, temperature)
-    files = [*weather_files(season), *([] if temperature is None else [Path(temperature)])]
-    return plan_record(record, resolve_scene(scene), settings, coverage, list(map(str, files)))
+    files = input_files(season, temperature)
+    return plan_record(record, resolve_scene(scene), settings, coverage, files)
 
 
 def plan_record(

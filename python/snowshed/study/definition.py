@@ -17,7 +17,7 @@ from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
 from snowshed.io.atomic import write_text
 from snowshed.io.input_file import read_input
-from snowshed.results.computed_record import is_computed_record
+from snowshed.results.computed_record import record_kind
 from snowshed.scene.scene import Scene
 from snowshed.study import session, study_file, study_record
 from snowshed.study.errors import StudyInterrupted
@@ -138,7 +138,7 @@ class Study:
         """
         path = Path(file)
         with study_file.name_in_errors(path):
-            is_record = is_computed_record(read_input(path))
+            is_record = record_kind(read_input(path)) is not None
             content = study_record.read_study(path) if is_record else study_file.read(path)
             study = cls(**vars(content))
             runs = study.runs()  # a wrong scene is the file's error

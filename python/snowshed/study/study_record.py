@@ -15,13 +15,12 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from snowshed._core import InputError
 from snowshed.base.notes import InputNote, issue_note
 from snowshed.base.paths import PathLike
 from snowshed.io.array_files import is_array_file
 from snowshed.io.atomic import write_text
 from snowshed.io.json_file import plain_value, read_object, sealed
-from snowshed.results.computed_record import STUDY, read_record, record_data
+from snowshed.results.computed_record import STUDY, record_data, recorded_inputs
 from snowshed.results.replacement import inputs_beside
 from snowshed.running.kept_inputs import copy_array_file
 from snowshed.scene.named_files import named_files, with_named_files
@@ -85,13 +84,8 @@ def read_study(file: Path) -> Content:
     InputError
         If the file is no record of a study, or damaged.
     """
-    kind, record = read_record(file)
-    if kind != STUDY:
-        raise InputError(f"{file}: the record of a {kind}, not of a study")
-    try:
-        return _content(record[STUDY])
-    except (AttributeError, KeyError, TypeError) as error:
-        raise InputError(f"{file}: damaged: {error}") from None
+    with recorded_inputs(file, STUDY) as inputs:
+        return _content(inputs)
 
 
 def note_other_runs(file: Path, runs: Sequence[RunKey]) -> None:

@@ -15,19 +15,14 @@ from snowshed.base.json_values import JsonValue
 from snowshed.base.notes import issue_note
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
-from snowshed.io.atomic import write_text
-from snowshed.io.json_file import sealed
 from snowshed.season.rows import PanelRows
 from snowshed.season.settings import SeasonSettings
 from snowshed.season.weather.quality import COVERAGE
-from snowshed.season.weather.reading import Season, read_record, weather_files
+from snowshed.season.weather.reading import Season, input_files, read_record
 from snowshed.season.weather.source import AUTO
 
 if TYPE_CHECKING:
     import pandas as pd  # noqa: F401 - of `Season`
-
-#: The record of an answer, in the folder of its runs.
-FILE = "clearance.json"
 
 
 @checked
@@ -133,7 +128,6 @@ def clearance(
         same_version=same_version,
         progress=progress,
     )
-    files = [*weather_files(weather), *([] if temperature is None else [Path(temperature)])]
     inputs = ClearanceInputs(
         [design],
         record,
@@ -142,7 +136,7 @@ def clearance(
         ranges or SnowRanges(),
         settings or SeasonSettings(),
         scene or {},
-        files=list(map(str, files)),
+        files=input_files(weather, temperature),
     )
-    write_text(Path(folder) / FILE, sealed(inputs.record_data()))
+    inputs.write_record(Path(folder))
     return answer

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Optional
 
-from snowshed._core import InputError
 from snowshed.analysis.clearance.answer import (
     ClearanceResult,
     expected_duration,
@@ -16,11 +16,16 @@ from snowshed.analysis.clearance.answer import (
 from snowshed.analysis.clearance.panel_design import PanelDesign, SnowRanges
 from snowshed.analysis.clearance.winters import counted_winters
 from snowshed.base.progress import Reporter
-from snowshed.results.computed_record import CLEARANCE, record_data
+from snowshed.io.atomic import write_text
+from snowshed.io.json_file import sealed
+from snowshed.results.computed_record import CLEARANCE, record_data, recorded_inputs
 from snowshed.season.rows import PanelRows
 from snowshed.season.settings import SeasonSettings, settings_of
 from snowshed.season.weather.rows_data import weather_data, weather_of
-from snowshed.season.weather.season_record import SeasonRecord
+from snowshed.season.weather.season_record import SeasonRecord, WinterList
+
+#: The record of an answer, in its results folder.
+FILE = "clearance.json"
 
 
 @dataclass(frozen=True)
@@ -53,6 +58,15 @@ class ClearanceInputs:
     price: Optional[float] = None
     files: Sequence[str] = ()
 
+    @cached_property
+    def winter_list(self) -> WinterList:
+        """The winters of the weather."""
+        return self.weather.winters(self.coverage)
+
+    def write_record(self, folder: Path) -> None:
+        """Write the record into a results folder."""
+        write_text(folder / FILE, sealed(self.record_data()))
+
     def record_data(self) -> dict[str, Any]:
         """Return the record as JSON data."""
         inputs = {
@@ -71,7 +85,7 @@ class ClearanceInputs:
 
     def expected_duration(self, *, jobs: Optional[int] = None) -> tuple[float, int]:
         """Return the expected time of all answers, s, and their number of seasons."""
-        winters = counted_winters(self.weather.winters(self.coverage))
+        winters = counted_winters(self.winter_list)
         costs = [
             expected_duration(
                 design, winters, self.heights, ranges=self.ranges, settings=self.settings,
@@ -93,8 +107,7 @@ class ClearanceInputs:
 
         Parameters and errors are those of `required_clearance`.
         """
-        winter_list = self.weather.winters(self.coverage)
-        winters = counted_winters(winter_list)
+        winters = counted_winters(self.winter_list)
         folder.mkdir(parents=True, exist_ok=True)
         return [
             required_clearance(
@@ -105,7 +118,7 @@ class ClearanceInputs:
                 ranges=self.ranges,
                 settings=self.settings,
                 scene=self.scene,
-                winter_list=winter_list,
+                winter_list=self.winter_list,
                 jobs=jobs,
                 same_version=same_version,
                 progress=progress,
@@ -114,21 +127,15 @@ class ClearanceInputs:
         ]
 
 
-def recorded_clearance(record: Mapping[str, Any], file: Path) -> ClearanceInputs:
-    """Return the inputs of a recorded answer.
-
-    Parameters
-    ----------
-    record, file
-        The content of its clearance.json, and the file for messages.
+def recorded_clearance(file: Path) -> ClearanceInputs:
+    """Return the inputs of a recorded answer, from its clearance.json.
 
     Raises
     ------
     InputError
         If the record is damaged.
     """
-    try:
-        inputs = record[CLEARANCE]
+    with recorded_inputs(file, CLEARANCE) as inputs:
         return ClearanceInputs(
             [
                 PanelDesign(**{**panel, "rows": PanelRows(**panel["rows"])})
@@ -146,5 +153,3 @@ def recorded_clearance(record: Mapping[str, Any], file: Path) -> ClearanceInputs
             inputs["scene"],
             inputs["price"],
         )
-    except (AttributeError, KeyError, TypeError) as error:
-        raise InputError(f"{file}: damaged: {error}") from None

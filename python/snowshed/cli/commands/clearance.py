@@ -184,7 +184,7 @@ def print_expected(inputs: ClearanceInputs, jobs: Optional[int]) -> None:
     """Print the number of winters, panels and seasons, and the expected time."""
     seconds, seasons = inputs.expected_duration(jobs=jobs)
     say(
-        f"{inputs.weather.winters(inputs.coverage).counted_text}, "
+        f"{inputs.winter_list.counted_text}, "
         f"{plural(len(inputs.designs), 'panel')}, about {seasons} seasons: {about(seconds)}"
     )
 
@@ -252,8 +252,10 @@ def _grid(
 
 def _files(weather: tuple[Path, ...], temperature: Optional[Path]) -> list[str]:
     """Return the weather files; none for the example."""
-    files = [*weather, *([] if temperature is None else [temperature])]
-    return [] if [str(file) for file in weather] == [EXAMPLE] else list(map(str, files))
+    from snowshed.season.weather.reading import input_files
+
+    example = [str(file) for file in weather] == [EXAMPLE]
+    return [] if example else input_files(weather, temperature)
 
 
 def _record(weather: tuple[Path, ...], snow_from: str, temperature: Optional[Path]) -> SeasonRecord:

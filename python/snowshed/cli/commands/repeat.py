@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Optional
+from typing import Optional
 
 import click
 
@@ -18,12 +17,7 @@ from snowshed.cli.options.common import (
     resume_flag,
 )
 from snowshed.io.input_file import read_input
-from snowshed.results.computed_record import (
-    CLEARANCE,
-    SEASON,
-    is_computed_record,
-    read_record,
-)
+from snowshed.results.computed_record import CLEARANCE, SEASON, record_kind
 
 
 @click.command()
@@ -52,14 +46,13 @@ def repeat(
       snowshed repeat results/run.json -o again
       snowshed repeat study/cohesion-and-slope.json -o again
     """  # noqa: D301 - click wants the control character
-    if not is_computed_record(read_input(record)):
+    kind = record_kind(read_input(record))
+    if kind is None:
         _repeat_run(record, folder, resume=resume, dry_run=dry_run, quiet=quiet)
-        return
-    kind, content = read_record(record)
-    if kind == CLEARANCE:
-        _repeat_clearance(record, content, folder, dry_run=dry_run, jobs=jobs, quiet=quiet)
+    elif kind == CLEARANCE:
+        _repeat_clearance(record, folder, dry_run=dry_run, jobs=jobs, quiet=quiet)
     elif kind == SEASON:
-        _repeat_season(record, content, folder, resume=resume, dry_run=dry_run, quiet=quiet)
+        _repeat_season(record, folder, resume=resume, dry_run=dry_run, quiet=quiet)
     else:
         from snowshed.cli.compute_study import compute_study, print_study_cost
         from snowshed.study.definition import Study
@@ -83,15 +76,7 @@ def _repeat_run(record: Path, folder: Path, *, resume: bool, dry_run: bool, quie
     run_or_cost(scene, folder, resume=resume, dry_run=dry_run, quiet=quiet, recorded=recorded)
 
 
-def _repeat_season(
-    record: Path,
-    content: Mapping[str, Any],
-    folder: Path,
-    *,
-    resume: bool,
-    dry_run: bool,
-    quiet: bool,
-) -> None:
+def _repeat_season(record: Path, folder: Path, *, resume: bool, dry_run: bool, quiet: bool) -> None:
     from snowshed.cli.commands.season import (
         print_plan_cost,
         print_season,
@@ -99,7 +84,7 @@ def _repeat_season(
     )
     from snowshed.season.repeated import recorded_season
 
-    plan, settings = recorded_season(content, record)
+    plan, settings = recorded_season(record)
     if dry_run:
         print_plan_cost(plan, quiet=quiet)
         return
@@ -109,20 +94,14 @@ def _repeat_season(
 
 
 def _repeat_clearance(
-    record: Path,
-    content: Mapping[str, Any],
-    folder: Path,
-    *,
-    dry_run: bool,
-    jobs: Optional[int],
-    quiet: bool,
+    record: Path, folder: Path, *, dry_run: bool, jobs: Optional[int], quiet: bool
 ) -> None:
     from snowshed.analysis.clearance.inputs import recorded_clearance
     from snowshed.cli.commands.clearance import answer_and_report, print_expected
 
-    inputs = recorded_clearance(content, record)
+    inputs = recorded_clearance(record)
     if dry_run or not quiet:
         print_expected(inputs, jobs)
     if not dry_run:
-        notes = [*inputs.weather.notes, *inputs.weather.winters(inputs.coverage).notes]
+        notes = [*inputs.weather.notes, *inputs.winter_list.notes]
         answer_and_report(inputs, folder, notes, quiet=quiet, jobs=jobs)

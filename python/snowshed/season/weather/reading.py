@@ -159,6 +159,12 @@ def weather_files(season: Season) -> list[Path]:
     return []
 
 
+def input_files(season: Season, temperature: Optional[PathLike]) -> list[str]:
+    """Return the paths of all files of a season: of the weather, and of the temperatures."""
+    files = [*weather_files(season), *([] if temperature is None else [Path(temperature)])]
+    return list(map(str, files))
+
+
 def _station_record(station: Station, source: str, snow_from: str) -> SeasonRecord:
     record = record_of(station, source, CHOICES.get(snow_from))
     table_rows = [TableRow(source, f"line {row.line}", row.line, {}) for row in record.rows]
