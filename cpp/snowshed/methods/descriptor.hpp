@@ -48,6 +48,7 @@ struct MethodInfo {
   std::vector<Quantity> quantities{};
   bool records_forces = false;  // whether it can record the forces on obstacles
   bool takes_laws = false;      // whether it calls laws of the user
+  bool holds_slipping = false;  // whether snow cannot leave surfaces with the condition slip
 };
 
 /// A method together with its settings. The registry holds one of each method with the default

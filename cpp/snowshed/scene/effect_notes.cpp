@@ -15,18 +15,22 @@ namespace {
 constexpr double max_reach = 100;
 
 template <class Part>
-void add_note_on_friction(const std::string& path, const Part& part,
-                          std::vector<std::string>& notes) {
+void add_notes_on_contact(const methods::MethodInfo& method, const std::string& path,
+                          const Part& part, std::vector<std::string>& notes) {
+  if (part.condition == methods::Condition::slip && !method.holds_slipping)
+    notes.push_back(path + "/condition: \"slip\" acts as \"separate\", because the method " +
+                    method.name + " lets snow leave any surface");
   if (part.condition == methods::Condition::sticky && part.friction != Part{}.friction)
     notes.push_back(path + "/friction: " + show(part.friction) + " is not used, because " + path +
                     "/condition is \"sticky\"");
 }
 
-void add_notes_on_frictions(const Scene& scene, std::vector<std::string>& notes) {
-  if (scene.panel) add_note_on_friction("/panel", *scene.panel, notes);
-  if (scene.ground) add_note_on_friction("/ground", *scene.ground, notes);
+void add_notes_on_contacts(const Scene& scene, std::vector<std::string>& notes) {
+  const methods::MethodInfo& method = scene.numerics->info();
+  if (scene.panel) add_notes_on_contact(method, "/panel", *scene.panel, notes);
+  if (scene.ground) add_notes_on_contact(method, "/ground", *scene.ground, notes);
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i)
-    add_note_on_friction("/obstacles/" + std::to_string(i), scene.obstacles[i], notes);
+    add_notes_on_contact(method, "/obstacles/" + std::to_string(i), scene.obstacles[i], notes);
 }
 
 void add_notes_on_records(const methods::Output& output, std::vector<std::string>& notes) {
@@ -99,7 +103,7 @@ void add_notes_on_motions(const Scene& scene, std::vector<std::string>& notes) {
 
 void add_notes_on_effects(const Scene& scene, const std::vector<methods::Obstacle>& obstacles,
                           std::vector<std::string>& notes) {
-  add_notes_on_frictions(scene, notes);
+  add_notes_on_contacts(scene, notes);
   add_notes_on_records(scene.output, notes);
   add_notes_on_places(scene, listed_obstacles(scene, obstacles), notes);
   add_notes_on_motions(scene, notes);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "scene/panel_scene.hpp"
+#include "snowshed/methods/mps/settings.hpp"
 #include "snowshed/scene/build_obstacles.hpp"
 #include "snowshed/scene/presets.hpp"
 
@@ -43,6 +44,16 @@ TEST(EffectNotes, FrictionOfAStickyPartIsNotUsed) {
   scene.ground->friction = 0.5;
   expect_note(scene, "/ground/friction: 0.5 is not used");
   scene.ground->condition = methods::Condition::separate;
+  EXPECT_TRUE(effect_notes_of(scene).empty());
+}
+
+TEST(EffectNotes, SlipHoldsNoSnowInMethodsWhoseWallsNeverPull) {
+  Scene scene = panel_scene(40);
+  scene.panel->condition = methods::Condition::slip;
+  EXPECT_TRUE(effect_notes_of(scene).empty());
+  scene.numerics = methods::mps::Settings{};
+  expect_note(scene, "/panel/condition: \"slip\" acts as \"separate\"");
+  scene.panel->condition = methods::Condition::separate;
   EXPECT_TRUE(effect_notes_of(scene).empty());
 }
 

@@ -74,6 +74,7 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
          {"be_minus_identity", "1", "Elastic left Cauchy-Green tensor less the identity"},
          {"affine", "1/s", "Affine velocity matrix C of APIC, by rows", 9}},
         true,
+        true,
         true};
     return info;
   }
