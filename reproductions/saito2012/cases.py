@@ -50,7 +50,6 @@ LAYER_WIDTH = 20.0  # m
 WOOD_LIMIT = 1000.0  # 1/s
 #: The same for slopes 1 and 2, whose particles are larger.
 SLOPE_LIMIT = 50.0  # 1/s
-STRESS_GROWTH = 1000.0  # s
 
 BINGHAM, COMBINED = "Bingham", "combined"
 NO_OBSTACLE, NARROW_STAKES, WIDE_STAKES, NOTCHED_BOARD = (
@@ -230,7 +229,6 @@ def wooden_case(obstacle: str, resolution: Resolution) -> Case:
         WOOD_SNOW,
         spacing=resolution.wooden_spacing,
         dilatant_rate=WOOD_LIMIT,
-        stress_growth=STRESS_GROWTH,
         erosion=True,
         erosion_pressure=200.0,
         deposition_pressure=100.0,
@@ -255,7 +253,7 @@ def slope_case(number: int, model: str, resolution: Resolution) -> Case:
     snow.append(
         Body(shape=Shape.box((10.0 + spacing, 0, spacing / 2), (20.0, LAYER_WIDTH, spacing)))
     )
-    settings = replace(SLOPE_SNOW, stress_growth=STRESS_GROWTH, dilatant_rate=SLOPE_LIMIT)
+    settings = replace(SLOPE_SNOW, dilatant_rate=SLOPE_LIMIT)
     if model == BINGHAM:
         settings = replace(settings, rheology="bingham")
         snow = snow[:1]  # without the layer: nothing is eroded

@@ -18,6 +18,7 @@
 #include "snowshed/methods/scene_view.hpp"
 #include "snowshed/methods/settings_visitor.hpp"
 #include "snowshed/methods/surroundings.hpp"
+#include "snowshed/methods/unused_settings.hpp"
 
 namespace snowshed::methods {
 
@@ -88,6 +89,8 @@ class MethodDescriptor {
   /// Throws InputError if settings or parts of the scene contradict each other. Callers have
   /// checked the range of each value, and that the method takes all parts of the scene.
   virtual void validate(const SceneView&) const {}
+  /// Settings that other settings or parts of the scene leave without effect.
+  virtual std::vector<UnusedSettings> unused_settings(const SceneView&) const { return {}; }
   /// Returns the solid with thin parts thickened to the method's resolution.
   virtual geometry::ThickSolid thickened(const geometry::Shape& shape, int /*dimension*/) const {
     return {shape, std::nullopt};

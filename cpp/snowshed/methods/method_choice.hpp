@@ -30,6 +30,8 @@ class MethodChoice {
   const MethodDescriptor* operator->() const { return descriptor_.get(); }
   bool takes(Part part) const { return descriptor_->info().takes.has(part); }
   bool is_default() const;
+  /// The same method with its default settings.
+  MethodChoice usual() const;
 
   /// Whether the method's settings have this type.
   template <class Settings>

@@ -63,6 +63,12 @@ bool MethodChoice::is_default() const {
   return descriptor_->info().name == all_methods().front()->info().name;
 }
 
+MethodChoice MethodChoice::usual() const {
+  for (const MethodDescriptor* method : all_methods())
+    if (&method->info() == &descriptor_->info()) return MethodChoice(*method);
+  throw std::logic_error("a method that is not registered");
+}
+
 std::size_t MethodDescriptor::count_particles(const geometry::LevelSet&, int) const {
   throw std::logic_error("the method does not fill solids itself");
 }

@@ -7,6 +7,7 @@
 #include "snowshed/scene/build_obstacles.hpp"
 #include "snowshed/scene/panel_frame.hpp"
 #include "snowshed/scene/shape_measure.hpp"
+#include "snowshed/scene/writer.hpp"
 
 namespace snowshed::scene {
 namespace {
@@ -31,6 +32,25 @@ void add_notes_on_contacts(const Scene& scene, std::vector<std::string>& notes) 
   if (scene.ground) add_notes_on_contact(method, "/ground", *scene.ground, notes);
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i)
     add_notes_on_contact(method, "/obstacles/" + std::to_string(i), scene.obstacles[i], notes);
+}
+
+std::string shown_setting(const nlohmann::ordered_json& value) {
+  return value.is_number() ? show(value.get<double>()) : value.dump();
+}
+
+/// The settings of a method by their keys.
+nlohmann::ordered_json settings_of(methods::MethodChoice method, int dimension) {
+  return Writer::write(method, dimension);
+}
+
+void add_notes_on_settings(const Scene& scene, std::vector<std::string>& notes) {
+  const nlohmann::ordered_json settings = settings_of(scene.numerics, scene.dimension),
+                               usual = settings_of(scene.numerics.usual(), scene.dimension);
+  for (const methods::UnusedSettings& unused : scene.numerics->unused_settings(view_of(scene)))
+    for (const std::string key : unused.settings)
+      if (unused.applies && settings.contains(key) && settings[key] != usual[key])
+        notes.push_back("/numerics/" + key + ": " + shown_setting(settings[key]) +
+                        " is not used, because " + unused.because);
 }
 
 void add_notes_on_records(const methods::Output& output, std::vector<std::string>& notes) {
@@ -103,6 +123,7 @@ void add_notes_on_motions(const Scene& scene, std::vector<std::string>& notes) {
 
 void add_notes_on_effects(const Scene& scene, const std::vector<methods::Obstacle>& obstacles,
                           std::vector<std::string>& notes) {
+  add_notes_on_settings(scene, notes);
   add_notes_on_contacts(scene, notes);
   add_notes_on_records(scene.output, notes);
   add_notes_on_places(scene, listed_obstacles(scene, obstacles), notes);

@@ -4,6 +4,7 @@
 
 #include "scene/panel_scene.hpp"
 #include "snowshed/methods/mps/settings.hpp"
+#include "snowshed/methods/slide/settings.hpp"
 #include "snowshed/scene/build_obstacles.hpp"
 #include "snowshed/scene/presets.hpp"
 
@@ -54,6 +55,48 @@ TEST(EffectNotes, SlipHoldsNoSnowInMethodsWhoseWallsNeverPull) {
   scene.numerics = methods::mps::Settings{};
   expect_note(scene, "/panel/condition: \"slip\" acts as \"separate\"");
   scene.panel->condition = methods::Condition::separate;
+  EXPECT_TRUE(effect_notes_of(scene).empty());
+}
+
+TEST(EffectNotes, SettingsWithoutEffectAreNotUsed) {
+  Scene scene = panel_scene(40);
+  auto& cells = scene.numerics.as<methods::mpm::Settings>();
+  cells.contact_radius = 0.5;
+  expect_note(scene, "/numerics/contact_radius: 0.5 is not used, because contact is \"kernel\"");
+  cells.contact = methods::mpm::ContactRule::touch;
+  EXPECT_TRUE(effect_notes_of(scene).empty());
+  cells.sleep_speed = 0;
+  EXPECT_TRUE(effect_notes_of(scene).empty());
+  cells.sleep_time = 0.1;
+  expect_note(scene, "/numerics/sleep_time: 0.1 is not used, because sleep_speed is 0");
+}
+
+TEST(EffectNotes, AFluidsSettingsWithoutEffectAreNotUsed) {
+  Scene scene = panel_scene(40);
+  methods::mps::Settings fluid;
+  fluid.stress_growth = 1000;
+  fluid.yield_strain = 0.001;
+  scene.numerics = fluid;
+  expect_note(scene, "/numerics/stress_growth: 1000 is not used");
+  fluid.stress = methods::mps::Stress::published;
+  scene.numerics = fluid;
+  expect_note(scene, "/numerics/yield_strain: 0.001 is not used");
+}
+
+TEST(EffectNotes, SettingsOfPartsThatATerrainLacksAreNotUsed) {
+  Scene scene;
+  scene.terrain.emplace();
+  methods::slide::Settings slide;
+  slide.resistance = 100;
+  slide.forest_max_speed = 50;
+  slide.erosion_energy = 1;
+  slide.max_strain = 0.3;
+  scene.numerics = slide;
+  EXPECT_EQ(effect_notes_of(scene).size(), 3u);
+  scene.terrain->resistance.emplace_back();
+  scene.terrain->entrainment.emplace_back();
+  expect_note(scene, "/numerics/forest_max_speed: 50 is not used, because detrainment is 0");
+  scene.numerics.as<methods::slide::Settings>().detrainment = 20;
   EXPECT_TRUE(effect_notes_of(scene).empty());
 }
 

@@ -63,4 +63,11 @@ void describe(SettingsVisitor& v, Settings& n) {
            "or a card if one is there and can compute the scene (auto)");
 }
 
+std::vector<UnusedSettings> unused_settings(const Settings& n) {
+  return {{n.transfer == Transfer::apic, "transfer is \"apic\"", {"flip_ratio"}},
+          {n.contact == ContactRule::kernel, "contact is \"kernel\"", {"contact_radius"}},
+          {n.fields == Fields::one, "fields is \"one\"", {"event_friction"}},
+          {n.sleep_speed == 0, "sleep_speed is 0", {"sleep_time"}}};
+}
+
 }  // namespace snowshed::methods::mpm

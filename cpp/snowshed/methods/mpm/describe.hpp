@@ -4,6 +4,7 @@
 #include "snowshed/methods/enum_names.hpp"
 #include "snowshed/methods/mpm/settings.hpp"
 #include "snowshed/methods/settings_visitor.hpp"
+#include "snowshed/methods/unused_settings.hpp"
 
 namespace snowshed::methods {
 
@@ -57,5 +58,8 @@ namespace snowshed::methods::mpm {
 
 /// Shows a visitor each setting in turn: key, unit, range and meaning.
 void describe(SettingsVisitor&, Settings&);
+
+/// Settings that the others leave without effect.
+std::vector<UnusedSettings> unused_settings(const Settings&);
 
 }  // namespace snowshed::methods::mpm

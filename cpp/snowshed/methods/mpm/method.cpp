@@ -96,6 +96,9 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
     check_damping(settings_);
     check_crack_band(settings_);
   }
+  std::vector<UnusedSettings> unused_settings(const SceneView&) const override {
+    return mpm::unused_settings(settings_);
+  }
   geometry::ThickSolid thickened(const geometry::Shape& shape, int dimension) const override {
     return thickened_for_grid(shape, settings_.dx, dimension);
   }

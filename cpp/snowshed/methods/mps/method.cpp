@@ -56,6 +56,9 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
       throw InputError("/output/forces",
                        "they are recorded with /numerics/order \"single_move\" only");
   }
+  std::vector<UnusedSettings> unused_settings(const SceneView&) const override {
+    return mps::unused_settings(settings_);
+  }
   geometry::ThickSolid thickened(const geometry::Shape& shape, int dimension) const override {
     return thickened_for_particles(shape, settings_.spacing, dimension);
   }

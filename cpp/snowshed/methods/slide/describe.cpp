@@ -68,4 +68,18 @@ void describe(SettingsVisitor& v, Settings& s) {
   v.integer("threads", s.threads, non_negative.up_to(4096), "Threads; 0: all");
 }
 
+std::vector<UnusedSettings> unused_settings(const Settings& s, const TerrainSpec& terrain) {
+  const std::vector<const char*> forest = {"forest_min_speed", "forest_min_thickness",
+                                           "forest_max_speed", "forest_max_thickness"};
+  const bool resists = !terrain.resistance.empty();
+  return {{s.friction_law == FrictionLaw::coulomb, "friction_law is \"coulomb\"", {"turbulence"}},
+          {!s.bonds, "bonds is false", {"max_strain", "bond_modulus", "min_bond_length"}},
+          {!resists, "the terrain has no resistance", {"resistance", "detrainment"}},
+          {!resists, "the terrain has no resistance", forest},
+          {resists && s.detrainment == 0, "detrainment is 0", forest},
+          {terrain.entrainment.empty(),
+           "the terrain has no entrainment",
+           {"entrained_density", "erosion_energy", "entrainment_shear", "entrainment_work"}}};
+}
+
 }  // namespace snowshed::methods::slide

@@ -3,7 +3,9 @@
 
 #include "snowshed/methods/enum_names.hpp"
 #include "snowshed/methods/settings_visitor.hpp"
+#include "snowshed/methods/scene_parts.hpp"
 #include "snowshed/methods/slide/settings.hpp"
+#include "snowshed/methods/unused_settings.hpp"
 
 namespace snowshed::methods {
 
@@ -31,5 +33,8 @@ namespace snowshed::methods::slide {
 
 /// Shows a visitor each setting in turn: key, unit, range and meaning.
 void describe(SettingsVisitor&, Settings&);
+
+/// Settings that the others or the terrain leave without effect.
+std::vector<UnusedSettings> unused_settings(const Settings&, const TerrainSpec&);
 
 }  // namespace snowshed::methods::slide

@@ -85,6 +85,9 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
     check_inflows(*scene.terrain, settings_.mode);
     check_dams(*scene.terrain, settings_.mode);
   }
+  std::vector<UnusedSettings> unused_settings(const SceneView& scene) const override {
+    return slide::unused_settings(settings_, *scene.terrain);
+  }
   std::shared_ptr<const MethodInput> read(const SceneView& scene,
                                           const std::filesystem::path& base_dir) const override {
     return std::make_shared<const Input>(*scene.terrain, settings_, base_dir);

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Literal, Optional
 
@@ -153,28 +152,6 @@ class MpsSettings(MethodSettings):
     viscosity_tolerance: Optional[float] = default(0.0001)
     max_iterations: Optional[int] = default(1000)
     threads: Optional[int] = default(0)
-
-    UNUSED: ClassVar[Sequence[tuple[str, object, Sequence[str]]]] = (
-        (
-            "erosion",
-            False,
-            (
-                "erodible_thickness",
-                "erosion_pressure",
-                "erosion_speed",
-                "deposition_pressure",
-                "deposition_speed",
-            ),
-        ),
-        (
-            "rheology",
-            "newtonian",
-            ("cohesion", "friction_angle", "yield_strain", "dilatant_rate", "dilatant_exponent"),
-        ),
-        ("rheology", "bingham", ("dilatant_rate", "dilatant_exponent")),
-        ("stress", "published", ("yield_strain",)),
-        ("stress", "elastoplastic", ("regularisation",)),
-    )
 
     RESOLUTION: ClassVar[str] = "spacing"
     ELEMENTS: ClassVar[str] = "spacings"
