@@ -37,6 +37,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 WHOLE = re.compile("[0-9]{1,9}")
+#: Separators that programs write in place of commas.
+OTHER_SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars"}
 LINES = re.compile(r"[^\r\n]*(?:\r\n|\r|\n)|[^\r\n]+")  # lines with their line ends
 
 
@@ -393,6 +395,12 @@ def _check_names(names: Sequence[str], where: str) -> None:
     if len(names) > MAX_COLUMNS:
         raise InputError(
             f"{where}: not a table: {len(names)} columns; at most {MAX_COLUMNS} are allowed"
+        )
+    other = next((word for mark, word in OTHER_SEPARATORS.items() if mark in names[0]), None)
+    if len(names) == 1 and other is not None:
+        raise InputError(
+            f"{where}: its cells are separated by {other}; separate them by commas, and write "
+            "numbers with a decimal point"
         )
     for number, name in enumerate(names):  # at most MAX_COLUMNS names
         if name in names[:number]:

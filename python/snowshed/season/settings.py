@@ -10,6 +10,7 @@ from snowshed._core import InputError
 from snowshed.base.arguments import checked
 from snowshed.running.ageing.ageing import Ageing, Interval
 from snowshed.season.rows import SINGLE_ROW, PanelRows
+from snowshed.season.weather.checks import USUAL
 from snowshed.season.weather.columns import MeasuredColumn
 from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
 from snowshed.snow.relations.relation import check_choice, choose
@@ -29,8 +30,8 @@ DAY = 86400.0  # s
 
 
 _RANGES = {
-    "friction": MeasuredColumn(0.0, 10.0, "", usual=(0.01, 2.0)),
-    "adhesion": MeasuredColumn(0.0, 1e6, "Pa", usual=(0.2, 1e4)),
+    "friction": MeasuredColumn(0.0, 10.0, "", usual=USUAL["friction"]),
+    "adhesion": MeasuredColumn(0.0, 1e6, "Pa", usual=USUAL["adhesion"]),
     "catch": MeasuredColumn(0.0, 1.0, ""),
     "cover": MeasuredColumn(0.0, 10.0, "m"),
     "pool_below": MeasuredColumn(0.0, 10.0, "m", usual=(1e-3, 1.0)),

@@ -19,6 +19,7 @@ from snowshed.cli.options.common import (
     quiet_option,
     resume_flag,
 )
+from snowshed.cli.options.no_effect import refuse_without_effect
 from snowshed.cli.options.rows import rows_options
 from snowshed.cli.options.scene import (
     in_terms_of_options,
@@ -42,6 +43,8 @@ DEFAULTS = SeasonSettings()
 
 #: Placeholders for values that the season file determines.
 PLACEHOLDERS = {"slab.thickness": 0.1}
+#: Options of a scene that the releases of a season replace.
+OF_SLABS = ("slab__thickness", "slab__layers", "events__count")
 
 SEASON_TABLE = {
     "date": ("date", "{}"),
@@ -211,6 +214,9 @@ def season(
         thaw=none_or(thaw),
         rows=PanelRows(rows, pitch),
     )
+    refuse_without_effect(OF_SLABS, "on a season: the weather defines its slabs")
+    if sintering is None or sintering == "none":
+        refuse_without_effect(["strength_age"], "without --sintering")
     scene = _scene(scene_file, preset, snow_preset, options)
     reading = {"coverage": coverage, "snow_from": snow_from, "temperature": temperature}
     if dry_run:

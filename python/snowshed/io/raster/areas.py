@@ -22,7 +22,12 @@ from snowshed.base.paths import PathLike
 from snowshed.io.coordinates.systems import is_in_degrees
 from snowshed.io.polygons import read_layer
 from snowshed.io.polygons.layer import PolygonLayer
-from snowshed.io.raster.thickness import ThicknessField, thickness_fields, thickness_of
+from snowshed.io.raster.thickness import (
+    ThicknessField,
+    note_replaced_fields,
+    thickness_fields,
+    thickness_of,
+)
 
 Ring = Sequence[Sequence[float]]
 
@@ -76,6 +81,7 @@ def read_areas(
     *,
     option: Optional[str] = None,
     with_thickness: bool = True,
+    replacement: str = "",
 ) -> list[MapArea]:
     """Return the polygons of a file; parts of a feature become areas of their own.
 
@@ -90,6 +96,8 @@ def read_areas(
         ``layer``.
     with_thickness
         Whether the thickness of snow is read; else it is None.
+    replacement
+        What replaces the thickness in the file, which is then None; a note says so.
 
     Raises
     ------
@@ -101,7 +109,11 @@ def read_areas(
     """
     path = Path(path)
     features = read_map_layer(path, layer, option=option)
-    fields = thickness_fields(features.fields, str(path)) if with_thickness else []
+    fields: list[ThicknessField] = []
+    if replacement:
+        note_replaced_fields(features.fields, str(path), replacement)
+    elif with_thickness:
+        fields = thickness_fields(features.fields, str(path))
     areas = list(_areas(features, fields, path))
     if not areas:
         raise InputError(f"{path}: holds no polygon")

@@ -117,6 +117,35 @@ def thickness_fields(fields: Sequence[str], file: str) -> list[ThicknessField]:
     return candidates
 
 
+def note_replaced_fields(fields: Sequence[str], file: str, replacement: str) -> None:
+    """Issue a note if a file has fields that hold a thickness, which something else replaces.
+
+    Parameters
+    ----------
+    fields
+        Names of the fields of the file.
+    file
+        The file, for the note.
+    replacement
+        What replaces them, such as an argument or a raster.
+
+    Examples
+    --------
+    >>> note_replaced_fields(["fid"], "a.shp", "--thickness")
+    """
+    unused = [
+        quoted(field)
+        for field in fields
+        if WITH_UNIT.fullmatch(field.strip()) or any(_is(field, name) for name in NAMES)
+    ]
+    if unused:
+        issue_note(
+            f"{file}: the thickness is that of {replacement}, not of its field "
+            f"{' and '.join(unused)}",
+            InputNote,
+        )
+
+
 def thickness_of(
     fields: Sequence[ThicknessField], record: Mapping[str, Any], where: str
 ) -> Optional[float]:

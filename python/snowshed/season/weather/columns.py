@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.base.formatting import missing_mark_hint
 from snowshed.base.notes import InputNote, issue_note
 
 #: Largest snowfall of a row, which may hold the snow of several days.
@@ -40,7 +41,7 @@ class MeasuredColumn:
         snowshed._core.InputError: tilt: 95 is outside the allowed range (0 <= value <= 90 degrees)
         """
         if not self.low <= value <= self.high:
-            hint = self.hint if value > self.high else ""
+            hint = missing_mark_hint(value) or (self.hint if value > self.high else "")
             raise InputError(
                 f"{where}: {value:g} is outside the allowed range ({self.range_text}){hint}"
             )
