@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from snowshed._core import InputError
+from snowshed.base.field_type import shown
 from snowshed.base.formatting import number_in
 from snowshed.base.limits import (
     MAX_COLUMNS,
@@ -273,8 +274,12 @@ def frame_as_text(table: pd.DataFrame, name: str, *, index: str = "") -> TextTab
     Raises
     ------
     InputError
-        If a column occurs twice.
+        If it is no DataFrame, its index has several levels, or a column occurs twice.
     """
+    if not hasattr(table, "itertuples"):
+        raise InputError(f"{name}: {shown(table)}; needed: a DataFrame")
+    if index and table.index.nlevels > 1:
+        raise InputError(f"{name}: its index has {table.index.nlevels} levels; needed: one")
     if index and index not in table:
         table = table.rename_axis(index).reset_index()
     columns = [str(column) for column in table]

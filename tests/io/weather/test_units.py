@@ -168,7 +168,7 @@ def test_precipitation_that_repeats_a_mark_of_missing_values_is_refused(mark, st
 
 
 def test_a_mark_of_missing_values_is_told_as_such(station):
-    with pytest.raises(InputError, match="32767 is outside .*; if it stands for a missing value"):
+    with pytest.raises(InputError, match=r"32767 is outside .*; if it stands for a missing value"):
         station(meteoswiss("tre200d0", ["-5.0", "32767"], step=24.0))
 
 

@@ -4,6 +4,7 @@ import dataclasses
 import datetime
 import re
 
+import numpy as np
 import pandas as pd
 import pytest
 
@@ -210,3 +211,20 @@ def test_the_column_of_rows_cannot_be_chosen(tmp_path):
     rows = [*read(tmp_path, "2024-12-01,0.1,,-4")]
     with pytest.raises(InputError, match="snow from: depth: allowed with weather files only"):
         read_record(rows, snow_from="depth")
+
+
+@pytest.mark.parametrize(
+    ("season", "message"),
+    [
+        ((row for row in []), "the season: .*generator.*; needed: a DataFrame"),
+        (np.zeros((3, 3)), "(?s)the season: array.*; needed: a DataFrame"),
+        (
+            pd.DataFrame({"snowfall_m": [0.1]}, index=[["2024-12-01"], [-4.0]]),
+            "its index has 2 levels; needed: one",
+        ),
+    ],
+    ids=["generator", "array", "levels"],
+)
+def test_what_is_no_table_is_refused(season, message):
+    with pytest.raises(InputError, match=message):
+        read_season(season)

@@ -227,7 +227,8 @@ class Quantity:
         if not (math.isfinite(value) and low <= value <= high):
             hint = missing_mark_hint(number) or f"; is it really in {self.unit}?"
             raise InputError(
-                f"{where}: {cell} is outside the allowed range ({self._range_text(low, high)}){hint}"
+                f"{where}: {cell} is outside the allowed range ({self._range_text(low, high)})"
+                f"{hint}"
             )
         return round(max(value, 0.0) if self.name == "snow_depth" else value, 9)
 
