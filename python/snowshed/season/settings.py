@@ -119,6 +119,22 @@ class SeasonSettings:
         _RANGES["melt_factor"].check(self.melt_factor, "melt_factor")
         self.ageing({})
 
+    @property
+    def notes(self) -> list[str]:
+        """Notes on unusual values, which results repeat.
+
+        Examples
+        --------
+        >>> SeasonSettings(adhesion=30.0).notes
+        []
+        """
+        return [
+            note
+            for name, column in _RANGES.items()
+            if not isinstance(getattr(self, name), str)
+            for note in column.unusual(getattr(self, name), name)
+        ]
+
     def ageing(self, pauses: Mapping[int, Sequence[Interval]]) -> Ageing:
         """Return the ageing of the stack in the pauses before the events."""
         return Ageing(pauses, self.settling, self.sintering, self.strength_age)

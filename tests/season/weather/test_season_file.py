@@ -174,42 +174,42 @@ def test_hours_of_summer_time_are_converted_to_standard_time_with_a_note(tmp_pat
 
 def test_offsets_in_some_rows_only_are_refused(tmp_path):
     with pytest.raises(
-        InputError, match="line 3, column date: .* has a UTC offset, but line 2 has"
+        InputError, match=r"line 3, column date: .* has a UTC offset, but line 2 has"
     ):
         read(tmp_path, "2024-12-01,0.1,,-4", "2024-12-02T00:00+01:00,0.1,,-4")
 
 
 def test_a_time_without_a_universal_time_is_refused(tmp_path):
     rows = ("2024-12-01T00:00+14:00,0.1,,-4", "9999-12-31T23:59-14:00,0.1,,-4")
-    with pytest.raises(InputError, match="line 3, column date: .* has no universal time"):
+    with pytest.raises(InputError, match=r"line 3, column date: .* has no universal time"):
         read(tmp_path, *rows)
 
 
 def test_adhesion_in_kilopascals_is_noted(tmp_path):
     header = "date,snowfall_m,temperature_c,adhesion_pa"
-    with pytest.warns(UserWarning, match="column adhesion_pa: 1 number beyond the usual"):
+    with pytest.warns(UserWarning, match=r"column adhesion_pa: 1 number beyond the usual"):
         read(tmp_path, "2024-12-01,0.1,-4,0.08", "2024-12-02,0.1,-4,0", header=header)
 
 
 @pytest.mark.parametrize("mark", [";", "\t", "|"])
 def test_another_separator_is_named(tmp_path, mark):
-    with pytest.raises(InputError, match="line 1: its cells are separated by .*by commas"):
+    with pytest.raises(InputError, match=r"line 1: its cells are separated by .*by commas"):
         read(tmp_path, mark.join(["2024-12-01", "0,1", "", "-4"]), header=HEADER.replace(",", mark))
 
 
 def test_rows_from_the_last_to_the_first_are_told_as_such(tmp_path):
-    with pytest.raises(InputError, match="the latest row comes first: sort the rows by time"):
+    with pytest.raises(InputError, match=r"the latest row comes first: sort the rows by time"):
         read(tmp_path, "2024-12-02,0.1,,-4", "2024-12-01,0.1,,-4")
 
 
 def test_a_mark_of_a_missing_value_is_told_as_such(tmp_path):
-    with pytest.raises(InputError, match="-999 is outside .*; if it stands for a missing value"):
+    with pytest.raises(InputError, match=r"-999 is outside .*; if it stands for a missing value"):
         read(tmp_path, "2024-12-01,-999,,-4")
 
 
 def test_the_column_of_rows_cannot_be_chosen(tmp_path):
     rows = [*read(tmp_path, "2024-12-01,0.1,,-4")]
-    with pytest.raises(InputError, match="snow from: depth: allowed with weather files only"):
+    with pytest.raises(InputError, match=r"snow from: depth: allowed with weather files only"):
         read_record(rows, snow_from="depth")
 
 

@@ -11,6 +11,7 @@ import click
 
 from snowshed._core import InputError
 from snowshed.base.interrupt import Interrupted
+from snowshed.base.notes import held_notes, record_notes
 from snowshed.cli.exit_codes import Stopped
 from snowshed.cli.options.common import (
     PATH,
@@ -200,20 +201,21 @@ def season(
     Example:
       snowshed season winter.csv --dim 2 --height 0.8 --length 2 --tilt 40 --dx 0.03 -o results
     """  # noqa: D301 - click wants the control character
-    settings = SeasonSettings(
-        release_friction,
-        adhesion,
-        catch,
-        new_snow,
-        none_or(settling),
-        none_or(sintering),
-        strength_age,
-        none_or(strength),
-        depth_or_word(cover),
-        melt_factor=melt_factor,
-        thaw=none_or(thaw),
-        rows=PanelRows(rows, pitch),
-    )
+    with record_notes() if dry_run else held_notes():  # the result has these notes
+        settings = SeasonSettings(
+            release_friction,
+            adhesion,
+            catch,
+            new_snow,
+            none_or(settling),
+            none_or(sintering),
+            strength_age,
+            none_or(strength),
+            depth_or_word(cover),
+            melt_factor=melt_factor,
+            thaw=none_or(thaw),
+            rows=PanelRows(rows, pitch),
+        )
     refuse_without_effect(OF_SLABS, "on a season: the weather defines its slabs")
     if sintering is None or sintering == "none":
         refuse_without_effect(["strength_age"], "without --sintering")

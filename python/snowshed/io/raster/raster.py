@@ -60,10 +60,14 @@ class Raster:
     def __post_init__(self) -> None:
         """Refuse heights that are no numbers in rows and columns; masked ones become NaN."""
         heights: Any = self.heights
-        if not isinstance(heights, np.ndarray) or heights.ndim != 2 or heights.dtype.kind not in "iuf":
+        if (
+            not isinstance(heights, np.ndarray)
+            or heights.ndim != 2
+            or heights.dtype.kind not in "iuf"
+        ):
             raise InputError(
-                f"{self.name}: heights: {shown(heights)}; needed: an array of numbers with rows and "
-                "columns"
+                f"{self.name}: heights: {shown(heights)}; needed: an array of numbers with rows "
+                "and columns"
             )
         if isinstance(heights, np.ma.MaskedArray):
             filled = heights.astype(np.float64).filled(np.nan)

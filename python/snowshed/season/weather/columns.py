@@ -45,13 +45,16 @@ class MeasuredColumn:
             raise InputError(
                 f"{where}: {value:g} is outside the allowed range ({self.range_text}){hint}"
             )
-        if self.usual and value and not self.usual[0] <= value <= self.usual[1]:
-            low, high = (f"{limit:g} {self.unit}".rstrip() for limit in self.usual)
-            issue_note(
-                f"{where}: {value:g} {self.unit} is unusual; most values are {low} to {high}, so "
-                "check its unit",
-                InputNote,
-            )
+        for note in self.unusual(value, where):
+            issue_note(note, InputNote)
+
+    def unusual(self, value: float, where: str) -> list[str]:
+        """Return a note if a value is unusual."""
+        if not self.usual or not value or self.usual[0] <= value <= self.usual[1]:
+            return []
+        low, high = (f"{limit:g} {self.unit}".rstrip() for limit in self.usual)
+        number = f"{value:g} {self.unit}".rstrip()
+        return [f"{where}: {number} is unusual; most values are {low} to {high}, so check its unit"]
 
 
 COLUMNS: Mapping[str, MeasuredColumn] = {
