@@ -16,7 +16,7 @@ def refuse_without_effect(names: Sequence[str], reason: str) -> None:
     names
         Parameters of the command.
     reason
-        What makes them ineffective, such as "without --range".
+        Reason why they are ineffective, such as "without --range".
 
     Raises
     ------

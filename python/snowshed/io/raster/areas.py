@@ -97,7 +97,7 @@ def read_areas(
     with_thickness
         Whether the thickness of snow is read; else it is None.
     replacement
-        What replaces the thickness in the file, which is then None; a note says so.
+        Source of the thickness in place of the file, whose own is then None, with a note.
 
     Raises
     ------

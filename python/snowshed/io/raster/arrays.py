@@ -83,10 +83,10 @@ def _refuse_packed(array: xarray.DataArray) -> None:
                 f"terrain: its attribute {name} is {value}; apply it first, as mask_and_scale=True "
                 "does when a file is opened"
             )
-    for name in array.coords:
-        unit = str(array.coords[name].attrs.get("units", "m"))
-        if str(name) in (*EAST, *NORTH) and unit not in METRES:
-            raise InputError(f"terrain: the units of {name} are {unit!r}; convert them to metres")
+    for axis, coordinates in array.coords.items():
+        unit = str(coordinates.attrs.get("units", "m"))
+        if str(axis) in (*EAST, *NORTH) and unit not in METRES:
+            raise InputError(f"terrain: the units of {axis} are {unit!r}; convert them to metres")
 
 
 def _spacing(values: Floats, name: str) -> float:

@@ -70,8 +70,8 @@ class Raster:
                 "and columns"
             )
         if isinstance(heights, np.ma.MaskedArray):
-            filled = heights.astype(np.float64).filled(np.nan)
-            object.__setattr__(self, "heights", filled)
+            masked: Any = heights.astype(np.float64)
+            object.__setattr__(self, "heights", masked.filled(np.nan))
 
     def height_at(self, east: Floats, north: Floats) -> Floats:
         """Return heights at map coordinates, m, interpolated between cell centres (bilinear).

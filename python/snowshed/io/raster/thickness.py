@@ -127,7 +127,7 @@ def note_replaced_fields(fields: Sequence[str], file: str, replacement: str) -> 
     file
         The file, for the note.
     replacement
-        What replaces them, such as an argument or a raster.
+        Source of the thickness in their place, such as an argument or a raster.
 
     Examples
     --------

@@ -89,11 +89,11 @@ def check_given_rows(
 
     Examples
     --------
-    >>> rows = [Weather(2, datetime(2024, 12, day), 0.1, None, -4.0) for day in (2, 1)]
+    >>> rows = [Weather(2, datetime(2024, 12, day), 0.1, None, -4.0) for day in (1, 3, 2)]
     >>> check_given_rows(rows)
     Traceback (most recent call last):
-    snowshed._core.InputError: the season, row 2, column date: 2024-12-01 00:00:00 is not after \
-row 1, 2024-12-02 00:00:00
+    snowshed._core.InputError: the season, row 3, column date: 2024-12-02 00:00:00 is not after \
+row 2, 2024-12-03 00:00:00
     """
     weather: list[Weather] = []
     for number, row in enumerate(rows, 1):
