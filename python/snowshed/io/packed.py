@@ -52,8 +52,8 @@ def unpacked(content: bytes, path: Path, largest: int = MAX_TEXT_BYTES) -> bytes
     """
     if content.startswith(ZIP) and any(mark in content[:WORKBOOK_BYTES] for mark in WORKBOOKS):
         raise InputError(
-            f"{path}: a workbook of a spreadsheet program; save its sheet as CSV, with commas between "
-            "cells, decimal points, and dates such as 2024-12-31"
+            f"{path}: a workbook of a spreadsheet program; save its sheet as CSV, with commas "
+            "between cells, decimal points, and dates such as 2024-12-31"
         )
     for begin, what in REFUSED_PACKINGS.items():
         if content.startswith(begin):
