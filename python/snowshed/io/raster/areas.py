@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 from snowshed._core import InputError
 from snowshed.base.callers import argument
 from snowshed.base.extras import require
+from snowshed.base.formatting import plural
 from snowshed.base.messages import shortened
 from snowshed.base.notes import InputNote, issue_note
 from snowshed.base.paths import PathLike
@@ -160,6 +161,9 @@ def _areas(layer: PolygonLayer, fields: Sequence[ThicknessField], path: Path) ->
     ]
     parts, owners = shapely.get_parts(layer.shapes, return_index=True)
     rings = _rings(parts, shapely)
+    empty = len(layer.shapes) - len({owner for part, owner in enumerate(owners) if rings[part]})
+    if empty:
+        issue_note(f"{path}: {plural(empty, 'feature')} without corners, left out", InputNote)
     for part, owner in enumerate(owners.tolist()):
         if rings[part]:
             outline, *holes = rings[part]
