@@ -279,3 +279,12 @@ def test_results_may_go_into_the_current_folder(tmp_path, monkeypatch):
     assert main(["slide", "--example", "--max-time", "0.1", "-q", "-o", "."]) == 0
     assert (folder / "slide.json").is_file()
     assert (tmp_path / "here-terrain/terrain.asc").is_file()
+
+
+def test_maps_of_many_slides_have_the_notes_on_their_files(tmp_path):
+    ranges = ["--range", "thickness=0.3:0.6", "--runs", "2", "--jobs", "1", "--max-time", "0.1"]
+    assert slide(tmp_path, options=ranges, d0=0.5) == 0
+    notes = json.loads((tmp_path / "out/hazard.json").read_text())["notes"]
+    assert notes[0].endswith("the thickness is that of its field 'd0', in m")
+    assert "the thickness of the release varies between the runs, whatever its file says" in notes
+    assert "whatever its file says" in (tmp_path / "out/hazard.html").read_text()
