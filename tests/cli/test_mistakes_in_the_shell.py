@@ -40,6 +40,7 @@ FILES = {
     "twice.toml": f"{STUDY}[axes]\npanel.tilt = [40]\npanel.tilt = [50]\n",
     "range.toml": f"{STUDY}[axes]\npanel.tilt = {{ from = 40, to = 60 }}\n",
     "semicolons.csv": "date;snowfall_m;temperature_c\n2024-12-01;0,2;-3\n",
+    "snowfalls.csv": "date,snowfall_m,temperature_c\n2024-12-01,0.2,-3\n",
     "require.lua": "local geometry = require('geometry')\n",
     "syntax.lua": "panel = {\n",
     "nothing.lua": "x = 1\n",
@@ -91,6 +92,21 @@ COMMANDS = {
     "range without a step": (("study", "run", "range.toml", *NEW), "either a step or a count"),
     "table of a run": (("study", "export", "run", "-o", "t.csv"), "holds no study"),
     "weather with semicolons": (("season", "semicolons.csv", *SEASON), "semicolons.csv"),
+    "slab in a season": (
+        ("season", "snowfalls.csv", *SEASON, "--thickness", 0.3), "--thickness has no effect on a"
+    ),
+    "events in a season": (
+        ("season", "snowfalls.csv", *SEASON, "--events", 3), "--events has no effect on a season"
+    ),
+    "age of bonds that do not sinter": (
+        ("season", "snowfalls.csv", *SEASON, "--strength-age", 3),
+        "--strength-age has no effect without --sintering",
+    ),
+    "column of the example's snow": (
+        ("clearance", "example", "--slope-length", 4, "--tilt", 60, "--snow-from", "depth", *NEW),
+        "--snow-from has no effect with the word example",
+    ),
+    "empty name of a folder": ((*PANEL, "-o", ""), "the path is empty"),
     "weather that is not there": (("season", "missing.csv", *SEASON), "missing.csv"),
     "stacks of another method": (("compare", "run", "slide"), "holds no events.csv"),
     "view of nothing": (("view", "missing"), "no results"),

@@ -79,6 +79,16 @@ def test_a_season_issues_its_notes_but_not_its_assumptions(season_file, tmp_path
     assert not [note for note in classes if note.startswith("the ground is bare")]
 
 
+def test_notes_on_unusual_settings_are_in_the_result(season_file, tmp_path):
+    scene = panel_scene(**{"panel.tilt": 20})
+    with pytest.warns(SnowshedNote, match="adhesion: 0.1 Pa is unusual") as issued:
+        settings = SeasonSettings(adhesion=0.1)
+        run_season(season_file, scene, tmp_path / "out", settings=settings, pictures=False)
+    assert len([note for note in issued if "adhesion: 0.1 Pa" in str(note.message)]) == 1
+    notes = json.loads((tmp_path / "out/season.json").read_text())["notes"]
+    assert notes.count(settings.notes[0]) == 1
+
+
 def entries(folder):
     return {path.name: path.read_bytes() for path in folder.glob("season.*")}
 

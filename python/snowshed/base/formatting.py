@@ -22,6 +22,11 @@ UNITS_OF_TIME = (
 )
 NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 MAX_NUMBER = 400  # characters
+#: Numbers that programs write for a missing value; none of them is weather.
+MARKS_OF_MISSING = (
+    *(-99.0, -99.9, -777.0, -999.0, -999.9, -6999.0, -7999.0, -9999.0, -99999.0, -32768.0),
+    *(99.9, 999.0, 999.9, 9999.0, 9999.9, 99999.0, 32767.0),
+)
 
 
 def exact(value: float) -> str:
@@ -129,6 +134,19 @@ def about(seconds: float) -> str:
         (unit, name, digits) for limit, unit, name, digits in UNITS_OF_TIME if seconds < limit
     )
     return f"about {seconds / unit:.{digits}f} {name}"
+
+
+def missing_mark_hint(number: float) -> str:
+    """Return advice if a number is one that programs write for a missing value; else nothing.
+
+    Examples
+    --------
+    >>> missing_mark_hint(-999.0), missing_mark_hint(31.0)
+    ('; if it stands for a missing value, leave such cells empty', '')
+    """
+    if number not in MARKS_OF_MISSING:
+        return ""
+    return "; if it stands for a missing value, leave such cells empty"
 
 
 def number_in(text: str) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from pathlib import Path
 from typing import Union
 
 from snowshed._core import InputError
@@ -19,6 +20,29 @@ def with_home(path: str) -> str:
     ('runs/a~', True)
     """
     return os.path.expanduser(path)  # noqa: PTH111 - a name without a home stays as it is
+
+
+def beside(folder: PathLike, prefix: str = "", suffix: str = "") -> Path:
+    """Return a path beside a folder, which may also be named ``.`` or ``..``.
+
+    Raises
+    ------
+    InputError
+        If the folder is the root of the file system.
+
+    Examples
+    --------
+    >>> beside("runs/a", suffix="-terrain.asc") == Path("runs/a-terrain.asc")
+    True
+    >>> beside(".", suffix="-x") == Path.cwd().with_name(f"{Path.cwd().name}-x")
+    True
+    """
+    path = Path(folder)
+    if path.name in ("", ".."):
+        path = path.resolve()
+    if not path.name:
+        raise InputError(f"{path}: the root of the file system; give a folder")
+    return path.with_name(f"{prefix}{path.name}{suffix}")
 
 
 def utf8_path(path: PathLike) -> str:

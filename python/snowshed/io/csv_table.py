@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from snowshed._core import InputError
+from snowshed.base.field_type import shown
 from snowshed.base.formatting import number_in
 from snowshed.base.limits import (
     MAX_COLUMNS,
@@ -37,6 +38,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 WHOLE = re.compile("[0-9]{1,9}")
+#: Separators that programs write in place of commas.
+OTHER_SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars"}
 LINES = re.compile(r"[^\r\n]*(?:\r\n|\r|\n)|[^\r\n]+")  # lines with their line ends
 
 
@@ -271,8 +274,12 @@ def frame_as_text(table: pd.DataFrame, name: str, *, index: str = "") -> TextTab
     Raises
     ------
     InputError
-        If a column occurs twice.
+        If it is no DataFrame, its index has several levels, or a column occurs twice.
     """
+    if not hasattr(table, "itertuples"):
+        raise InputError(f"{name}: {shown(table)}; needed: a DataFrame")
+    if index and table.index.nlevels > 1:
+        raise InputError(f"{name}: its index has {table.index.nlevels} levels; needed: one")
     if index and index not in table:
         table = table.rename_axis(index).reset_index()
     columns = [str(column) for column in table]
@@ -393,6 +400,12 @@ def _check_names(names: Sequence[str], where: str) -> None:
     if len(names) > MAX_COLUMNS:
         raise InputError(
             f"{where}: not a table: {len(names)} columns; at most {MAX_COLUMNS} are allowed"
+        )
+    other = next((word for mark, word in OTHER_SEPARATORS.items() if mark in names[0]), None)
+    if len(names) == 1 and other is not None:
+        raise InputError(
+            f"{where}: its cells are separated by {other}; separate them by commas, and write "
+            "numbers with a decimal point"
         )
     for number, name in enumerate(names):  # at most MAX_COLUMNS names
         if name in names[:number]:

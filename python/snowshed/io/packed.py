@@ -13,9 +13,12 @@ from snowshed._core import InputError
 from snowshed.base.limits import KB, MAX_MEMBERS, MAX_TEXT_BYTES, MAX_UNPACKING_BYTES, MB
 
 GZIP, XZ = b"\x1f\x8b", b"\xfd7zXZ\x00"
+ZIP = b"PK\x03\x04"
+#: Names near the beginning of the workbooks of spreadsheet programs (xlsx, ods).
+WORKBOOKS, WORKBOOK_BYTES = (b"[Content_Types].xml", b"xl/", b"opendocument.spreadsheet"), 4096
 #: Refused packings, by their first bytes.
 REFUSED_PACKINGS = {
-    b"PK\x03\x04": "a zip archive",
+    ZIP: "a zip archive",
     b"BZh": "packed with bzip2",
     b"7z\xbc\xaf\x27\x1c": "a 7z archive",
     b"\x28\xb5\x2f\xfd": "packed with zstd",
@@ -47,6 +50,11 @@ def unpacked(content: bytes, path: Path, largest: int = MAX_TEXT_BYTES) -> bytes
     >>> unpacked(gzip.compress(b"snow"), Path("a.gz")), unpacked(b"snow", Path("a"))
     (b'snow', b'snow')
     """
+    if content.startswith(ZIP) and any(mark in content[:WORKBOOK_BYTES] for mark in WORKBOOKS):
+        raise InputError(
+            f"{path}: a workbook of a spreadsheet program; save its sheet as CSV, with commas "
+            "between cells, decimal points, and dates such as 2024-12-31"
+        )
     for begin, what in REFUSED_PACKINGS.items():
         if content.startswith(begin):
             raise InputError(f"{path}: {what}; unpack it and give the file inside")

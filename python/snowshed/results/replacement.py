@@ -12,7 +12,7 @@ from typing import Optional
 from snowshed._core import InputError, SimulationError
 from snowshed.base.interrupt import Interrupted
 from snowshed.base.notes import SnowshedNote
-from snowshed.base.paths import PathLike
+from snowshed.base.paths import PathLike, beside
 from snowshed.io.atomic import LEFTOVER
 from snowshed.io.locks import is_held
 from snowshed.results.folder import RunFolder
@@ -30,8 +30,7 @@ ENTRIES = RunFolder("").names | {
 
 def inputs_beside(folder: PathLike) -> Path:
     """Return the folder beside a results folder that holds arrays in memory of its scene."""
-    results = Path(folder).absolute()
-    return results.with_name(f"{results.name}-inputs")
+    return beside(Path(folder).absolute(), suffix="-inputs")
 
 
 @contextmanager
@@ -115,7 +114,7 @@ def _set_aside(folder: Path, check: Callable[[Path, set[str]], None]) -> Optiona
     if not any(not LEFTOVER.match(name) for name in names):
         return None
     check(folder, names)
-    aside = folder.with_name(f".{folder.name}.{os.getpid()}.replaced")
+    aside = beside(folder, ".", f".{os.getpid()}.replaced")
     folder.rename(aside)
     return aside
 

@@ -159,7 +159,7 @@ def run_season(
         plan, folder, settings=settings, resume=resume, overwrite=overwrite, progress=progress,
         pictures=pictures,
     )  # fmt: skip
-    issued = {*earlier, *assumptions(result.table, plan.days, settings)}
+    issued = {*earlier, *settings.notes, *assumptions(result.table, plan.days, settings)}
     for note in result.notes:
         if note not in issued:
             issue_note(note, ResultNote)
@@ -323,6 +323,7 @@ def _result(plan: SeasonPlan, settings: SeasonSettings, folder: SeasonFolder) ->
         winters=plan.winters,
         notes=[
             *plan.record.notes,
+            *settings.notes,
             *plan.winters.shortfalls,
             *assumptions(table, days, settings),
             *fall_notes(plan.panel.data, table, days, settings),

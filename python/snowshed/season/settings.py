@@ -10,6 +10,7 @@ from snowshed._core import InputError
 from snowshed.base.arguments import checked
 from snowshed.running.ageing.ageing import Ageing, Interval
 from snowshed.season.rows import SINGLE_ROW, PanelRows
+from snowshed.season.weather.checks import USUAL
 from snowshed.season.weather.columns import MeasuredColumn
 from snowshed.snow.relations.new_snow import NEW_SNOW_DENSITY
 from snowshed.snow.relations.relation import check_choice, choose
@@ -29,8 +30,8 @@ DAY = 86400.0  # s
 
 
 _RANGES = {
-    "friction": MeasuredColumn(0.0, 10.0, "", usual=(0.01, 2.0)),
-    "adhesion": MeasuredColumn(0.0, 1e6, "Pa", usual=(0.2, 1e4)),
+    "friction": MeasuredColumn(0.0, 10.0, "", usual=USUAL["friction"]),
+    "adhesion": MeasuredColumn(0.0, 1e6, "Pa", usual=USUAL["adhesion"]),
     "catch": MeasuredColumn(0.0, 1.0, ""),
     "cover": MeasuredColumn(0.0, 10.0, "m"),
     "pool_below": MeasuredColumn(0.0, 10.0, "m", usual=(1e-3, 1.0)),
@@ -117,6 +118,22 @@ class SeasonSettings:
         _RANGES["pool_below"].check(self.pool_below, "pool_below")
         _RANGES["melt_factor"].check(self.melt_factor, "melt_factor")
         self.ageing({})
+
+    @property
+    def notes(self) -> list[str]:
+        """Notes on unusual values, which results repeat.
+
+        Examples
+        --------
+        >>> SeasonSettings(adhesion=30.0).notes
+        []
+        """
+        return [
+            note
+            for name, column in _RANGES.items()
+            if not isinstance(getattr(self, name), str)
+            for note in column.unusual(getattr(self, name), name)
+        ]
 
     def ageing(self, pauses: Mapping[int, Sequence[Interval]]) -> Ageing:
         """Return the ageing of the stack in the pauses before the events."""

@@ -1,5 +1,6 @@
 """Tables of the clearance answer, snow on the panel, and the choice of grids."""
 
+import json
 import re
 import time
 from dataclasses import replace
@@ -24,6 +25,7 @@ from snowshed.analysis.clearance.report import write_report
 from snowshed.analysis.clearance.seasons import SeasonOutcome, cases_of
 from snowshed.analysis.clearance.tables import write_tables
 from snowshed.analysis.clearance.trend import trend_of
+from snowshed.base.notes import SnowshedNote
 from snowshed.cli.main import main
 from snowshed.plot.clearance_figure import design_figure
 from snowshed.season import SeasonSettings, Weather, accumulate
@@ -92,6 +94,15 @@ def test_the_report_prints_on_four_pages(result, tmp_path):
     with open_page(tmp_path / "clearance.html") as (page, _):
         printed = page.pdf(format="A4", margin=margin)
     assert 1 <= len(re.findall(rb"/Type /Page\b", printed)) <= 4
+
+
+def test_notes_on_unusual_ranges_are_in_the_report(result, tmp_path):
+    with pytest.warns(SnowshedNote, match="adhesion: 0 to 0.1 is unusual"):
+        ranges = SnowRanges({**KNOWN.spans, "adhesion": (0.0, 0.1)}, KNOWN.draws)
+    write_report([result], ranges, tmp_path, ["of the weather"])
+    notes = json.loads((tmp_path / "clearance.json").read_text())["notes"]
+    assert notes == [*ranges.notes, "of the weather"]
+    assert notes[0] in (tmp_path / "clearance.html").read_text()
 
 
 def test_a_trend_counts_years_and_not_winters():

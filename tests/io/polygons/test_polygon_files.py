@@ -308,3 +308,25 @@ def test_a_shapefile_needs_its_ending_and_its_index(tmp_path):
     Path(tmp_path / "a.shx").unlink()
     with pytest.raises(InputError, match=r"its index a.shx is not beside it"):
         read_areas(file)
+
+
+def test_features_without_corners_are_counted(tmp_path):
+    file = write(tmp_path / "a.gpkg", [SQUARE, shapely.Polygon()], d0=[0.5, 0.5])
+    with record_notes() as notes:
+        assert len(read_areas(file)) == 1
+    assert f"{file}: 1 feature without corners, left out" in notes
+
+
+def test_a_unit_that_a_shapefile_cuts_off_is_told(tmp_path):
+    file = write(tmp_path / "a.shp", [SQUARE], thickness_cm=[50.0])
+    with record_notes() as notes:
+        assert read_areas(file)[0].thickness is None
+    assert any("a shapefile cuts names after ten characters" in note for note in notes)
+
+
+def test_a_thickness_that_is_replaced_is_noted_and_not_read(tmp_path):
+    file = write(tmp_path / "a.gpkg", [SQUARE], d0=[0.5], thickness_cm=[80.0])
+    with record_notes() as notes:
+        assert read_areas(file, replacement="depth.asc")[0].thickness is None
+    (note,) = notes
+    assert note.endswith("is that of depth.asc, not of its field 'd0' and 'thickness_cm'")

@@ -168,3 +168,12 @@ def test_clearance_takes_several_files(written, tmp_path):
     assert done.returncode == 0, done.stderr
     assert "1 winter" in done.stdout + done.stderr
     assert commands(tmp_path, "clearance", "nime.csv", "smn.csv", *panel).returncode == 0
+
+
+def test_a_list_of_snowfalls_stays_a_list_beside_a_thermometer(written):
+    snowfalls = ((1, 0.15), (5, 0.22), (12, 0.10))
+    table = "date,snowfall_m\n" + "".join(f"2022-12-{day:02d},{fall}\n" for day, fall in snowfalls)
+    rows, notes = read_weather(written(table, "own.csv"), temperature=written(WARM, "smn.csv"))
+    assert [(row.date.day, row.snowfall) for row in rows if row.snowfall] == [*snowfalls]
+    assert [row.date.day for row in rows] == [*range(1, 13)]
+    assert any(note.startswith("own.csv: it lists snowfalls; each counts on the") for note in notes)

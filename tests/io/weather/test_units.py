@@ -141,3 +141,38 @@ def test_snow_depth_alone_is_sufficient_for_a_station(station):
 def test_json_is_refused_with_advice(station):
     with pytest.raises(InputError, match="JSON; the weather of a station is read from tables"):
         station('{"meta": {"name": "A"}, "data": [["2024-01-01", "28", "17", "T", "T", "43"]]}')
+
+
+def test_new_snow_in_metres_is_noted(station):
+    rows = ["-5.0;0.12"] * 6
+    text = meteoswiss("tre200d0;hns000d0", rows, step=24.0)  # its unit is the centimetre
+    notes = station(text).notes
+    assert "hns000d0 never exceeds 0.12 cm, although 6 values are not 0; check that it is " in str(
+        notes
+    )
+    assert not any("never" in note for note in station(text.replace("0.12", "1.2")).notes)
+
+
+def test_precipitation_in_metres_is_noted(station):
+    notes = station(smet("TA PSUM", ["268.15 0.004"] * 6, step=24.0)).notes
+    assert any(note.startswith("PSUM never exceeds 0.004 mm, although 6") for note in notes)
+
+
+@pytest.mark.parametrize("mark", ["99.9", "999", "999.9"])
+def test_precipitation_that_repeats_a_mark_of_missing_values_is_refused(mark, station):
+    rows = ["-5.0;1.2"] * 4 + [f"-5.0;{mark}", "-5.0;0.4", f"-5.0;{mark}"]
+    text = meteoswiss("tre200d0;rre150d0", rows, step=24.0)
+    with pytest.raises(InputError, match=f"column rre150d0: {mark} mm occurs 2 times, first in li"):
+        station(text)
+    assert station(text.replace(f";{mark}", ";12.3", 1)).rows  # a single storm
+
+
+def test_a_mark_of_missing_values_is_told_as_such(station):
+    with pytest.raises(InputError, match=r"32767 is outside .*; if it stands for a missing value"):
+        station(meteoswiss("tre200d0", ["-5.0", "32767"], step=24.0))
+
+
+def test_a_file_that_begins_with_its_latest_row_is_told_as_such(station):
+    head, *rows = imis([f"2023-12-01T00:{minute}:00+00:00" for minute in ("00", "30")]).split("\n")
+    with pytest.raises(InputError, match="the latest row comes first: sort the rows by time"):
+        station("\n".join([head, rows[1], rows[0]]))

@@ -2,6 +2,7 @@
 
 import gzip
 import re
+import zipfile
 
 import pandas as pd
 import pytest
@@ -210,3 +211,14 @@ def test_plain_tables_are_not_stations(tmp_path):
         read_station(written(tmp_path, "date,snowfall_m,temperature_c\n2024-01-01,0.1,-3\n"))
         is None
     )
+
+
+@pytest.mark.parametrize(
+    "entry",
+    ["[Content_Types].xml", "xl/workbook.xml"],
+)
+def test_a_workbook_is_told_as_such(tmp_path, entry):
+    with zipfile.ZipFile(tmp_path / "winter.xlsx", "w") as book:
+        book.writestr(entry, "<x/>")
+    with pytest.raises(InputError, match="a workbook of a spreadsheet program; save its sheet as"):
+        read_season(tmp_path / "winter.xlsx")

@@ -1,10 +1,13 @@
 """The only reader of terrain refuses impossible elevations for every caller."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from helpers.raster_files import CELL, SLOPE, grid_text, in_unit, scaled, write_geotiff
 
 from snowshed import InputError
+from snowshed.base.notes import record_notes
 from snowshed.io.raster.raster import Raster
 from snowshed.scene import on_terrain, single_panel, slide_scene
 from snowshed.scene.builders.terrain_checks import check_terrain, read_terrain
@@ -120,3 +123,46 @@ def test_a_text_grid_is_checked_too(tmp_path):
     (tmp_path / "dem.asc").write_text(grid_text(np.where(SLOPE[5, 5] == SLOPE, 0, SLOPE)))
     with pytest.raises(InputError, match=r"dem\.asc: elevations of .* are some missing"):
         read_terrain(tmp_path / "dem.asc")
+
+
+def on_map(system, x, y):
+    return dataclasses.replace(sloping(), east=x, north=y, crs=system)
+
+
+@pytest.mark.parametrize(
+    ("system", "x", "y", "message"),
+    [
+        ("EPSG:3857", 1.09e6, 5.9e6, r"100 m on the ground are 145\.7 m eastwards and 146\.1 m "),
+        ("EPSG:3395", 1.09e6, 5.9e6, r"100 m on the ground are 146\.2 m eastwards"),
+        ("EPSG:32662", 1.0e6, 5.2e6, r"145\.\d m eastwards and 100\.1 m northwards"),
+        ("EPSG:3413", -6.0e6, -1.0e6, "so that slopes, areas and masses would be wrong"),
+    ],
+    ids=["web", "mercator", "plate", "polar"],
+)
+def test_maps_whose_lengths_are_not_those_on_the_ground_are_refused(system, x, y, message):
+    with pytest.raises(InputError, match=message):
+        check_terrain(on_map(system, x, y))
+
+
+@pytest.mark.parametrize(
+    ("system", "x", "y"),
+    [
+        ("EPSG:2056", 2.6e6, 1.2e6),
+        ("EPSG:31287", 3.0e5, 4.0e5),
+        ("EPSG:32632", 8.0e5, 5.2e6),
+        ("EPSG:25833+5941", 1.0e5, 7.0e6),
+        ('LOCAL_CS["site",UNIT["metre",1]]', 0.0, 0.0),
+        ("EPSG:32632", 1e9, 1e9),
+    ],
+    ids=["switzerland", "austria", "utm", "compound", "local", "nowhere"],
+)
+def test_maps_of_surveys_have_no_note_on_their_lengths(system, x, y):
+    with record_notes() as notes:
+        check_terrain(on_map(system, x, y))
+    assert notes == []
+
+
+def test_small_errors_of_a_map_are_noted():
+    with record_notes() as notes:
+        check_terrain(on_map("EPSG:32632", 1.5e6, 5.2e6))
+    assert "100 m on the ground are 101.2 m eastwards" in notes[0]

@@ -31,7 +31,9 @@ def scripts(tmp_path, monkeypatch):
 
 def test_to_json_writes_the_scene_of_the_scripts(scripts, capsys):
     assert main(["lua", "init.lua", "update.lua", "--to-json", "scene.json"]) == 0
-    assert capsys.readouterr().err == "tilt 50\n"
+    printed, *notes = capsys.readouterr().err.splitlines()
+    assert printed == "tilt 50"
+    assert notes and all(note.startswith("note: the slab is 20 mm thick") for note in notes)
     expected = Scene.preset("lab-50").update(
         {
             "dimension": 2,
@@ -41,6 +43,19 @@ def test_to_json_writes_the_scene_of_the_scripts(scripts, capsys):
         }
     )
     assert json.loads((scripts / "scene.json").read_text()) == expected.resolve().data
+
+
+def test_to_json_notes_a_tilt_in_radians(scripts, capsys):
+    (scripts / "radians.lua").write_text("panel { tilt = math.rad(50) }")
+    assert main(["lua", "init.lua", "radians.lua", "--to-json", "scene.json"]) == 0
+    assert "note: /panel/tilt: 0.873 degrees is unusual" in capsys.readouterr().err
+
+
+def test_a_script_that_returns_its_scene_is_refused(scripts, capsys):
+    (scripts / "table.lua").write_text("return { panel = { tilt = 50 } }")
+    assert main(["lua", "init.lua", "table.lua", "--to-json", "scene.json"]) == 2
+    assert "table.lua: the script returns a value, which sets nothing" in capsys.readouterr().err
+    assert not (scripts / "scene.json").exists()
 
 
 def test_a_script_and_its_json_give_the_same_run(scripts, capsys):

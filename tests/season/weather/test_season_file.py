@@ -4,11 +4,13 @@ import dataclasses
 import datetime
 import re
 
+import numpy as np
 import pandas as pd
 import pytest
 
 from snowshed import InputError
 from snowshed.season import read_season
+from snowshed.season.weather.reading import read_record
 
 HEADER = "date,snowfall_m,density_kg_m3,temperature_c"
 
@@ -58,7 +60,7 @@ BAD_ROWS = [
     ("2024-12-02,nan,100,-4", "line 3, column snowfall_m: 'nan' is not a number"),
     ("2024-12-02,1_000,100,-4", "line 3, column snowfall_m: '1_000' is not a number"),
     ("2024-12-02,\u0663,100,-4", "line 3, column snowfall_m: '\u0663' is not a number"),
-    ("9999-12-31T23:59-14:00,0.2,100,-4", "line 3, column date: '9999-.*' is not a date such as"),
+    ("9999-12-31T23:59-14:00,0.2,100,-4", "line 3, column date: '9999-.*' has a UTC offset, but "),
     ("2024-12-02,,100,-4", "line 3, column snowfall_m: empty; give a number"),
     ("2024-12-02,0.2,5000,-4", "line 3, column density_kg_m3: 5000 is outside .* <= 700 kg/m3"),
     ("2024-12-02,0.2,100,inf", "line 3, column temperature_c: 'inf' is not a number"),
@@ -150,3 +152,79 @@ def test_snowfall_in_centimetres_is_refused(tmp_path):
     )
     with pytest.raises(InputError, match=r"half of the snowfalls are 1.5 m and more"):
         read_season(file)
+
+
+def test_days_with_an_offset_stay_on_their_date(tmp_path):
+    rows = read(tmp_path, *(f"2024-12-0{day}T00:00+01:00,0.1,,-4" for day in (1, 2)))
+    assert [row.date for row in rows] == [datetime.datetime(2024, 12, day) for day in (1, 2)]
+
+
+def test_local_days_of_summer_and_winter_stay_on_their_dates():
+    days = pd.date_range("2024-10-26", "2024-10-29", tz="Europe/Zurich")
+    rows = read_season(pd.DataFrame({"snowfall_m": 0.1, "temperature_c": -3.0}, index=days))
+    assert [row.date.day for row in rows] == [26, 27, 28, 29]
+    assert not rows.notes
+
+
+def test_hours_of_summer_time_are_converted_to_standard_time_with_a_note(tmp_path):
+    with pytest.warns(UserWarning, match=r"2 UTC offsets; they are converted to UTC\+1 h"):
+        rows = read(tmp_path, "2024-10-26T06:00+02:00,0.1,,0", "2024-10-27T06:00+01:00,0.1,,0")
+    assert [row.date.hour for row in rows] == [5, 6]
+
+
+def test_offsets_in_some_rows_only_are_refused(tmp_path):
+    with pytest.raises(
+        InputError, match=r"line 3, column date: .* has a UTC offset, but line 2 has"
+    ):
+        read(tmp_path, "2024-12-01,0.1,,-4", "2024-12-02T00:00+01:00,0.1,,-4")
+
+
+def test_a_time_without_a_universal_time_is_refused(tmp_path):
+    rows = ("2024-12-01T00:00+14:00,0.1,,-4", "9999-12-31T23:59-14:00,0.1,,-4")
+    with pytest.raises(InputError, match=r"line 3, column date: .* has no universal time"):
+        read(tmp_path, *rows)
+
+
+def test_adhesion_in_kilopascals_is_noted(tmp_path):
+    header = "date,snowfall_m,temperature_c,adhesion_pa"
+    with pytest.warns(UserWarning, match=r"column adhesion_pa: 1 number beyond the usual"):
+        read(tmp_path, "2024-12-01,0.1,-4,0.08", "2024-12-02,0.1,-4,0", header=header)
+
+
+@pytest.mark.parametrize("mark", [";", "\t", "|"])
+def test_another_separator_is_named(tmp_path, mark):
+    with pytest.raises(InputError, match=r"line 1: its cells are separated by .*by commas"):
+        read(tmp_path, mark.join(["2024-12-01", "0,1", "", "-4"]), header=HEADER.replace(",", mark))
+
+
+def test_rows_from_the_last_to_the_first_are_told_as_such(tmp_path):
+    with pytest.raises(InputError, match=r"the latest row comes first: sort the rows by time"):
+        read(tmp_path, "2024-12-02,0.1,,-4", "2024-12-01,0.1,,-4")
+
+
+def test_a_mark_of_a_missing_value_is_told_as_such(tmp_path):
+    with pytest.raises(InputError, match=r"-999 is outside .*; if it stands for a missing value"):
+        read(tmp_path, "2024-12-01,-999,,-4")
+
+
+def test_the_column_of_rows_cannot_be_chosen(tmp_path):
+    rows = [*read(tmp_path, "2024-12-01,0.1,,-4")]
+    with pytest.raises(InputError, match=r"snow from: depth: allowed with weather files only"):
+        read_record(rows, snow_from="depth")
+
+
+@pytest.mark.parametrize(
+    ("season", "message"),
+    [
+        ((row for row in []), "the season: .*generator.*; needed: a DataFrame"),
+        (np.zeros((3, 3)), "(?s)the season: array.*; needed: a DataFrame"),
+        (
+            pd.DataFrame({"snowfall_m": [0.1]}, index=[["2024-12-01"], [-4.0]]),
+            "its index has 2 levels; needed: one",
+        ),
+    ],
+    ids=["generator", "array", "levels"],
+)
+def test_what_is_no_table_is_refused(season, message):
+    with pytest.raises(InputError, match=message):
+        read_season(season)

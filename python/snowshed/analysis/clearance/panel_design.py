@@ -81,11 +81,18 @@ class UncertainParameter:
                 f"{name}: {low:g} to {high:g} is not allowed; needed: two values, the smaller "
                 f"first, from {smallest:g} to {largest:g}"
             )
-        if self.usual and not all(map(self.is_usual, span)):
-            issue_note(
-                f"{name}: {low:g} to {high:g} is unusual; most values are {self.usual[0]:g} to "
-                f"{self.usual[1]:g}{f' ({self.unit})' if self.unit else ''}, so check the unit"
-            )
+        for note in self.unusual(name, span):
+            issue_note(note)
+
+    def unusual(self, name: str, span: Span) -> list[str]:
+        """Return a note if a range has unusual values."""
+        if not self.usual or all(map(self.is_usual, span)):
+            return []
+        unit = f" ({self.unit})" if self.unit else ""
+        return [
+            f"{name}: {span[0]:g} to {span[1]:g} is unusual; most values are {self.usual[0]:g} to "
+            f"{self.usual[1]:g}{unit}, so check the unit"
+        ]
 
 
 #: The uncertain parameters by name.
@@ -191,6 +198,21 @@ class SnowRanges:
             if name not in UNCERTAIN:
                 raise InputError(f"range of {name!r}; allowed: {', '.join(UNCERTAIN)}")
             UNCERTAIN[name].check(name, (low, high))
+
+    @property
+    def notes(self) -> list[str]:
+        """Notes on unusual values, which results repeat.
+
+        Examples
+        --------
+        >>> SnowRanges({"friction": (0.4, 0.4)}).notes
+        []
+        """
+        return [
+            note
+            for name, span in self.spans.items()
+            for note in UNCERTAIN[name].unusual(name, span)
+        ]
 
     def draws_of(self, winters: int) -> int:
         """Return the number of simulations of each winter.

@@ -88,7 +88,7 @@ def write_report(
         panel_snow=_panel_snow_grid(answers),
         winter_table=_winter_table(answers[0]),
         files=" and ".join(files),
-        notes=notes,
+        notes=data["notes"],
         ranges=HtmlTable(
             ("uncertain parameter", "from", "to"), answer_text.range_rows(ranges), "lrr"
         ),
@@ -105,7 +105,7 @@ def summary(
     return {
         "sentence": answer_text.sentence(answers),
         "warnings": answer_text.warnings(answers),
-        "notes": list(notes),
+        "notes": [*ranges.notes, *notes],
         "coverage": None if record is None else record.coverage,
         "winters_of_the_file": [] if record is None else record.data(),
         "ranges": {name: list(span) for name, span in ranges.spans.items()},

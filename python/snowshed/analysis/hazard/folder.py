@@ -17,7 +17,7 @@ study.toml       the study
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -92,11 +92,12 @@ def write_hazard(
     with Store.open(store) as opened:
         scene = scene_data(opened.runs(study)[0].scene)
         axes = opened.axes(study)
+    ranges = _ends(table, axes)
     facts = {
         **hazard_facts(maps),
-        "ranges": _ends(table, axes),
+        "ranges": ranges,
         "figures": _figures(table),
-        "notes": _notes(maps, scene, table),
+        "notes": [*_notes_of_files(scene, ranges), *_notes(maps, scene, table)],
     }
     write_text(place / "hazard.json", json.dumps(facts, indent=2) + "\n")
     export(store, place / "table.csv", study=study)
@@ -146,6 +147,22 @@ def _page(maps: HazardMaps, scene: Mapping[str, Any], facts: Mapping[str, Any]) 
         failed=maps.failed,
         notes=facts["notes"],
     )
+
+
+def _notes_of_files(scene: Mapping[str, Any], ranges: Collection[str]) -> list[str]:
+    """Return the notes from reading the files of the slides.
+
+    Parameters
+    ----------
+    scene
+        Any of the slides.
+    ranges
+        Paths of the parameters that vary.
+    """
+    notes = str(scene["terrain"].get("notes") or "").splitlines()
+    if notes and any(path.endswith(".thickness") for path in ranges):
+        notes.append("the thickness of the release varies between the runs, whatever its file says")
+    return notes
 
 
 def _notes(maps: HazardMaps, scene: Mapping[str, Any], table: pd.DataFrame) -> list[str]:

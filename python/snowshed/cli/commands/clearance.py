@@ -22,6 +22,7 @@ from snowshed.cli.options.common import (
     resume_option,
     same_version_option,
 )
+from snowshed.cli.options.no_effect import refuse_without_effect
 from snowshed.cli.options.number_texts import named_span, numbers
 from snowshed.cli.options.rows import rows_options
 from snowshed.cli.options.weather import weather_options
@@ -153,6 +154,8 @@ def clearance(
     from snowshed.analysis.clearance.winters import counted_winters
     from snowshed.season.rows import PanelRows
 
+    if _is_example(weather):
+        refuse_without_effect(["snow_from", "temperature"], f"with the word {EXAMPLE}")
     ranges = _ranges(spans, draws, seed)
     designs = [
         PanelDesign(length, angle, PanelRows(rows, pitch))
@@ -254,8 +257,12 @@ def _files(weather: tuple[Path, ...], temperature: Optional[Path]) -> list[str]:
     """Return the weather files; none for the example."""
     from snowshed.season.weather.reading import input_files
 
-    example = [str(file) for file in weather] == [EXAMPLE]
-    return [] if example else input_files(weather, temperature)
+    return [] if _is_example(weather) else input_files(weather, temperature)
+
+
+def _is_example(weather: tuple[Path, ...]) -> bool:
+    """Return whether the weather is the word for synthetic winters."""
+    return [str(file) for file in weather] == [EXAMPLE]
 
 
 def _record(weather: tuple[Path, ...], snow_from: str, temperature: Optional[Path]) -> SeasonRecord:
@@ -263,7 +270,7 @@ def _record(weather: tuple[Path, ...], snow_from: str, temperature: Optional[Pat
     from snowshed.season.weather.reading import read_record
     from snowshed.season.weather.season_record import SeasonRecord
 
-    if [str(file) for file in weather] != [EXAMPLE]:
+    if not _is_example(weather):
         return read_record(weather, snow_from, temperature)
     rows = EXAMPLE_CLIMATE.winters(10, seed=7)
     return SeasonRecord(

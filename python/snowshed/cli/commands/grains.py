@@ -9,6 +9,7 @@ from typing import Any, Optional, TypeVar
 
 import click
 
+from snowshed.base.paths import beside
 from snowshed.cli.commands.grain_images import segment_command, split_labels_option, synthetic
 from snowshed.cli.commands.grains_studies import material, sensitivity
 from snowshed.cli.options.common import PATH, given_values, run_options
@@ -136,16 +137,16 @@ def example(folder: Path, resume: bool, dry_run: bool, quiet: bool) -> None:
     if resume:
         run_scene(ResolvedScene.load(folder / "scene.json"), folder, resume, quiet)
         return
-    beside = folder.with_name(f"{folder.name}-sample")
-    existed = beside.exists()
-    scene = example_grains(beside)
-    labels = beside / LABELS
+    sample = beside(folder, suffix="-sample")
+    existed = sample.exists()
+    scene = example_grains(sample)
+    labels = sample / LABELS
     try:
         run_scene(scene.resolve(), folder, resume, quiet)
     except BaseException:
         if not existed and not (folder / "scene.json").exists():
             labels.unlink()
-            beside.rmdir()
+            sample.rmdir()
         raise
 
 

@@ -12,7 +12,7 @@ import click
 
 from snowshed._core import InputError
 from snowshed.cli.options.common import PATH, run_options
-from snowshed.cli.output.dry_run import print_cost
+from snowshed.cli.output.dry_run import issue_notes, print_cost
 from snowshed.cli.output.terminal import say
 from snowshed.cli.run_scene import run_scene
 from snowshed.io.folders import check_empty
@@ -57,6 +57,9 @@ def lua(
             print_cost(run.scene)
     elif folder is not None:
         _run_all(runs, folder, resume=resume, quiet=quiet)
+    else:
+        for run in runs:
+            issue_notes(run.scene)
 
 
 def _load(init: Path, update: Optional[Path], *, quiet: bool) -> list[LuaRun]:

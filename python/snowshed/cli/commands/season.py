@@ -11,6 +11,7 @@ import click
 
 from snowshed._core import InputError
 from snowshed.base.interrupt import Interrupted
+from snowshed.base.notes import held_notes, record_notes
 from snowshed.cli.exit_codes import Stopped
 from snowshed.cli.options.common import (
     PATH,
@@ -19,6 +20,7 @@ from snowshed.cli.options.common import (
     quiet_option,
     resume_flag,
 )
+from snowshed.cli.options.no_effect import refuse_without_effect
 from snowshed.cli.options.rows import rows_options
 from snowshed.cli.options.scene import (
     in_terms_of_options,
@@ -42,6 +44,8 @@ DEFAULTS = SeasonSettings()
 
 #: Placeholders for values that the season file determines.
 PLACEHOLDERS = {"slab.thickness": 0.1}
+#: Options of a scene that the releases of a season replace.
+OF_SLABS = ("slab__thickness", "slab__layers", "events__count")
 
 SEASON_TABLE = {
     "date": ("date", "{}"),
@@ -197,20 +201,24 @@ def season(
     Example:
       snowshed season winter.csv --dim 2 --height 0.8 --length 2 --tilt 40 --dx 0.03 -o results
     """  # noqa: D301 - click wants the control character
-    settings = SeasonSettings(
-        release_friction,
-        adhesion,
-        catch,
-        new_snow,
-        none_or(settling),
-        none_or(sintering),
-        strength_age,
-        none_or(strength),
-        depth_or_word(cover),
-        melt_factor=melt_factor,
-        thaw=none_or(thaw),
-        rows=PanelRows(rows, pitch),
-    )
+    with record_notes() if dry_run else held_notes():  # the result has these notes
+        settings = SeasonSettings(
+            release_friction,
+            adhesion,
+            catch,
+            new_snow,
+            none_or(settling),
+            none_or(sintering),
+            strength_age,
+            none_or(strength),
+            depth_or_word(cover),
+            melt_factor=melt_factor,
+            thaw=none_or(thaw),
+            rows=PanelRows(rows, pitch),
+        )
+    refuse_without_effect(OF_SLABS, "on a season: the weather defines its slabs")
+    if sintering is None or sintering == "none":
+        refuse_without_effect(["strength_age"], "without --sintering")
     scene = _scene(scene_file, preset, snow_preset, options)
     reading = {"coverage": coverage, "snow_from": snow_from, "temperature": temperature}
     if dry_run:

@@ -15,12 +15,14 @@ from snowshed._core import InputError
 from snowshed.base.extras import require
 from snowshed.base.notes import held_notes, issue_notes_on_failure, record_notes
 from snowshed.cli.commands.slide_ranges import (
+    OF_RANGES,
     RangeOptions,
     range_options,
     run_project_ranges,
     run_ranges,
 )
 from snowshed.cli.options.common import PATH, given_values, run_options
+from snowshed.cli.options.no_effect import refuse_without_effect
 from snowshed.cli.options.number_texts import numbers
 from snowshed.cli.options.settings import settings_options
 from snowshed.cli.options.slide_files import (
@@ -108,6 +110,7 @@ def slide(
         require("rasterio", "terrain", "the format geotiff of maps")
     if example or avaframe is not None:
         files.refuse_terrain_options()
+    _refuse_ignored(files, options)
     with _results_folder(folder, dry_run) as results:
         if avaframe is not None:
             _check_project_files(files, example=example)
@@ -194,6 +197,25 @@ def _run_or_cost_files(
             map_format=options.map_format,
         )
     return None if dry_run else resolved
+
+
+def _refuse_ignored(files: SlideFiles, options: SlideOptions) -> None:
+    """Refuse options that the files and the other options leave without effect."""
+    from snowshed.scene.builders.slides import LAYER_OPTIONS
+
+    if options.example:
+        refuse_without_effect(["thickness"], "with --example")
+    if options.ranges.sample is None:
+        refuse_without_effect(OF_RANGES, "without --range")
+    else:
+        refuse_without_effect(["particles_at"], "with --range")
+    if files.terrain is not None:
+        for part, file in files.layered_files().items():
+            if file is None:
+                layer = LAYER_OPTIONS[part]
+                refuse_without_effect([layer.replace("-", "_")], "without a file of these areas")
+        if files.thickness_raster is None:
+            refuse_without_effect(["thickness_band"], "without --thickness-raster")
 
 
 @contextmanager

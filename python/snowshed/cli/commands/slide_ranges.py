@@ -32,6 +32,10 @@ STUDY = "slides"
 SAMPLINGS = {"latin-hypercube": latin_hypercube, "sobol": sobol}
 #: Settings by their symbols in the literature.
 SYMBOLS = {"mu": "friction", "xi": "turbulence", "E": "bond_modulus"}
+#: Options that concern the runs of ranges only.
+OF_RANGES = (
+    "runs", "sampling", "sample_seed", "reached_above", "pressures", "jobs", "same_version",
+)  # fmt: skip
 #: The thickness of all release areas.
 THICKNESS = "thickness"
 

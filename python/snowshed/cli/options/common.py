@@ -28,7 +28,9 @@ class HomePath(click.Path):
     def convert(
         self, value: Any, param: Optional[click.Parameter], ctx: Optional[click.Context]
     ) -> Any:
-        """Return the path."""
+        """Return the path; an empty one, such as that of an unset variable, is refused."""
+        if not os.fspath(value):
+            self.fail("the path is empty", param, ctx)
         return super().convert(with_home(os.fspath(value)), param, ctx)
 
 

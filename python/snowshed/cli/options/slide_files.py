@@ -11,6 +11,7 @@ import click
 
 from snowshed._core import InputError
 from snowshed.base.notes import issue_note
+from snowshed.base.paths import beside
 from snowshed.cli.options.common import PATH, given_values
 from snowshed.scene.builders.terrain_copy import terrain_copy
 from snowshed.scene.scene import ResolvedScene, Scene
@@ -143,6 +144,16 @@ class SlideFiles:
             for file in (self.terrain, self.hydrograph, *self.area_files().values())
         )
 
+    def layered_files(self) -> dict[str, Optional[Path]]:
+        """Return the files that may have several layers, by their key in `LAYER_OPTIONS`."""
+        return {
+            "release": self.release,
+            "entrainment": self.entrainment,
+            "resistance": self.resistance,
+            "secondary_release": self.secondary_release,
+            "inflow": self.inflow,
+        }
+
     def area_files(self) -> dict[str, Optional[Path]]:
         """Return the files of areas by their key in a scene's terrain."""
         return {
@@ -178,9 +189,9 @@ class SlideFiles:
         if self.has_files() == example:
             raise InputError(INPUTS)
         if example:
-            beside = folder.with_name(f"{folder.name}-terrain")
-            beside.mkdir(parents=True, exist_ok=True)
-            return example_slide(beside).update({"numerics": dict(settings)})
+            terrain = beside(folder, suffix="-terrain")
+            terrain.mkdir(parents=True, exist_ok=True)
+            return example_slide(terrain).update({"numerics": dict(settings)})
         if self.terrain is None or self.area_files()["release"] is None:
             raise InputError("give both --terrain and --release (or --thickness-raster)")
         return slide_scene(

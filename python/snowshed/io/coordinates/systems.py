@@ -8,7 +8,9 @@ the extra snowshed[terrain], which receives plain descriptions only
 from __future__ import annotations
 
 import importlib
+import math
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Optional
 
@@ -21,6 +23,10 @@ from snowshed.io.input_file import read_input
 DEGREES = ("EPSG:4326", "OGC:CRS84")
 OF_ETRS89 = re.compile(r'DATUM\["(ETRS89|ETRF|European_Terrestrial_Reference_System_1989)')
 ALLOWED = "allowed: WKT, a code such as EPSG:31287, a proj string without files"
+#: Semi-major axis, m, and squared eccentricity of the ellipsoid WGS 84. Other ellipsoids of the
+#: Earth give the same scales to a tenth of a per mille.
+EARTH_RADIUS, ECCENTRICITY_SQUARED = 6378137.0, 0.00669438
+SCALE_STEP = 50.0  # m, half the distance over which the scale of a map is measured
 
 
 def read_prj(raster: Path) -> str:
@@ -118,6 +124,51 @@ def is_in_feet(description: str) -> bool:
     return "foot" in str(system.linear_units).lower() or "feet" in str(system.linear_units).lower()
 
 
+def map_scale(description: str, x: float, y: float) -> Optional[tuple[float, float]]:
+    """Return how many metres of the map are one metre on the ground, eastwards and northwards.
+
+    None if the system is unknown, is not one of the Earth, or if the point does not lie on its map.
+
+    Parameters
+    ----------
+    description
+        Coordinate system of a map in metres.
+    x, y
+        A point of the map, m.
+    """
+    rasterio, system = _rasterio(), horizontal_system(description)
+    if rasterio is None or system is None or system.is_geographic:
+        return None
+    step = SCALE_STEP
+    try:
+        warp = importlib.import_module("rasterio.warp")
+        longitudes, latitudes = warp.transform(
+            system, "EPSG:4326", [x - step, x + step, x, x], [y, y, y - step, y + step]
+        )
+    except (rasterio.errors.RasterioError, _cpl_error()):
+        return None
+    points = [*longitudes, *latitudes]
+    if not all(math.isfinite(value) for value in points) or max(map(abs, latitudes)) >= 90.0:
+        return None
+    east = _distance(longitudes[:2], latitudes[:2])
+    north = _distance(longitudes[2:], latitudes[2:])
+    if min(east, north) == 0.0:
+        return None
+    return 2.0 * step / east, 2.0 * step / north
+
+
+def _distance(longitudes: Sequence[float], latitudes: Sequence[float]) -> float:
+    """Return the distance of two near points on the ground, m."""
+    middle = math.radians(sum(latitudes) / 2.0)
+    flattened = 1.0 - ECCENTRICITY_SQUARED * math.sin(middle) ** 2
+    across = EARTH_RADIUS / math.sqrt(flattened) * math.cos(middle)
+    along = EARTH_RADIUS * (1.0 - ECCENTRICITY_SQUARED) / flattened**1.5
+    turn = (longitudes[1] - longitudes[0] + 180.0) % 360.0 - 180.0
+    return math.hypot(
+        across * math.radians(turn), along * math.radians(latitudes[1] - latitudes[0])
+    )
+
+
 def horizontal_system(description: str) -> Optional[Any]:
     """Return a coordinate system without its heights as rasterio's object; see `system_of`."""
     system = system_of(description)
@@ -152,6 +203,12 @@ def _rasterio() -> Optional[Any]:
         return importlib.import_module("rasterio")
     except ImportError:
         return None
+
+
+def _cpl_error() -> type[Exception]:
+    """Return the errors of GDAL and PROJ that rasterio passes on."""
+    error: type[Exception] = importlib.import_module("rasterio._err").CPLE_BaseError
+    return error
 
 
 def _description(system: Any) -> str:

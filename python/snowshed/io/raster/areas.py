@@ -16,13 +16,19 @@ from numpy.typing import ArrayLike
 from snowshed._core import InputError
 from snowshed.base.callers import argument
 from snowshed.base.extras import require
+from snowshed.base.formatting import plural
 from snowshed.base.messages import shortened
 from snowshed.base.notes import InputNote, issue_note
 from snowshed.base.paths import PathLike
 from snowshed.io.coordinates.systems import is_in_degrees
 from snowshed.io.polygons import read_layer
 from snowshed.io.polygons.layer import PolygonLayer
-from snowshed.io.raster.thickness import ThicknessField, thickness_fields, thickness_of
+from snowshed.io.raster.thickness import (
+    ThicknessField,
+    note_replaced_fields,
+    thickness_fields,
+    thickness_of,
+)
 
 Ring = Sequence[Sequence[float]]
 
@@ -76,6 +82,7 @@ def read_areas(
     *,
     option: Optional[str] = None,
     with_thickness: bool = True,
+    replacement: str = "",
 ) -> list[MapArea]:
     """Return the polygons of a file; parts of a feature become areas of their own.
 
@@ -90,6 +97,8 @@ def read_areas(
         ``layer``.
     with_thickness
         Whether the thickness of snow is read; else it is None.
+    replacement
+        Source of the thickness in place of the file, whose own is then None, with a note.
 
     Raises
     ------
@@ -101,7 +110,11 @@ def read_areas(
     """
     path = Path(path)
     features = read_map_layer(path, layer, option=option)
-    fields = thickness_fields(features.fields, str(path)) if with_thickness else []
+    fields: list[ThicknessField] = []
+    if replacement:
+        note_replaced_fields(features.fields, str(path), replacement)
+    elif with_thickness:
+        fields = thickness_fields(features.fields, str(path))
     areas = list(_areas(features, fields, path))
     if not areas:
         raise InputError(f"{path}: holds no polygon")
@@ -148,6 +161,9 @@ def _areas(layer: PolygonLayer, fields: Sequence[ThicknessField], path: Path) ->
     ]
     parts, owners = shapely.get_parts(layer.shapes, return_index=True)
     rings = _rings(parts, shapely)
+    empty = len(layer.shapes) - len({owner for part, owner in enumerate(owners) if rings[part]})
+    if empty:
+        issue_note(f"{path}: {plural(empty, 'feature')} without corners, left out", InputNote)
     for part, owner in enumerate(owners.tolist()):
         if rings[part]:
             outline, *holes = rings[part]

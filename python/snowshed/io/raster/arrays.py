@@ -18,6 +18,10 @@ if TYPE_CHECKING:
 #: Names of the axes of a DataArray to the east and to the north.
 EAST, NORTH = ("x", "east", "easting"), ("y", "north", "northing")
 METRES = ("m", "metre", "metres", "meter", "meters")
+#: Attributes of packed numbers, with the values that change nothing.
+PACKING = {"scale_factor": 1.0, "add_offset": 0.0}
+#: Attributes that hold the number of missing values.
+MISSING = ("_FillValue", "missing_value", "nodata")
 REGULAR = 1e-6  # largest deviation of a distance between coordinates, relative to a cell
 
 
@@ -29,7 +33,8 @@ def raster_of(array: xarray.DataArray) -> Raster:
     Raises
     ------
     InputError
-        If it has other dimensions, or its coordinates are not those of square cells.
+        If it has other dimensions, its coordinates are not those of square cells, or its numbers
+        are packed or in another unit than the metre.
 
     Examples
     --------
@@ -47,6 +52,7 @@ def raster_of(array: xarray.DataArray) -> Raster:
     unit = str(array.attrs.get("units", "m"))
     if unit not in METRES:
         raise InputError(f"terrain: its units are {unit!r}; convert them to metres")
+    _refuse_packed(array)
     squeezed = array.squeeze(drop=True)
     names = [str(name) for name in squeezed.dims]
     east = next((name for name in names if name in EAST), None)
@@ -61,8 +67,26 @@ def raster_of(array: xarray.DataArray) -> Raster:
     cell = _spacing(x, east)
     if abs(_spacing(y, north) - cell) > REGULAR * cell:
         raise InputError("terrain: its cells are not square")
-    heights = np.asarray(ordered, dtype=float)
+    heights = np.array(ordered, dtype=float)
+    for name in MISSING:
+        if name in array.attrs:
+            heights[heights == float(array.attrs[name])] = np.nan
     return Raster(heights, float(x[0]), float(y[0]), cell, name="terrain", crs=_system(array))
+
+
+def _refuse_packed(array: xarray.DataArray) -> None:
+    """Refuse an array whose numbers or coordinates are not metres yet."""
+    for name, neutral in PACKING.items():
+        value = array.attrs.get(name, neutral)
+        if float(value) != neutral:
+            raise InputError(
+                f"terrain: its attribute {name} is {value}; apply it first, as mask_and_scale=True "
+                "does when a file is opened"
+            )
+    for axis, coordinates in array.coords.items():
+        unit = str(coordinates.attrs.get("units", "m"))
+        if str(axis) in (*EAST, *NORTH) and unit not in METRES:
+            raise InputError(f"terrain: the units of {axis} are {unit!r}; convert them to metres")
 
 
 def _spacing(values: Floats, name: str) -> float:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Optional
+from typing import Any, Optional
 
 import numpy as np
 
 from snowshed._core import InputError, read_ascii_grid
 from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats
+from snowshed.base.field_type import shown
 from snowshed.base.notes import InputNote, issue_note
 from snowshed.base.paths import PathLike
 from snowshed.io.atomic import replacing
@@ -55,6 +56,22 @@ class Raster:
     crs: str = ""
     plain: bool = False
     numbers: str = ""
+
+    def __post_init__(self) -> None:
+        """Refuse heights that are no numbers in rows and columns; masked ones become NaN."""
+        heights: Any = self.heights
+        if (
+            not isinstance(heights, np.ndarray)
+            or heights.ndim != 2
+            or heights.dtype.kind not in "iuf"
+        ):
+            raise InputError(
+                f"{self.name}: heights: {shown(heights)}; needed: an array of numbers with rows "
+                "and columns"
+            )
+        if isinstance(heights, np.ma.MaskedArray):
+            masked: Any = heights.astype(np.float64)
+            object.__setattr__(self, "heights", masked.filled(np.nan))
 
     def height_at(self, east: Floats, north: Floats) -> Floats:
         """Return heights at map coordinates, m, interpolated between cell centres (bilinear).

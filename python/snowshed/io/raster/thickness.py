@@ -20,6 +20,7 @@ WITH_UNIT = re.compile(r"(thickness|d0)[\s_.\-]*[(\[]?\s*([a-z]+\d?)\s*[)\]]?", 
 METRES = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001}
 #: Words in names of fields that may mean a thickness.
 ALIKE = ("thick", "depth", "height", "d0", "hoehe", "höhe", "dicke", "mächtig", "epaisseur")
+CUT_NAME = "thickness_"  # of a name with a unit in a shapefile
 BLANK = ("", "none", "nan", "null")
 
 
@@ -111,10 +112,39 @@ def thickness_fields(fields: Sequence[str], file: str) -> list[ThicknessField]:
         if alike:
             issue_note(
                 f"{file}: no field is called thickness or d0; ignored as a thickness: "
-                f"{', '.join(quoted(field) for field in alike[:5])}",
+                f"{', '.join(quoted(field) for field in alike[:5])}{_cut_hint(alike)}",
                 InputNote,
             )
     return candidates
+
+
+def note_replaced_fields(fields: Sequence[str], file: str, replacement: str) -> None:
+    """Issue a note if a file has fields that hold a thickness, which something else replaces.
+
+    Parameters
+    ----------
+    fields
+        Names of the fields of the file.
+    file
+        The file, for the note.
+    replacement
+        Source of the thickness in their place, such as an argument or a raster.
+
+    Examples
+    --------
+    >>> note_replaced_fields(["fid"], "a.shp", "--thickness")
+    """
+    unused = [
+        quoted(field)
+        for field in fields
+        if WITH_UNIT.fullmatch(field.strip()) or any(_is(field, name) for name in NAMES)
+    ]
+    if unused:
+        issue_note(
+            f"{file}: the thickness is that of {replacement}, not of its field "
+            f"{' and '.join(unused)}",
+            InputNote,
+        )
 
 
 def thickness_of(
@@ -136,6 +166,13 @@ def thickness_of(
                 "of the fields"
             )
     return stated[0][1] if stated else None
+
+
+def _cut_hint(fields: Sequence[str]) -> str:
+    """Return a hint if a shapefile has cut the unit off a name."""
+    if CUT_NAME not in fields:
+        return ""
+    return "; a shapefile cuts names after ten characters: call a field in cm d0_cm"
 
 
 def _is(field: str, name: str) -> bool:

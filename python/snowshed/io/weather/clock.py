@@ -33,7 +33,9 @@ def on_one_clock(station: Station, source: str) -> Station:
                 f"{'no' if aware else 'a'} UTC offset, but line {rows[0].line} has "
                 f"{'one' if aware else 'none'}; give all times an offset, or none"
             )
-    if aware:
+    if aware and are_local_days([row.time for row in rows]):
+        rows = [replace_values(row, time=row.time.replace(tzinfo=None)) for row in rows]
+    elif aware:
         offsets = {row.time.utcoffset() or timedelta(0) for row in rows}
         offset = min(offsets) / HOUR
         rows = [_moved(row, min(offsets), source) for row in rows]
@@ -48,6 +50,22 @@ def on_one_clock(station: Station, source: str) -> Station:
     if not aware and step <= 1.0:
         notes += _missing_hour_notes(rows, step)
     return replace(station, rows=rows, utc_offset=offset, notes=notes)
+
+
+def are_local_days(times: Sequence[datetime]) -> bool:
+    """Return whether times with several offsets all are the midnight of a local day.
+
+    Examples
+    --------
+    >>> zones = [timezone(timedelta(hours=hours)) for hours in (2, 1)]
+    >>> times = [datetime(2024, 10, 27, tzinfo=zones[0]), datetime(2024, 10, 28, tzinfo=zones[1])]
+    >>> are_local_days(times), are_local_days(times[:1])
+    (True, False)
+    """
+    offsets = {time.utcoffset() for time in times}
+    return len(offsets) > 1 and all(
+        (time.hour, time.minute, time.second, time.microsecond) == (0, 0, 0, 0) for time in times
+    )
 
 
 def _moved(row: Observation, offset: timedelta, source: str) -> Observation:
@@ -74,11 +92,17 @@ def _check_years(rows: Sequence[Observation], source: str) -> None:
 def _check_order(rows: Sequence[Observation], source: str, step: float) -> None:
     for earlier, later in zip(rows, rows[1:]):
         if later.time <= earlier.time:
+            hour = repeated_hour(earlier.time, later.time, step)
             raise InputError(
                 f"{source}, line {later.line}, column date: {later.time.isoformat(' ')} is not "
                 f"after line {earlier.line}, {earlier.time.isoformat(' ')}"
-                + repeated_hour(earlier.time, later.time, step)
+                f"{backwards(rows[0].time, rows[-1].time) or hour}"
             )
+
+
+def backwards(first: datetime, last: datetime) -> str:
+    """Return a hint if the last row of a file is earlier than its first; otherwise nothing."""
+    return "; the latest row comes first: sort the rows by time" if last < first else ""
 
 
 def repeated_hour(earlier: datetime, later: datetime, step: float) -> str:

@@ -12,7 +12,7 @@ from functools import lru_cache
 from typing import Any, Optional
 
 from snowshed._core import InputError
-from snowshed.base.formatting import number_in
+from snowshed.base.formatting import missing_mark_hint, number_in
 from snowshed.base.messages import quoted
 
 ZERO_CELSIUS = 273.15  # K
@@ -225,9 +225,10 @@ class Quantity:
             return None
         value = self.factor * number + self.offset
         if not (math.isfinite(value) and low <= value <= high):
+            hint = missing_mark_hint(number) or f"; is it really in {self.unit}?"
             raise InputError(
-                f"{where}: {cell} is outside the allowed range ({self._range_text(low, high)}); "
-                f"is it really in {self.unit}?"
+                f"{where}: {cell} is outside the allowed range ({self._range_text(low, high)})"
+                f"{hint}"
             )
         return round(max(value, 0.0) if self.name == "snow_depth" else value, 9)
 
@@ -279,7 +280,7 @@ def time_of(text: str, where: str, *formats: str) -> datetime:
             continue
     if not formats:
         try:
-            return datetime.fromisoformat(_iso(cell))
+            return datetime.fromisoformat(iso_time(cell))
         except ValueError:
             pass
     example = datetime(2024, 12, 31, 6).strftime(formats[0] if formats else "%Y-%m-%dT%H:%M")
@@ -300,7 +301,7 @@ def _pattern(form: str) -> re.Pattern[str]:
     return re.compile(text)
 
 
-def _iso(cell: str) -> str:
+def iso_time(cell: str) -> str:
     """Return a time of ISO 8601 in a form that Python 3.9 can read."""
     if cell[-1:] in ("Z", "z"):
         return cell[:-1] + "+00:00"

@@ -38,6 +38,12 @@ MAX_DENSITY = 600.0
 #: Temperature below which a day is cold, degrees C.
 COLD_DAY_LIMIT = -2.0
 MAX_SHALLOW_DEPTH = 0.15  # m
+#: Amounts that may stand for a missing value, mm, and how often one shows that it does.
+MARKS_OF_GAUGES, MIN_MARKS = (99.9, 999.0, 999.9), 2
+#: Largest new snow of a record that may be in m or inches, m. Boards show at least half a cm.
+MAX_SMALL_NEW_SNOW = 0.005
+#: Largest precipitation of a record that may be in m, mm. Gauges show at least a tenth of a mm.
+MAX_SMALL_PRECIPITATION = 0.1
 
 
 def with_plausible_units(station: Station, source: str) -> Station:
@@ -48,9 +54,16 @@ def with_plausible_units(station: Station, source: str) -> Station:
     InputError
         If a column cannot be in the unit of its format; the message names the likely unit.
     """
-    for check in (_check_depths, _check_new_snow, _check_rain, _check_temperatures, _check_density):
+    for check in (
+        _check_marks,
+        _check_depths,
+        _check_new_snow,
+        _check_rain,
+        _check_temperatures,
+        _check_density,
+    ):
         check(station, source)
-    notes = _shallow_snow_notes(station)
+    notes = [*_shallow_snow_notes(station), *_small_amount_notes(station)]
     return replace(station, notes=[*station.notes, *notes]) if notes else station
 
 
@@ -74,6 +87,18 @@ def _changes(rows: Sequence[Observation]) -> list[tuple[date, float]]:
         for n in range(1, len(days))
         if (days[n] - days[n - 1]).days == 1 and joints.isdisjoint(days[n - 1 : n + 2])
     ]
+
+
+def _check_marks(station: Station, source: str) -> None:
+    """Refuse precipitation that repeats a number that programs write for a missing value."""
+    for mark in MARKS_OF_GAUGES:
+        rows = [row for row in station.rows if row.precipitation == mark]
+        if len(rows) >= MIN_MARKS:
+            raise _refused(
+                station, source, "precipitation",
+                f"{mark:g} mm occurs {len(rows)} times, first in line {rows[0].line}; if it stands "
+                "for a missing value, leave such cells empty",
+            )  # fmt: skip
 
 
 def _check_depths(station: Station, source: str) -> None:
@@ -173,3 +198,21 @@ def _shallow_snow_notes(station: Station) -> list[str]:
         f"{title} never exceeds {100.0 * max(depths):.3g} cm, with parts of a millimetre; check "
         "that it is not in m"
     ]
+
+
+def _small_amount_notes(station: Station) -> list[str]:
+    """Return notes on amounts that are all too small for the unit of their column."""
+    cases = (
+        ("snowfall", MAX_SMALL_NEW_SNOW, 100.0, "cm"),
+        ("precipitation", MAX_SMALL_PRECIPITATION, 1.0, "mm"),
+    )
+    notes = []
+    for name, most, factor, unit in cases:
+        amounts = [getattr(row, name) for row in station.rows if getattr(row, name)]
+        if len(amounts) >= MIN_VALUES and max(amounts) < most:
+            title = station.columns.get(name, WORDS[name])
+            notes.append(
+                f"{title} never exceeds {factor * max(amounts):.3g} {unit}, although "
+                f"{len(amounts)} values are not 0; check that it is not in m"
+            )
+    return notes

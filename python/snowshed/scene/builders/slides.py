@@ -15,10 +15,10 @@ from snowshed._core import InputError
 from snowshed.base.arguments import checked
 from snowshed.base.callers import argument
 from snowshed.base.limits import MAX_TERRAIN_CELLS
-from snowshed.base.notes import issue_note, record_notes
+from snowshed.base.notes import record_notes
 from snowshed.base.paths import PathLike
 from snowshed.io.array_files import array_folder
-from snowshed.io.raster.areas import MapArea, read_areas, ring_area
+from snowshed.io.raster.areas import MapArea, read_areas
 from snowshed.io.raster.arrays import areas_of, raster_of
 from snowshed.io.raster.raster import Raster, is_single, read_raster, write_ascii_grid
 from snowshed.io.raster.release import areas_of_depth, snow_part
@@ -32,6 +32,8 @@ from snowshed.scene.builders.terrain_checks import (
     check_place,
     check_terrain,
     common_system,
+    note_assumed_system,
+    note_small_areas,
     read_terrain,
 )
 from snowshed.scene.components import Events
@@ -148,26 +150,31 @@ def slide_scene(
             depth = read_raster(thickness_raster, thickness_band)
         polygons = _Polygons(layers)
         areas = _release_areas(release, thickness, depth, polygons)
-        eroded = polygons.areas(entrainment, "entrainment")
+        eroded = polygons.areas(
+            entrainment, "entrainment", _replacement(entrained_thickness, "entrained_thickness")
+        )
         held = polygons.areas(resistance, "resistance")
-        waiting = polygons.areas(secondary_release, "secondary_release")
+        waiting = polygons.areas(
+            secondary_release,
+            "secondary_release",
+            _replacement(secondary_thickness, "secondary_thickness"),
+        )
         entered = polygons.areas(inflow, "inflow")
         pulses = _pulses(inflow, hydrograph)
         walls, walls_crs = ([], "") if dams is None else read_dams(Path(dams), terrain)
+        files = [(terrain.name, terrain.crs)]
+        files += [(area.file, area.crs) for area in areas + eroded + held + waiting + entered]
+        if walls:
+            files.append((str(dams), walls_crs))
+        if depth is not None:
+            files.append((depth.name, depth.crs))
+        crs = common_system(files)
+        note_assumed_system(terrain, crs)
+        note_small_areas([*areas, *eroded, *held, *waiting, *entered], terrain)
     check_place(terrain, areas)
     check_apart(areas)
-    files = [(terrain.name, terrain.crs)]
-    files += [(area.file, area.crs) for area in areas + eroded + held + waiting + entered]
-    if walls:
-        files.append((str(dams), walls_crs))
-    if depth is not None:
-        files.append((depth.name, depth.crs))
-    crs = common_system(files)
     most = MAX_THICKNESS if max_thickness is None else max_thickness
     rings = [_snow_area(area, thickness, most, depth) for area in areas]
-    for area in areas:
-        if ring_area(area.outline) < terrain.cell**2:
-            issue_note(f"{area.name}: smaller than a cell of the terrain; are its units right?")
     file = _ascii_grid(Path(terrain.name), terrain, ascii_copy)
     map_file = None if depth is None else str(_thickness_file(depth, ascii_copy).resolve())
     return Scene(
@@ -283,8 +290,11 @@ class _Polygons:
             if part not in LAYER_OPTIONS:
                 raise InputError(f"layers: {part!r} is none of {', '.join(LAYER_OPTIONS)}")
 
-    def areas(self, file: Optional[object], part: str) -> list[MapArea]:
-        """Return the areas of a file; none without a file. Forest has no thickness."""
+    def areas(self, file: Optional[object], part: str, replacement: str = "") -> list[MapArea]:
+        """Return the areas of a file; none without a file. Forest has no thickness.
+
+        `replacement` says what replaces the thickness in the file.
+        """
         if file is None:
             return []
         if not isinstance(file, (str, os.PathLike)):
@@ -294,7 +304,13 @@ class _Polygons:
             self.layers.get(part),
             option=argument(f"layers[{part!r}]", option=LAYER_OPTIONS[part]),
             with_thickness=part not in ("resistance", "inflow"),
+            replacement=replacement,
         )
+
+
+def _replacement(thickness: Optional[float], name: str) -> str:
+    """Return the argument that replaces the thickness in a file; empty without one."""
+    return "" if thickness is None else argument(name)
 
 
 def _pulses(inflow: Optional[object], hydrograph: Optional[PathLike]) -> list[Pulse]:
@@ -313,10 +329,12 @@ def _release_areas(
         if thickness is not None:
             raise InputError("give one of a thickness and a raster of thickness")
         snow_part(depth)  # checks the values of the raster
-        return areas_of_depth(depth) if release is None else polygons.areas(release, "release")
+        if release is None:
+            return areas_of_depth(depth)
+        return polygons.areas(release, "release", depth.name)
     if release is None:
         raise InputError("give the release: polygons or a raster of thickness")
-    return polygons.areas(release, "release")
+    return polygons.areas(release, "release", _replacement(thickness, "thickness"))
 
 
 def _snow_area(

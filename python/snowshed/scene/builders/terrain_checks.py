@@ -13,9 +13,10 @@ from snowshed._core import InputError, impossible_cliff
 from snowshed.base.callers import argument
 from snowshed.base.extras import require
 from snowshed.base.limits import MAX_CELLS_PER_BYTE, MAX_RASTER_CELLS, UNCHECKED_RASTER_CELLS
+from snowshed.base.notes import InputNote, issue_note
 from snowshed.base.paths import PathLike
-from snowshed.io.coordinates.systems import are_same, is_in_degrees, is_in_feet
-from snowshed.io.raster.areas import MapArea
+from snowshed.io.coordinates.systems import are_same, is_in_degrees, is_in_feet, map_scale
+from snowshed.io.raster.areas import MapArea, ring_area
 from snowshed.io.raster.raster import Raster, read_raster
 
 MIN_ELEVATION, MAX_ELEVATION = -430.0, 8850.0  # m, elevations of land on Earth
@@ -25,6 +26,9 @@ MAX_SLOPE = 70.0  # degrees, steepest cliff under a release and beside elevation
 FOOT = 0.3048  # m
 METRE_CELLS = (0.5, 1.0, 2.0, 3.0, 5.0, 10.0, 20.0, 25.0, 30.0)  # m, of usual rasters
 SAMPLE = 1_000_000  # cells for the median slope
+#: Errors of the map's lengths, relative to those on the ground, that are noted and refused. Within
+#: their country, the systems of surveys stay below 0.2 %, and those of continents below 2 %.
+NOTED_SCALE_ERROR, MAX_SCALE_ERROR = 0.01, 0.05
 
 
 def read_terrain(
@@ -79,6 +83,7 @@ def check_terrain(terrain: Raster, max_slope: float = MAX_SLOPE) -> None:
     """
     _check_elevations(terrain)
     _check_cells(terrain)
+    _check_scale(terrain)
     cliff = impossible_cliff(terrain.heights, terrain.east, terrain.north, terrain.cell, max_slope)
     if cliff:
         raise InputError(
@@ -132,6 +137,36 @@ def _check_cells(terrain: Raster) -> None:
                 f"{terrain.name}: cells of {cell:g} are {metres:g} m in feet; reproject the raster "
                 "to metres"
             )
+
+
+def _check_scale(terrain: Raster) -> None:
+    """Refuse maps whose lengths are not those on the ground, such as Mercator's; note small errors.
+
+    Slopes, areas and masses are computed with the lengths of the map.
+    """
+    if not terrain.crs:
+        return
+    rows, columns = terrain.heights.shape
+    x, y = (
+        start + 0.5 * terrain.cell * (count - 1)
+        for start, count in ((terrain.east, columns), (terrain.north, rows))
+    )
+    scale = map_scale(terrain.crs, x, y)
+    if scale is None:
+        return
+    error = max(abs(value - 1.0) for value in scale)
+    if error <= NOTED_SCALE_ERROR:
+        return
+    lengths = (
+        f"100 m on the ground are {100.0 * scale[0]:.4g} m eastwards and {100.0 * scale[1]:.4g} m "
+        f"northwards on its map ({terrain.crs})"
+    )
+    advice = "project it to a system of the place, such as UTM or that of the national survey"
+    if error > MAX_SCALE_ERROR:
+        raise InputError(
+            f"{terrain.name}: {lengths}, so that slopes, areas and masses would be wrong; {advice}"
+        )
+    issue_note(f"{terrain.name}: {lengths}; {advice}", InputNote)
 
 
 def check_place(terrain: Raster, areas: Sequence[MapArea]) -> None:
@@ -191,6 +226,23 @@ def common_system(named: Sequence[tuple[str, str]]) -> str:
                 f"{system} ({file}); reproject them to one"
             )
     return given[0][1] if given else ""
+
+
+def note_assumed_system(terrain: Raster, system: str) -> None:
+    """Issue a note if a terrain has no coordinate system, and takes that of the other files."""
+    if system and not terrain.crs:
+        issue_note(
+            f"{terrain.name}: has no coordinate system; that of the other files ({system}) is "
+            "assumed",
+            InputNote,
+        )
+
+
+def note_small_areas(areas: Sequence[MapArea], terrain: Raster) -> None:
+    """Issue a note on each area that is smaller than a cell of the terrain."""
+    for area in areas:
+        if ring_area(area.outline) < terrain.cell**2:
+            issue_note(f"{area.name}: smaller than a cell of the terrain; are its units right?")
 
 
 def _median_slope(terrain: Raster) -> float:

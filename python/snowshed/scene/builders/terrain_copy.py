@@ -6,10 +6,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from snowshed.base.paths import beside
+
 
 def terrain_copy(folder: Path) -> Path:
     """Return the file of the terrain's copy, beside the results folder."""
-    return folder.with_name(f"{folder.name}-terrain.asc")
+    return beside(folder, suffix="-terrain.asc")
 
 
 @contextmanager

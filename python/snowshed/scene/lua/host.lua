@@ -348,7 +348,9 @@ local function run(texts)
       if not chunk then
         error(message, 0)
       end
-      chunk()
+      if chunk() ~= nil then
+        error("the script returns a value, which sets nothing; call words such as panel { }", 0)
+      end
     end
   end)
   sethook(main, watch_limits(), "", INTERVAL)

@@ -11,7 +11,8 @@ from snowshed.base.field_type import shown
 from snowshed.base.formatting import plural
 from snowshed.base.limits import MAX_WEATHER_GAP_DAYS
 from snowshed.io.csv_table import TableRow
-from snowshed.season.weather.columns import MAX_SNOWFALL
+from snowshed.io.weather.clock import backwards
+from snowshed.season.weather.columns import COLUMN_OF, COLUMNS, MAX_SNOWFALL
 from snowshed.season.weather.extremes import RECORD_DAY, RECORD_WINTER, RECORD_WORDS
 from snowshed.season.weather.row import Weather
 from snowshed.season.weather.source import SnowSource
@@ -32,6 +33,8 @@ TOO_WARM_FOR_SNOW = 10.0
 #: Median temperature of at least so many snowfalls, degrees C, at which most precipitation is rain.
 MILD_FOR_SNOW, MIN_SNOWFALLS = 5.0, 5
 NO_SNOW = "it never snows"
+#: Usual friction of panels, and adhesion to them, Pa. Other numbers than 0 are noted.
+USUAL = {"friction": (0.01, 2.0), "adhesion": (0.2, 1e4)}
 HINT = "is it in cm, mm or inches?"
 
 
@@ -60,6 +63,7 @@ def check_rows(
             raise InputError(
                 f"{row.where}, column date: {later.date.isoformat(' ')} is not after "
                 f"{before.place}, {earlier.date.isoformat(' ')}"
+                f"{backwards(rows[0].date, rows[-1].date)}"
             )
     _check_years(rows, table_rows)
     _check_amounts(rows, table_rows, name)
@@ -85,11 +89,11 @@ def check_given_rows(
 
     Examples
     --------
-    >>> rows = [Weather(2, datetime(2024, 12, day), 0.1, None, -4.0) for day in (2, 1)]
+    >>> rows = [Weather(2, datetime(2024, 12, day), 0.1, None, -4.0) for day in (1, 3, 2)]
     >>> check_given_rows(rows)
     Traceback (most recent call last):
-    snowshed._core.InputError: the season, row 2, column date: 2024-12-01 00:00:00 is not after \
-row 1, 2024-12-02 00:00:00
+    snowshed._core.InputError: the season, row 3, column date: 2024-12-02 00:00:00 is not after \
+row 2, 2024-12-03 00:00:00
     """
     weather: list[Weather] = []
     for number, row in enumerate(rows, 1):
@@ -121,6 +125,28 @@ def warm_snow(rows: Sequence[Weather]) -> list[str]:
         f"{warmest.temperature:g} °C on {warmest.date.date()}, where precipitation is rain; are "
         "temperatures in degrees F, or sums of water in the column of snow?"
     ]
+
+
+def unusual_numbers(rows: Sequence[Weather]) -> list[str]:
+    """Return a note for each column of the panel whose numbers are unusual for its unit.
+
+    Examples
+    --------
+    >>> unusual_numbers([Weather(2, datetime(2024, 12, 1), 0.1, None, -4.0, None, 0.05)])
+    ['column adhesion_pa: 1 number beyond the usual 0.2 to 10000 Pa, such as 0.05; check its unit']
+    """
+    notes = []
+    for field, (low, high) in USUAL.items():
+        column = COLUMN_OF[field]
+        values = [value for row in rows if (value := getattr(row, field))]
+        unusual = [value for value in values if not low <= value <= high]
+        if unusual:
+            usual = f"{low:g} to {high:g} {COLUMNS[column].unit}".rstrip()
+            notes.append(
+                f"column {column}: {plural(len(unusual), 'number')} beyond the usual {usual}, such "
+                f"as {unusual[0]:g}; check its unit"
+            )
+    return notes
 
 
 def _mild_snow(temperatures: Sequence[float]) -> list[str]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.base.formatting import missing_mark_hint
 from snowshed.base.notes import InputNote, issue_note
 
 #: Largest snowfall of a row, which may hold the snow of several days.
@@ -40,17 +41,20 @@ class MeasuredColumn:
         snowshed._core.InputError: tilt: 95 is outside the allowed range (0 <= value <= 90 degrees)
         """
         if not self.low <= value <= self.high:
-            hint = self.hint if value > self.high else ""
+            hint = missing_mark_hint(value) or (self.hint if value > self.high else "")
             raise InputError(
                 f"{where}: {value:g} is outside the allowed range ({self.range_text}){hint}"
             )
-        if self.usual and value and not self.usual[0] <= value <= self.usual[1]:
-            low, high = (f"{limit:g} {self.unit}".rstrip() for limit in self.usual)
-            issue_note(
-                f"{where}: {value:g} {self.unit} is unusual; most values are {low} to {high}, so "
-                "check its unit",
-                InputNote,
-            )
+        for note in self.unusual(value, where):
+            issue_note(note, InputNote)
+
+    def unusual(self, value: float, where: str) -> list[str]:
+        """Return a note if a value is unusual."""
+        if not self.usual or not value or self.usual[0] <= value <= self.usual[1]:
+            return []
+        low, high = (f"{limit:g} {self.unit}".rstrip() for limit in self.usual)
+        number = f"{value:g} {self.unit}".rstrip()
+        return [f"{where}: {number} is unusual; most values are {low} to {high}, so check its unit"]
 
 
 COLUMNS: Mapping[str, MeasuredColumn] = {

@@ -94,7 +94,7 @@ def snow_of_depth(days: StationDays, temperature: Floats) -> DepthSnow:
         snow.notes.append(
             f"{plural(len(numbers), 'reading')} of the snow depth "
             f"({_dates_text(days.dates, numbers)}) went up or down by {MIN_SPIKE:g} m or more and "
-            "was taken back: a spike or a drop-out of the sensor, not snow"
+            "back again: a spike or a drop-out of the sensor, not snow"
         )
     readings = np.flatnonzero(~np.isnan(level))
     if len(readings):

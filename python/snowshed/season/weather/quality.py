@@ -14,13 +14,14 @@ from datetime import date, timedelta
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.io.weather.plain import LIST_SPACING_HOURS
 from snowshed.season.weather.row import Weather
 from snowshed.season.weather.source import SnowSource
 from snowshed.season.weather.winter_years import Calendar, SnowSeason, snow_season_of
 
 COVERAGE = 0.9  # share of the days of the snow season on which snow must have been observed
 MAX_ROW_GAP_DAYS = 3  # days between two rows of a table, covered by the later row
-LIST_SPACING = timedelta(days=1.5)  # smallest median time between rows of a list of snowfalls
+LIST_SPACING = timedelta(hours=LIST_SPACING_HOURS)
 
 
 @dataclass(frozen=True)

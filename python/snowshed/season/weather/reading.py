@@ -22,10 +22,17 @@ from snowshed.base.messages import quoted
 from snowshed.base.notes import InputNote, issue_note
 from snowshed.base.paths import PathLike
 from snowshed.io.csv_table import TableRow, frame_as_text, read_text_table
+from snowshed.io.weather.clock import are_local_days
 from snowshed.io.weather.joined import read_stations
-from snowshed.io.weather.observation import Station
+from snowshed.io.weather.observation import Station, iso_time
 from snowshed.io.weather.recognise import read_station
-from snowshed.season.weather.checks import NO_SNOW, check_given_rows, check_rows, warm_snow
+from snowshed.season.weather.checks import (
+    NO_SNOW,
+    check_given_rows,
+    check_rows,
+    unusual_numbers,
+    warm_snow,
+)
 from snowshed.season.weather.columns import ALLOWED, COLUMNS, MeasuredColumn
 from snowshed.season.weather.observed import record_of
 from snowshed.season.weather.row import Weather
@@ -117,6 +124,8 @@ def read_record(
         allowed = ", ".join((AUTO, *CHOICES))
         raise InputError(f"snow from: {quoted(snow_from)}; allowed: {allowed}")
     files = weather_files(season)
+    if snow_from != AUTO and not files:
+        raise InputError(f"snow from: {snow_from}: allowed with weather files only, not with rows")
     if temperature is not None and not files:
         raise InputError(
             "a file of temperatures is allowed with weather files only, not with a table"
@@ -138,16 +147,19 @@ def read_record(
         if not season:
             raise InputError("the season: no rows")
         rows = check_given_rows(season)
-        return SeasonRecord(rows, warm_snow(rows))
+        return SeasonRecord(rows, [*unusual_numbers(rows), *warm_snow(rows)])
     else:
         table, name = frame_as_text(season, "the season", index="date"), "the season"
         _check_columns(table.columns, name)
         _check_units(season.attrs.get("units", {}))
     if snow_from != AUTO:
         raise InputError(f"{name}: its snow is that of its column snowfall_m, not {snow_from}")
-    rows = [_weather(row) for row in table.rows]
+    dates, notes = _on_one_clock(
+        [_date(row.cells["date"], f"{row.where}, column date") for row in table.rows], table.rows
+    )
+    rows = [_weather(row, date) for row, date in zip(table.rows, dates)]
     check_rows(rows, table.rows, name)
-    return SeasonRecord(rows, warm_snow(rows))
+    return SeasonRecord(rows, [*notes, *unusual_numbers(rows), *warm_snow(rows)])
 
 
 def weather_files(season: Season) -> list[Path]:
@@ -197,14 +209,14 @@ def _check_units(units: Mapping[str, str]) -> None:
             )
 
 
-def _weather(row: TableRow) -> Weather:
+def _weather(row: TableRow, date: datetime) -> Weather:
     number = {
         name: _number(row.cells.get(name, ""), column, f"{row.where}, column {name}")
         for name, column in COLUMNS.items()
     }
     return Weather(
         row.number,
-        _date(row.cells["date"], f"{row.where}, column date"),
+        date,
         number["snowfall_m"] or 0.0,
         number["density_kg_m3"],
         number["temperature_c"] or 0.0,
@@ -228,13 +240,51 @@ def _number(text: str, column: MeasuredColumn, where: str) -> Optional[float]:
 
 
 def _date(text: str, where: str) -> datetime:
-    """Read a date or a time; one with an offset is turned into universal time."""
+    """Read a date or a time, which keeps its offset from universal time."""
     try:
-        date = datetime.fromisoformat(text.replace("Z", "+00:00"))
-        if date.tzinfo is not None:
-            date = date.astimezone(timezone.utc).replace(tzinfo=None)
-    except (ValueError, OverflowError):
+        return datetime.fromisoformat(iso_time(text))
+    except ValueError:
         raise InputError(
             f"{where}: {quoted(text)} is not a date such as 2024-12-31 or 2024-12-31T18:00"
         ) from None
-    return date
+
+
+def _on_one_clock(
+    times: Sequence[datetime], rows: Sequence[TableRow]
+) -> tuple[list[datetime], list[str]]:
+    """Return times on the clock of the smallest offset, which is standard time, and notes.
+
+    Raises
+    ------
+    InputError
+        If only some times have offsets.
+    """
+    offsets = [time.utcoffset() for time in times]
+    for offset, row in zip(offsets, rows):
+        if (offset is None) != (offsets[0] is None):
+            raise InputError(
+                f"{row.where}, column date: {quoted(row.cells['date'])} has "
+                f"{'no' if offset is None else 'a'} UTC offset, but {rows[0].place} has "
+                f"{'none' if offsets[0] is None else 'one'}; give all times an offset, or none"
+            )
+    known = {offset for offset in offsets if offset is not None}
+    if not known:
+        return [*times], []
+    if are_local_days(times):
+        return [time.replace(tzinfo=None) for time in times], []
+    standard = timezone(min(known))
+    moved = []
+    for time, row in zip(times, rows):
+        try:
+            moved.append(time.astimezone(standard).replace(tzinfo=None))
+        except OverflowError:
+            raise InputError(
+                f"{row.where}, column date: {quoted(row.cells['date'])} has no universal time"
+            ) from None
+    if len(known) == 1:
+        return moved, []
+    hours = min(known).total_seconds() / 3600.0
+    return moved, [
+        f"its times have {len(known)} UTC offsets; they are converted to UTC{hours:+g} h, which "
+        "also defines the days"
+    ]
