@@ -105,6 +105,24 @@ void detrain(const Model& model, double area, double dt, double speed, std::size
   mass -= taken;
 }
 
+/// Improved mode: adds snow that forest has taken from a particle to the ground.
+void add_detrained_ground(const Model& model, State& state, const Workspace& work, std::size_t i,
+                          double mass) {
+  if (!state.ground || model.compatible() || !model.settings.ground_gains_detrained) return;
+  const double cell = model.terrain.cell();
+  state.ground->add_around(work.cell_positions.at(i),
+                           mass / (model.settings.density * cell * cell), false);
+}
+
+/// Improved mode: takes the entrained snow from the ground, where it lay.
+void take_entrained_ground(const Model& model, State& state, std::size_t node, double mass) {
+  if (!state.ground || model.compatible() || !model.settings.ground_loses_entrained) return;
+  const double cell = model.terrain.cell();
+  const int columns = model.terrain.columns();
+  state.ground->add(int(node) % columns, int(node) / columns,
+                    -mass / (model.settings.entrained_density * cell * cell));
+}
+
 /// Applies entrainment, and detrainment and resistance in forest.
 void apply_areas(const Model& model, State& state, Workspace& work) {
   View v = view_of(model, state, work);
@@ -127,13 +145,17 @@ void apply_areas(const Model& model, State& state, Workspace& work) {
       const double share = before / p.mass[i];
       for (double* load : {v.ax, v.ay, v.az, v.coulomb_deceleration, v.drag}) load[i] *= share;
     }
-    if (!work.detrained.empty()) state.balance.detrained += work.detrained[i];
+    if (work.detrained.empty() || work.detrained[i] == 0) continue;
+    state.balance.detrained += work.detrained[i];
+    add_detrained_ground(model, state, work, i, work.detrained[i]);
   }
   for (std::size_t i = 0; i < work.entrained.size(); ++i) {
     if (work.entrained[i] == 0) continue;
     const std::size_t node = nearest_node(model.terrain, work.cell_positions.at(i));
     double& rest = state.erodible[node];
-    rest = std::max(0.0, rest - work.entrained[i] / model.terrain.nodes()[node].area);
+    rest = std::max(
+        0.0, rest - work.entrained[i] / present_terrain(model, state).nodes()[node].area);
+    take_entrained_ground(model, state, node, work.entrained[i]);
     state.balance.entrained += work.entrained[i];
   }
 }
@@ -188,7 +210,7 @@ void apply_neighbours(const Model& model, State& state, Workspace& work) {
   if (model.thins_bonds()) weaken_thinned(state, work);
 }
 
-void mark_detrained(State& state, Workspace& work) {
+void mark_detrained(const Model& model, State& state, Workspace& work) {
   if (work.gone.empty() || !std::memchr(work.gone.data(), 1, work.gone.size())) return;
   const Particles& p = state.particles;
   for (std::size_t i = 0; i < work.gone.size(); ++i) {
@@ -196,8 +218,9 @@ void mark_detrained(State& state, Workspace& work) {
       work.gone[i] = 0;
       continue;
     }
-    work.removed[i] = 1;
+    work.removed[i] = left_terrain;
     state.balance.detrained += p.mass[i];
+    add_detrained_ground(model, state, work, i, p.mass[i]);
     const double square = p.ux[i] * p.ux[i] + p.uy[i] * p.uy[i] + p.uz[i] * p.uz[i];
     state.kinetic_energy -= 0.5 * p.mass[i] * square;
   }

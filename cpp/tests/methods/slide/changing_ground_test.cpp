@@ -1,0 +1,186 @@
+#include "snowshed/methods/slide/changing_ground.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "io/temporary_folder.hpp"
+#include "methods/slide/slide_testing.hpp"
+
+namespace snowshed::methods::slide {
+namespace {
+
+/// A slope of 35 degrees that runs out onto level ground.
+geometry::HeightField run_out() {
+  const double slope = std::tan(radians(35));
+  return geometry::terrain_of(80, 30, 2, [=](double x, double) {
+    if (x > 70) return 0.0;
+    if (x < 50) return slope * (60 - x);
+    return slope * (70 - x) * (70 - x) / 40;
+  });
+}
+
+/// A slide that erodes snow, passes forest and stops, with all changes of the ground.
+Options with_all_changes(Mode mode) {
+  Options o = slide_on(run_out(), rectangle(10.3, 18.3, 34.3, 40.3));
+  o.areas.entrainment = {rectangle(38, 10, 50, 48, 0.2)};
+  o.areas.resistance = {rectangle(56, 10, 64, 48)};
+  Settings& s = o.settings;
+  s.mode = mode;
+  s.explicit_friction = mode == Mode::compatible;
+  s.resistance = 0.01;
+  s.detrainment = 40;
+  s.friction = 0.4;
+  s.ground_gains_stopped = s.ground_gains_detrained = s.ground_loses_entrained = true;
+  s.ground_min_change = mode == Mode::compatible ? 0 : 0.05;
+  s.ground_rest_time = mode == Mode::compatible ? 1 : 0.2;
+  return o;
+}
+
+void run_to_rest(Solver& slide, int max_steps = 6000) {
+  for (int i = 0; i < max_steps && !*slide.at_rest() && slide.size() > 0; ++i) slide.step();
+}
+
+double energy_of(const Solver& slide, const std::string& name) {
+  for (const auto& [key, joules] : capability<KeepsEnergy>(slide)->energies())
+    if (key == name) return joules;
+  return std::nan("");
+}
+
+/// The volume that the ground must gain by the masses of the balance, m3.
+double volume_of(const MassBalance& m, const Settings& s) {
+  return (m.stopped + m.detrained) / s.density - m.entrained / s.entrained_density;
+}
+
+TEST(ChangingGround, TheGroundGainsTheVolumeOfTheSnow) {
+  const Options o = with_all_changes(Mode::improved);
+  const auto slide = released_slide(o);
+  run_to_rest(*slide);
+  const MassBalance& m = slide->mass_balance();
+  EXPECT_GT(m.stopped, 0.2 * m.released);
+  EXPECT_GT(m.detrained, 0.01 * m.released);
+  EXPECT_GT(m.entrained, 0.01 * m.released);
+  const double gained = slide->ground()->volume(), whole = m.released / o.settings.density;
+  EXPECT_NEAR((gained - volume_of(m, o.settings)) / whole, 0, 1e-12);
+  EXPECT_NEAR((total_mass(*slide) + m.stopped + m.detrained + m.left_terrain - m.entrained) /
+                  m.released,
+              1, 1e-12);
+}
+
+TEST(ChangingGround, ErosionLowersTheGroundByNoMoreThanTheErodibleSnow) {
+  Options o = with_all_changes(Mode::improved);
+  o.settings.ground_gains_stopped = o.settings.ground_gains_detrained = false;
+  o.settings.erosion_energy = 100;
+  const auto slide = released_slide(o);
+  step(*slide, 600);
+  double deepest = 0;
+  for (const double rise : slide->ground()->change()) {
+    EXPECT_LE(rise, 0);
+    deepest = std::max(deepest, -rise);
+  }
+  EXPECT_GT(deepest, 0.1);
+  // Thickness normal to the ground; each particle of a step sees the snow before the step.
+  EXPECT_LT(deepest, 1.1 * 0.2 / std::cos(radians(35)));
+}
+
+TEST(ChangingGround, SnowRestsForTheGivenTimeBeforeItIsGround) {
+  Options o = slide_on(geometry::terrain_of(40, 40, 2, [](double, double) { return 0.0; }),
+                       rectangle(30.3, 30.3, 50.3, 50.3, 0.05));
+  o.settings.bonds = false;
+  o.settings.friction = 1;
+  o.settings.ground_gains_stopped = true;
+  o.settings.ground_rest_time = 0.5;
+  o.settings.ground_min_change = 0.01;
+  const auto slide = released_slide(o);
+  step(*slide, 50);
+  EXPECT_EQ(slide->mass_balance().stopped, 0);
+  slide->step();
+  EXPECT_GT(slide->mass_balance().stopped, 0.5 * slide->mass_balance().released);
+  const std::vector<double> change = slide->ground()->change();
+  EXPECT_NEAR(change[20 * 40 + 20], 0.05, 0.01);
+  EXPECT_EQ(change[0], 0);
+}
+
+TEST(ChangingGround, SnowThatIsBondedToMovingSnowIsNoGround) {
+  Options o = with_all_changes(Mode::improved);
+  o.settings.max_strain = 10;  // no bond breaks
+  o.settings.bond_modulus = 5000;
+  o.settings.ground_rest_time = 0;
+  const auto slide = released_slide(o);
+  for (int i = 0; i < 3000 && !*slide->at_rest(); ++i) {
+    slide->step();
+    const std::int64_t bonds = std::int64_t(slide->bonds().size());
+    ASSERT_EQ(bonds + slide->bonds_in_ground(), slide->bonds_made()) << i;
+  }
+}
+
+TEST(ChangingGround, TheEnergyBalanceCloses) {
+  Options o = with_all_changes(Mode::improved);
+  o.energy = true;
+  const auto slide = released_slide(o);
+  const double before = energy_of(*slide, "potential_j");
+  run_to_rest(*slide);
+  EXPECT_NE(energy_of(*slide, "ground_j"), 0);
+  EXPECT_LT(std::abs(energy_of(*slide, "residual_j")),
+            0.02 * (before - energy_of(*slide, "potential_j")));
+}
+
+TEST(ChangingGround, ThreadsDoNotChangeTheResult) {
+  for (const Mode mode : {Mode::improved, Mode::compatible}) {
+    Options o = with_all_changes(mode);
+    o.settings.layer_thickness = 0.05;  // enough particles for several threads
+    const auto one = released_slide(o);
+    o.settings.threads = 4;
+    const auto four = released_slide(o);
+    for (Solver* slide : {one.get(), four.get()}) step(*slide, 900);
+    EXPECT_EQ(one->state().positions, four->state().positions);
+    EXPECT_EQ(one->ground()->change(), four->ground()->change());
+    EXPECT_GT(one->mass_balance().entrained, 0);
+  }
+}
+
+class ChangingGroundCheckpoint : public io::TemporaryFolder {};
+
+TEST_F(ChangingGroundCheckpoint, AResumedSlideHasTheSameBits) {
+  for (const Mode mode : {Mode::improved, Mode::compatible}) {
+    Options o = with_all_changes(mode);
+    o.energy = true;
+    const auto slide = released_slide(o);
+    step(*slide, 1200);
+    EXPECT_GT(slide->mass_balance().stopped, 0) << int(mode);
+    const auto resumed = resumed_slide(o, *slide, path("state"));
+    for (Solver* each : {slide.get(), resumed.get()}) step(*each, 300);
+    EXPECT_EQ(resumed->state().positions, slide->state().positions);
+    EXPECT_EQ(resumed->ground()->change(), slide->ground()->change());
+    EXPECT_EQ(resumed->ground()->rise, slide->ground()->rise);
+    EXPECT_EQ(resumed->ground()->stopped, slide->ground()->stopped);
+    EXPECT_EQ(resumed->mass_balance().stopped, slide->mass_balance().stopped);
+    EXPECT_EQ(resumed->bonds_in_ground(), slide->bonds_in_ground());
+    EXPECT_EQ(energy_of(*resumed, "ground_j"), energy_of(*slide, "ground_j"));
+  }
+}
+
+TEST(ChangingGround, ADepositFillsADam) {
+  // The crown stays where it is, so that the height above the ground falls by the deposit.
+  Options o = with_all_changes(Mode::improved);
+  o.areas.entrainment.clear();
+  o.areas.resistance.clear();
+  o.settings.ground_gains_detrained = o.settings.ground_loses_entrained = false;
+  o.settings.bonds = false;
+  o.settings.friction = 0.2;
+  o.areas.dams = {{"dam", {{74, 2, 0.8}, {74, 56, 0.8}}, 90, 0}};
+  const auto filled = released_slide(o);
+  o.settings.ground_gains_stopped = false;
+  const auto empty = released_slide(o);
+  for (Solver* slide : {filled.get(), empty.get()}) run_to_rest(*slide);
+  EXPECT_GT(filled->mass_balance().stopped, 0);
+  EXPECT_GT(filled->dams()[0].passed, 0);
+}
+
+TEST(ChangingGround, WithoutChangesThereIsNoGroundOfItsOwn) {
+  const auto slide = released_slide(slide_on(inclined(36), rectangle(20.3, 18.3, 40.3, 40.3)));
+  EXPECT_EQ(slide->ground(), nullptr);
+}
+
+}  // namespace
+}  // namespace snowshed::methods::slide
