@@ -126,8 +126,7 @@ void split_heavy(const Model& model, State& state, Workspace& work) {
         terrain.cell_position(x.x() - along.x(), x.y() - along.y());
     const geometry::CellPosition ahead =
         terrain.cell_position(x.x() + along.x(), x.y() + along.y());
-    if (!behind.inside() || !ahead.inside() || !terrain.known(behind) ||
-        !terrain.known(ahead))
+    if (!behind.inside() || !ahead.inside() || !terrain.known(behind) || !terrain.known(ahead))
       continue;
     p.for_each_array([i](const char*, auto& array) { array.push_back(array[i]); });
     p.mass[i] = p.mass.back() = 0.5 * p.mass[i];

@@ -49,8 +49,8 @@ struct StepChanges {
   NodeRectangle nodes;
 };
 
-/// Compatible mode: marks the particles that this step has stopped in `work.removed`, and puts their
-/// mass to the nodes around the positions that they had before the step.
+/// Compatible mode: marks the particles that this step has stopped in `work.removed`, and puts
+/// their mass to the nodes around the positions that they had before the step.
 void mark_stopped(const Model&, const State&, Workspace&);
 
 /// Compatible mode, at the end of a step: finds the changes of the step. They wait if the change at

@@ -100,13 +100,20 @@ double pressure_energy(const Model& model, const State& state, const Workspace& 
 }  // namespace
 
 NamedEnergies named_energies(const EnergyBalance& e) {
-  return {{"kinetic_j", e.kinetic},     {"potential_j", e.potential},
-          {"bonds_j", e.bonds},         {"coulomb_j", e.coulomb},
-          {"turbulent_j", e.turbulent}, {"resistance_j", e.resistance},
-          {"viscosity_j", e.viscosity}, {"entrainment_j", e.entrainment},
-          {"broken_bonds_j", e.broken}, {"detrainment_j", e.detrainment},
-          {"dams_j", e.dams},           {"ground_j", e.ground},
-          {"left_terrain_j", e.left_terrain}, {"added_j", e.added},
+  return {{"kinetic_j", e.kinetic},
+          {"potential_j", e.potential},
+          {"bonds_j", e.bonds},
+          {"coulomb_j", e.coulomb},
+          {"turbulent_j", e.turbulent},
+          {"resistance_j", e.resistance},
+          {"viscosity_j", e.viscosity},
+          {"entrainment_j", e.entrainment},
+          {"broken_bonds_j", e.broken},
+          {"detrainment_j", e.detrainment},
+          {"dams_j", e.dams},
+          {"ground_j", e.ground},
+          {"left_terrain_j", e.left_terrain},
+          {"added_j", e.added},
           {"residual_j", e.residual()}};
 }
 

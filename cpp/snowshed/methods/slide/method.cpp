@@ -35,11 +35,13 @@ void check_ground(const Settings& s, const TerrainSpec& terrain) {
   };
   if (s.ground_gains_detrained && !(s.detrainment > 0 && !terrain.resistance.empty()) &&
       s.mode == Mode::improved)
-    refuse("ground_gains_detrained", "forest takes no snow: give areas of /terrain/resistance and "
-                                     "/numerics/detrainment above 0");
+    refuse("ground_gains_detrained",
+           "forest takes no snow: give areas of /terrain/resistance and "
+           "/numerics/detrainment above 0");
   if (s.ground_loses_entrained && terrain.entrainment.empty() && s.mode == Mode::improved)
-    refuse("ground_loses_entrained", "the slide takes up no snow: give areas of "
-                                     "/terrain/entrainment");
+    refuse("ground_loses_entrained",
+           "the slide takes up no snow: give areas of "
+           "/terrain/entrainment");
   if (s.mode == Mode::improved || !s.changes_ground()) return;
   const char* key = s.ground_gains_stopped     ? "ground_gains_stopped"
                     : s.ground_gains_detrained ? "ground_gains_detrained"

@@ -111,8 +111,8 @@ void SolverImpl::append(State& state, const ParticleBatch& batch, const std::vec
       throw SimulationError("a particle at (" + std::to_string(x.x()) + ", " +
                             std::to_string(x.y()) + ") m lies outside of the terrain");
     const std::size_t i = old + k;
-    const Vec3 u =
-        batch.fall_speed > 0 ? Vec3(batch.fall_speed * fall_line(terrain, position)) : batch.velocity;
+    const Vec3 u = batch.fall_speed > 0 ? Vec3(batch.fall_speed * fall_line(terrain, position))
+                                        : batch.velocity;
     p.x[i] = x.x();
     p.y[i] = x.y();
     p.z[i] = terrain.height(position);
@@ -297,7 +297,8 @@ void SolverImpl::sort_if_due() {
 /// mode snow that stops becomes ground where it was.
 void SolverImpl::keep_positions() {
   const Particles& p = state_.particles;
-  for (std::size_t i = 0; i < p.size(); ++i) workspace_.positions_before[i] = {p.x[i], p.y[i], p.z[i]};
+  for (std::size_t i = 0; i < p.size(); ++i)
+    workspace_.positions_before[i] = {p.x[i], p.y[i], p.z[i]};
 }
 
 void SolverImpl::choose_threads() {

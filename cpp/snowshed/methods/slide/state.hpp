@@ -82,7 +82,7 @@ struct State {
   std::vector<double> over_dams;  // kg that passed each dam
   // Whether forest stands at each node; empty without detrainment, when forest is never destroyed.
   std::vector<std::uint8_t> forest;
-  std::vector<double> erodible;  // kg/m2 of snow left to entrain at each node; may be empty
+  std::vector<double> erodible;          // kg/m2 of snow left to entrain at each node; may be empty
   std::optional<ChangingGround> ground;  // none if the ground does not change
   std::int64_t bonds_in_ground = 0;      // of snow that became ground
   MassBalance balance;

@@ -62,9 +62,9 @@ TEST(ChangingGround, TheGroundGainsTheVolumeOfTheSnow) {
   EXPECT_GT(m.entrained, 0.01 * m.released);
   const double gained = slide->ground()->volume(), whole = m.released / o.settings.density;
   EXPECT_NEAR((gained - volume_of(m, o.settings)) / whole, 0, 1e-12);
-  EXPECT_NEAR((total_mass(*slide) + m.stopped + m.detrained + m.left_terrain - m.entrained) /
-                  m.released,
-              1, 1e-12);
+  EXPECT_NEAR(
+      (total_mass(*slide) + m.stopped + m.detrained + m.left_terrain - m.entrained) / m.released, 1,
+      1e-12);
 }
 
 TEST(ChangingGround, ErosionLowersTheGroundByNoMoreThanTheErodibleSnow) {
