@@ -144,9 +144,10 @@ def read_maps(folder: Path) -> xarray.Dataset:
     -------
     xarray.Dataset
         ``peak_thickness``, ``peak_speed``, ``peak_pressure``, ``thickness`` and ``speed``, and if
-        the ground adapts to the snow ``ground_change`` and ``changed_terrain``, with dimensions y and x: map coordinates of the nodes, m. The attribute ``crs`` is the coordinate
-        system, if it is known; the coordinate ``spatial_ref`` describes it as the CF conventions
-        (and rioxarray) have it.
+        the ground adapts to the snow ``ground_change`` and ``changed_terrain``, with dimensions y
+        and x: map coordinates of the nodes, m. The attribute ``crs`` is the coordinate system, if
+        it is known; the coordinate ``spatial_ref`` describes it as the CF conventions (and
+        rioxarray) have it.
 
     Raises
     ------
