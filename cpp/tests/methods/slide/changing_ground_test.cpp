@@ -11,7 +11,7 @@ namespace snowshed::methods::slide {
 namespace {
 
 /// A slope of 35 degrees that runs out onto level ground.
-geometry::HeightField run_out() {
+geometry::HeightField slope_to_level() {
   const double slope = std::tan(radians(35));
   return geometry::terrain_of(80, 30, 2, [=](double x, double) {
     if (x > 70) return 0.0;
@@ -22,7 +22,7 @@ geometry::HeightField run_out() {
 
 /// A slide that erodes snow, passes forest and stops, with all changes of the ground.
 Options with_all_changes(Mode mode) {
-  Options o = slide_on(run_out(), rectangle(10.3, 18.3, 34.3, 40.3));
+  Options o = slide_on(slope_to_level(), rectangle(10.3, 18.3, 34.3, 40.3));
   o.areas.entrainment = {rectangle(38, 10, 50, 48, 0.2)};
   o.areas.resistance = {rectangle(56, 10, 64, 48)};
   Settings& s = o.settings;
@@ -37,31 +37,31 @@ Options with_all_changes(Mode mode) {
   return o;
 }
 
-void run_to_rest(Solver& slide, int max_steps = 6000) {
+void run_to_the_end(Solver& slide, int max_steps = 6000) {
   for (int i = 0; i < max_steps && !*slide.at_rest() && slide.size() > 0; ++i) slide.step();
 }
 
-double energy_of(const Solver& slide, const std::string& name) {
+double joules_of(const Solver& slide, const std::string& name) {
   for (const auto& [key, joules] : capability<KeepsEnergy>(slide)->energies())
     if (key == name) return joules;
   return std::nan("");
 }
 
 /// The volume that the ground must gain by the masses of the balance, m3.
-double volume_of(const MassBalance& m, const Settings& s) {
+double volume_of_masses(const MassBalance& m, const Settings& s) {
   return (m.stopped + m.detrained) / s.density - m.entrained / s.entrained_density;
 }
 
 TEST(ChangingGround, TheGroundGainsTheVolumeOfTheSnow) {
   const Options o = with_all_changes(Mode::improved);
   const auto slide = released_slide(o);
-  run_to_rest(*slide);
+  run_to_the_end(*slide);
   const MassBalance& m = slide->mass_balance();
   EXPECT_GT(m.stopped, 0.2 * m.released);
   EXPECT_GT(m.detrained, 0.01 * m.released);
   EXPECT_GT(m.entrained, 0.01 * m.released);
   const double gained = slide->ground()->volume(), whole = m.released / o.settings.density;
-  EXPECT_NEAR((gained - volume_of(m, o.settings)) / whole, 0, 1e-12);
+  EXPECT_NEAR((gained - volume_of_masses(m, o.settings)) / whole, 0, 1e-12);
   EXPECT_NEAR(
       (total_mass(*slide) + m.stopped + m.detrained + m.left_terrain - m.entrained) / m.released, 1,
       1e-12);
@@ -118,11 +118,11 @@ TEST(ChangingGround, TheEnergyBalanceCloses) {
   Options o = with_all_changes(Mode::improved);
   o.energy = true;
   const auto slide = released_slide(o);
-  const double before = energy_of(*slide, "potential_j");
-  run_to_rest(*slide);
-  EXPECT_NE(energy_of(*slide, "ground_j"), 0);
-  EXPECT_LT(std::abs(energy_of(*slide, "residual_j")),
-            0.02 * (before - energy_of(*slide, "potential_j")));
+  const double before = joules_of(*slide, "potential_j");
+  run_to_the_end(*slide);
+  EXPECT_NE(joules_of(*slide, "ground_j"), 0);
+  EXPECT_LT(std::abs(joules_of(*slide, "residual_j")),
+            0.02 * (before - joules_of(*slide, "potential_j")));
 }
 
 TEST(ChangingGround, ThreadsDoNotChangeTheResult) {
@@ -156,7 +156,7 @@ TEST_F(ChangingGroundCheckpoint, AResumedSlideHasTheSameBits) {
     EXPECT_EQ(resumed->ground()->stopped, slide->ground()->stopped);
     EXPECT_EQ(resumed->mass_balance().stopped, slide->mass_balance().stopped);
     EXPECT_EQ(resumed->bonds_in_ground(), slide->bonds_in_ground());
-    EXPECT_EQ(energy_of(*resumed, "ground_j"), energy_of(*slide, "ground_j"));
+    EXPECT_EQ(joules_of(*resumed, "ground_j"), joules_of(*slide, "ground_j"));
   }
 }
 
@@ -172,7 +172,7 @@ TEST(ChangingGround, ADepositFillsADam) {
   const auto filled = released_slide(o);
   o.settings.ground_gains_stopped = false;
   const auto empty = released_slide(o);
-  for (Solver* slide : {filled.get(), empty.get()}) run_to_rest(*slide);
+  for (Solver* slide : {filled.get(), empty.get()}) run_to_the_end(*slide);
   EXPECT_GT(filled->mass_balance().stopped, 0);
   EXPECT_GT(filled->dams()[0].passed, 0);
 }
