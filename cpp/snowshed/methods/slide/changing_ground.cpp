@@ -168,7 +168,9 @@ bool mark_rested(const Model& model, const State& state, Workspace& work) {
   if (!p.tracks_rest) return false;
   // Rounding of the sum must not add a step.
   const double min_rest = model.settings.ground_rest_time - 1e-9;
-  const auto has_rested = [&](std::size_t i) { return rests(p, i) && p.rest[i] >= min_rest; };
+  const auto has_rested = [&](std::size_t i) {
+    return rests(p, i) && p.rest[i] > 0 && p.rest[i] >= min_rest;  // released snow must try to move
+  };
   bool any = false;
   for (std::size_t i = 0; i < p.size(); ++i) {
     work.removed[i] = has_rested(i) ? became_ground : char(0);
