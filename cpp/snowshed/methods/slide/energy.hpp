@@ -25,7 +25,7 @@ struct EnergyBalance {
   double broken = 0;                  // energy of bonds when they broke
   double detrainment = 0;             // energy of snow that forest took
   double dams = 0;                    // loss to dams
-  double ground = 0;                  // of snow that became ground, less that of lifted snow
+  double ground = 0;                  // energy of snow that became ground, less that of lifted snow
   double left_terrain = 0;            // energy of snow that left the terrain
   double added = 0;                   // energy of snow when it was released or entrained
 

@@ -84,7 +84,7 @@ struct State {
   std::vector<std::uint8_t> forest;
   std::vector<double> erodible;          // kg/m2 of snow left to entrain at each node; may be empty
   std::optional<ChangingGround> ground;  // none if the ground does not change
-  std::int64_t bonds_in_ground = 0;      // of snow that became ground
+  std::int64_t bonds_in_ground = 0;      // number, of snow that became ground
   MassBalance balance;
   double time = 0, dt = 0;                      // s
   double step;                                  // s, the length of the steps to come

@@ -65,8 +65,8 @@ TEST(ChangingGround, TheGroundGainsTheVolumeOfTheSnow) {
   EXPECT_GT(m.stopped, 0.2 * m.released);
   EXPECT_GT(m.detrained, 0.01 * m.released);
   EXPECT_GT(m.entrained, 0.01 * m.released);
-  const double gained = slide->ground()->volume(), whole = m.released / o.settings.density;
-  EXPECT_NEAR((gained - volume_of_masses(m, o.settings)) / whole, 0, 1e-12);
+  const double gained = slide->ground()->volume(), released = m.released / o.settings.density;
+  EXPECT_NEAR((gained - volume_of_masses(m, o.settings)) / released, 0, 1e-12);
   EXPECT_NEAR(
       (total_mass(*slide) + m.stopped + m.detrained + m.left_terrain - m.entrained) / m.released, 1,
       1e-12);

@@ -96,7 +96,7 @@ class SlideMaps:
         return None if self.ground_change is None else self.terrain + self.ground_change
 
     @property
-    def lies(self) -> Mask:
+    def holds_snow(self) -> Mask:
         """Where snow of the slide lies: on the ground, or as a part of it after it stopped."""
         on_ground: Mask = self.thickness > 0.0
         return on_ground if self.stopped_depth is None else on_ground | (self.stopped_depth > 0.0)

@@ -131,7 +131,7 @@ def _summary(
     slide = simulation.slide_facts()
     corners = np.concatenate(release_outlines(scene))
     middle = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
-    rows, columns = np.nonzero(maps.lies)
+    rows, columns = np.nonzero(maps.holds_snow)
     x, y = maps.west + columns * maps.cell, maps.south + rows * maps.cell
     distance = np.hypot(x - middle[0], y - middle[1])
     reached = maps.peak_thickness > 0.0
