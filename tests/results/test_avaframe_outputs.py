@@ -106,6 +106,23 @@ def test_maps_have_the_format_and_reference_system_of_the_terrain(tmp_path):
     assert "MGI_Austria_Lambert" in (out / "peaks/pft.prj").read_text()
 
 
+def test_maps_of_the_changed_ground_are_written_on_request(tmp_path):
+    ini = "tEnd = 1.5\nadaptSfcEntrainment = 1\nthresholdAdaptSfc = 0\nentEroEnergy = 50\n"
+    ini += "resType = sfcChange|demAdapted\nsimTypeList = ent\n"
+    project = write_project(tmp_path / "project", ini)
+    write_polygons(project / "Inputs/ENT/ent.geojson", box(31, 5, 60, 35), thickness=0.4)
+    out = run(project, tmp_path / "out")
+    change, terrain = (
+        read_raster(next(out.glob(f"Outputs/com1DFA/peakFiles/*_{kind}.asc"))).heights
+        for kind in ("sfcChange", "demAdapted")
+    )
+    assert change.min() < -1e-3
+    assert change.max() == 0.0
+    np.testing.assert_allclose(terrain, plane().heights + change, atol=1e-4)
+    (settings,) = out.glob("Outputs/com1DFA/configurationFiles/*_ent_ssl.ini")
+    assert "adaptSfcEntrainment = 1\n" in settings.read_text()
+
+
 READ_BY_AVAFRAME = """
 import json, pathlib, sys
 import matplotlib

@@ -37,6 +37,10 @@ py::dict slide_maps(const run::Simulation& sim) {
   d["south"] = t.south();
   d["cell"] = t.cell();
   d["density"] = sim.scene().numerics.as<Settings>().density;
+  if (const ChangingGround* ground = slide.ground()) {
+    d["ground_change"] = map(ground->change());
+    d["stopped_depth"] = map(ground->stopped);
+  }
   return d;
 }
 
@@ -53,6 +57,11 @@ py::dict slide_facts(const run::Simulation& sim) {
   d["secondary_kg"] = m.secondary;
   d["inflow_kg"] = m.inflow;
   d["detrained_kg"] = m.detrained;
+  d["bonds_in_ground"] = slide.bonds_in_ground();
+  if (const ChangingGround* ground = slide.ground()) {
+    d["stopped_kg"] = m.stopped;
+    d["ground_gained_m3"] = ground->volume();
+  }
   py::list releases, dams;
   for (const LateReleaseFact& fact : slide.late_releases()) {
     py::dict release;

@@ -133,10 +133,17 @@ inline void mend_slide(Randomizer& randomizer, Scene& scene) {
   methods::slide::Settings& settings = scene.numerics.as<methods::slide::Settings>();
   settings.explicit_friction = false;
   const methods::slide::Settings usual;
+  if (scene.terrain->resistance.empty() || !(settings.detrainment > 0))
+    settings.ground_gains_detrained = false;
+  if (scene.terrain->entrainment.empty()) settings.ground_loses_entrained = false;
   if (settings.mode == methods::slide::Mode::compatible) {
     scene.terrain->thickness_file.clear();
     settings.columns = usual.columns;
     settings.mixing_rate = usual.mixing_rate;
+    settings.ground_rest_time = usual.ground_rest_time;
+    if (!scene.terrain->secondary_release.empty() || !scene.terrain->inflows.empty())
+      settings.ground_gains_stopped = settings.ground_gains_detrained =
+          settings.ground_loses_entrained = false;
     for (methods::InflowSpec& inflow : scene.terrain->inflows) inflow.bonds = false;
     scene.terrain->dams.resize(std::min<std::size_t>(1, scene.terrain->dams.size()));
     for (methods::DamSpec& dam : scene.terrain->dams) dam.restitution = std::round(dam.restitution);

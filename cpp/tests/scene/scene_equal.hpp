@@ -73,10 +73,10 @@ inline auto tied(const methods::TerrainSpec& s) {
   return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n);
 }
 inline auto tied(const methods::slide::Settings& s) {
-  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u, v, w, x, y, z, a2, b2, c2,
-         d2] = s;
+  auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u, v, w, x, y, z, a2, b2, c2, d2,
+         e2, f2, g2, h2, i2] = s;
   return std::tie(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u, v, w, x, y, z, a2, b2,
-                  c2, d2);
+                  c2, d2, e2, f2, g2, h2, i2);
 }
 inline auto tied(const methods::Seeding& s) {
   auto& [a, b, c, d] = s;

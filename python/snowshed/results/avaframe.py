@@ -33,8 +33,9 @@ from snowshed.base.messages import csv_cell, printable
 from snowshed.io.atomic import write_text
 from snowshed.io.raster.output import write_raster
 from snowshed.io.raster.raster import GEOTIFF, Raster, read_raster
-from snowshed.methods.slide.maps import RASTERS, SlideMaps, map_file, slide_maps
+from snowshed.methods.slide.maps import GROUND_RASTERS, RASTERS, SlideMaps, map_file, slide_maps
 from snowshed.methods.slide.summary import SlideSummary
+from snowshed.scene.builders.avaframe.keys import SWITCHES
 from snowshed.scene.builders.avaframe.project import AvaFrameSimulation
 from snowshed.scene.scene import ResolvedScene
 
@@ -65,6 +66,7 @@ NUMERICS: Mapping[str, str] = {
     "entDefResistance": "entrainment_work",
     "thresholdMassSplit": "split_ratio",
     "stopCrit": "stop_ratio",
+    "thresholdAdaptSfc": "ground_min_change",
 }
 #: Columns of times that AvaFrame's tools need; they stay empty.
 TIMINGS = (
@@ -150,9 +152,12 @@ def particle_table(quantities: Mapping[str, Numbers]) -> pd.DataFrame:
 
 def _final_maps(results: Path, resolved: ResolvedScene) -> dict[str, Raster]:
     """Return the maps at the end by type, from a results folder."""
+    numerics = resolved.data["numerics"]
+    changes = any(numerics[name] for name in SWITCHES.values() if name.startswith("ground_"))
+    ground = GROUND_RASTERS if changes else {}
     maps = {
         stem.rpartition("/")[2]: read_raster(map_file(results, name))
-        for name, stem in RASTERS.items()
+        for name, stem in {**RASTERS, **ground}.items()
     }
     maps["P"] = replace(maps["FV"], heights=_pressure(resolved, maps["FV"].heights))
     crs = _crs(resolved)
@@ -246,6 +251,9 @@ def _configuration(
         "explicitFriction": str(int(numerics["explicit_friction"])),
         "snowSlide": str(int(numerics["bonds"])),
         "secRelArea": str(bool(terrain.get("secondary_release"))),
+        "adaptSfcStopped": str(int(numerics["ground_gains_stopped"])),
+        "adaptSfcDetrainment": str(int(numerics["ground_gains_detrained"])),
+        "adaptSfcEntrainment": str(int(numerics["ground_loses_entrained"])),
         "dam": str(bool(terrain.get("dams"))),
         "detrainment": str(numerics["detrainment"] > 0.0),
         "timeDependentRelease": str(bool(simulation.hydrograph)),
@@ -322,18 +330,19 @@ def _add_row(file: Path, row: Mapping[str, str]) -> None:
 def _mass_table(summary: SlideSummary) -> str:
     lines = ["time, current, entrained, detrained, detrainedTotal, stopped, initialized"]
     late = summary.secondary_kg + summary.inflow_kg
-    for time, now, entrained, detrained, released in (
-        (0.0, summary.released_kg, 0.0, 0.0, summary.released_kg),
+    for time, now, entrained, detrained, stopped, released in (
+        (0.0, summary.released_kg, 0.0, 0.0, 0.0, summary.released_kg),
         (
             summary.sim_time_s,
             summary.on_terrain_kg,
             summary.entrained_kg,
             summary.detrained_kg,
+            summary.stopped_kg,
             late,
         ),
     ):
         lines.append(
             f"{time:.2f},    {now:.6f},    {entrained:.6f},   {0.0 - detrained:.6f},    "
-            f"{0.0 - detrained:.6f},    {0.0:.6f},    {released:.6f}"
+            f"{0.0 - detrained:.6f},    {0.0 - stopped:.6f},    {released:.6f}"
         )
     return "\n".join(lines) + "\n"

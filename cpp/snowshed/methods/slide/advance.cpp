@@ -52,16 +52,31 @@ void reorder(const std::vector<std::uint32_t>& order, AlignedVector<double>& scr
   parallel_for_static(n, threads, [&](std::ptrdiff_t e) { array[e] = sorted[e]; });
 }
 
+/// Counts the bonds of the particles that become ground.
+void count_bonds_in_ground(State& state, const Workspace& work) {
+  for (std::size_t b = 0; b < state.bonds.size(); ++b)
+    state.bonds_in_ground += work.removed[state.bonds.first[b]] == became_ground ||
+                             work.removed[state.bonds.second[b]] == became_ground;
+}
+
 }  // namespace
 
 void remove_marked(State& state, Workspace& work) {
-  if (!std::memchr(work.removed.data(), 1, work.removed.size())) return;
+  const auto has_mark = [&](char mark) {
+    return std::memchr(work.removed.data(), mark, work.removed.size()) != nullptr;
+  };
+  if (!has_mark(left_terrain) && !(state.ground && has_mark(became_ground))) return;
   Particles& p = state.particles;
+  if (state.ground) count_bonds_in_ground(state, work);
   std::vector<std::uint32_t>& new_index = work.new_indices;
   new_index.resize(p.size());
   std::uint32_t count = 0;
   for (std::size_t i = 0; i < p.size(); ++i) {
     new_index[i] = work.removed[i] ? removed_particle : count++;
+    if (work.removed[i] == became_ground) {
+      state.balance.stopped += p.mass[i];
+      continue;
+    }
     if (!work.removed[i] || (!work.gone.empty() && work.gone[i])) continue;
     state.balance.left_terrain += p.mass[i];
     ++state.balance.particles_left;
@@ -69,6 +84,9 @@ void remove_marked(State& state, Workspace& work) {
   p.for_each_array([&](const char*, auto& array) { keep(new_index, array); });
   CellPositions::for_each_array(work.cell_positions, [&](auto& array) { keep(new_index, array); });
   keep(new_index, work.thickness);
+  if (state.ground)
+    for (std::vector<double>* masses : {&work.entrained, &work.detrained})
+      if (!masses->empty()) keep(new_index, *masses);
   renumber(state.bonds, new_index);
   work.bond_lists.update(state.bonds, p.size());
 }
@@ -94,6 +112,7 @@ void split_heavy(const Model& model, State& state, Workspace& work) {
   Particles& p = state.particles;
   if (work.no_particle_splits || (state.erodible.empty() && !model.compatible())) return;
   const std::size_t before = p.size();
+  const Terrain& terrain = present_terrain(model, state);
   for (std::size_t i = 0; i < before; ++i) {
     if (!(p.mass[i] > p.fresh_mass[i] * model.settings.split_ratio)) continue;
     const double area =
@@ -104,22 +123,24 @@ void split_heavy(const Model& model, State& state, Workspace& work) {
     along = speed > 0 ? Vec3(along * (distance / speed)) : Vec3(distance, 0, 0);
     const Vec3 x{p.x[i], p.y[i], p.z[i]};
     const geometry::CellPosition behind =
-        model.terrain.cell_position(x.x() - along.x(), x.y() - along.y());
+        terrain.cell_position(x.x() - along.x(), x.y() - along.y());
     const geometry::CellPosition ahead =
-        model.terrain.cell_position(x.x() + along.x(), x.y() + along.y());
-    if (!behind.inside() || !ahead.inside() || !model.terrain.known(behind) ||
-        !model.terrain.known(ahead))
+        terrain.cell_position(x.x() + along.x(), x.y() + along.y());
+    if (!behind.inside() || !ahead.inside() || !terrain.known(behind) || !terrain.known(ahead))
       continue;
     p.for_each_array([i](const char*, auto& array) { array.push_back(array[i]); });
     p.mass[i] = p.mass.back() = 0.5 * p.mass[i];
     const auto put = [&](std::size_t at, const Vec3& to, const geometry::CellPosition& position) {
       p.x[at] = to.x();
       p.y[at] = to.y();
-      p.z[at] = model.compatible() ? to.z() : model.terrain.height(position);
+      p.z[at] = model.compatible() ? to.z() : terrain.height(position);
       refresh_cell_positions(model, state, work, at, at + 1);
     };
     work.cell_positions.resize(p.size());
     work.thickness.push_back(work.thickness[i]);
+    if (state.ground && model.compatible())  // AvaFrame counts the masses of both halves
+      for (std::vector<double>* masses : {&work.entrained, &work.detrained})
+        if (!masses->empty()) masses->push_back((*masses)[i]);
     put(i, x - along, behind);
     put(p.size() - 1, x + along, ahead);
   }

@@ -31,6 +31,14 @@ void visit_state(Archive& archive, State& s) {
   archive.optional_array("over_dams", s.over_dams, s.over_dams.size());
   archive.optional_array("forest", s.forest, s.forest.size());
   archive.optional_numbers("later_sums", b.secondary, b.inflow, b.detrained, e.detrainment, e.dams);
+  if (s.ground) {
+    auto& g = *s.ground;
+    archive.array("ground/rise", g.rise, g.rise.size());
+    archive.array("ground/waiting", g.waiting, g.waiting.size());
+    archive.array("ground/stopped", g.stopped, g.stopped.size());
+    archive.numbers("ground/sums", b.stopped, e.ground);
+    archive.counts("ground/bonds", s.bonds_in_ground);
+  }
   auto& c = s.counters;
   archive.counts("counters", c.steps, s.sorts, c.particle_updates, s.bonds_made, b.particles_left,
                  s.stopped, s.next_id);
@@ -56,8 +64,10 @@ void check_later(const StateReader& archive, const State& s) {
   for (const double late : s.late)
     if (late != waiting && late != due && !(late >= 0 && late <= s.time))
       archive.refuse("the time of a release is not sound");
+  for (const double rest : s.particles.rest)
+    if (!(rest >= 0)) archive.refuse("the time of rest of a particle is not sound");
   const MassBalance& b = s.balance;
-  for (const double mass : {b.secondary, b.inflow, b.detrained})
+  for (const double mass : {b.secondary, b.inflow, b.detrained, b.stopped})
     if (!(mass >= 0 && std::isfinite(mass))) archive.refuse("a mass is not sound");
   for (const double mass : s.over_dams)
     if (!(mass >= 0 && std::isfinite(mass))) archive.refuse("a mass is not sound");
@@ -67,6 +77,7 @@ State read_state(const io::BinaryReader& in, const Model& model) {
   const StateReader archive(in);
   State next(model);
   visit_state(archive, next);
+  if (next.ground) next.ground->derive(model.terrain);
   check_positions(archive, next.particles, model.terrain);
   check_bonds(archive, next.bonds, next.particles.size());
   check_later(archive, next);

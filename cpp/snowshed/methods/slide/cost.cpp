@@ -73,6 +73,7 @@ std::vector<Feature> features_of(const Settings& s, const SceneView& scene) {
           {"secondary releases", !scene.terrain->secondary_release.empty()},
           {"inflows", !scene.terrain->inflows.empty()},
           {"dams", !scene.terrain->dams.empty()},
+          {"ground that adapts to the snow", s.changes_ground()},
           {"resampled terrain", s.cell > 0},
           {"snapshots during the slide", scene.output.snapshot_interval > 0}};
 }

@@ -152,23 +152,28 @@ struct Wall {
   double restitution;
 };
 
-Wall wall_at(const Model& model, const DamCrossing& c, const Passage& snow) {
+Wall wall_at(const Model& model, const Terrain& terrain, const DamCrossing& c,
+             const Passage& snow) {
   const DamFoot& foot = model.dams[c.dam];
   const DamFoot::Point &a = foot.points[c.section], &b = foot.points[c.section + 1];
   const double r = c.along_section;
   const Vec3 at = snow.from + c.along_path * (snow.to - snow.from);
-  const Vec3 n = model.terrain.normal(model.terrain.cell_position(at.x(), at.y()));
+  const geometry::CellPosition position = terrain.cell_position(at.x(), at.y());
+  const Vec3 n = terrain.normal(position);
   const double tx = b.x - a.x, ty = b.y - a.y;
   const Vec3 trace = Vec3(tx, ty, -(n.x() * tx + n.y() * ty) / n.z()).normalized();
   Vec3 across = n.cross(trace);
   const double side = tx * (snow.from.y() - a.y) - ty * (snow.from.x() - a.x);
   if (side < 0) across = -across;
-  const double height = (1 - r) * a.height + r * b.height;
+  // The crown stays where it is when the ground changes.
+  const double risen = terrain.height(position) - model.terrain.height(position);
+  const double height = (1 - r) * a.height + r * b.height - risen;
   return {across, height - snow.thickness / n.z(), foot.restitution};
 }
 
 /// Follows a particle through all dams on its path; `passed` receives those that it passes.
-void follow(const Model& model, Passage& snow, std::vector<DamCrossing>& passed) {
+void follow(const Model& model, const Terrain& terrain, Passage& snow,
+            std::vector<DamCrossing>& passed) {
   constexpr int max_contacts = 4;
   constexpr double margin = 1e-6;  // share of the path by which snow stays before a wall
   constexpr double gap = 1e-7;     // m, between snow and wall
@@ -177,7 +182,7 @@ void follow(const Model& model, Passage& snow, std::vector<DamCrossing>& passed)
     DamCrossing c;
     if (!first_crossing(model.dams, snow.from, snow.to, passed, c)) return;
     snow.changed = true;
-    const Wall wall = wall_at(model, c, snow);
+    const Wall wall = wall_at(model, terrain, c, snow);
     const double toward = -snow.velocity.dot(wall.toward_snow);
     const double climb = 2 * model.gravity * std::max(0.0, wall.height);
     if (wall.height <= 0 || (toward > 0 && toward * toward > climb)) {
@@ -221,8 +226,8 @@ double thickness_at(const GridFields& fields, const geometry::CellPosition& p) {
          (1 - p.east) * p.north * at(0, 1) + p.east * p.north * at(1, 1);
 }
 
-void reflect_as_avaframe(const Model& model, const GridFields& fields, Passage& snow,
-                         std::vector<DamCrossing>& passed) {
+void reflect_as_avaframe(const Model& model, const Terrain& terrain, const GridFields& fields,
+                         Passage& snow, std::vector<DamCrossing>& passed) {
   constexpr double added_speed = 1e-6;  // m/s
   DamCrossing c;
   bool meets = false;
@@ -237,10 +242,10 @@ void reflect_as_avaframe(const Model& model, const GridFields& fields, Passage& 
   const Vec3& tangent = foot.tangents[c.section];
   const double r = c.along_section, e = foot.restitution;
   const double x = (1 - r) * a.x + r * b.x, y = (1 - r) * a.y + r * b.y;
-  const geometry::CellPosition position = model.terrain.cell_position(x, y);
-  const Vec3 at(x, y, model.terrain.height(position));
+  const geometry::CellPosition position = terrain.cell_position(x, y);
+  const Vec3 at(x, y, terrain.height(position));
   const Vec3 crown = (1 - r) * a.crown + r * b.crown;
-  const double depth = thickness_at(fields, position) / model.terrain.normal(position).z();
+  const double depth = thickness_at(fields, position) / terrain.normal(position).z();
   const Vec3 wall = (crown - at - Vec3(0, 0, 0.5 * depth)).cross(tangent).normalized();
 
   const double beyond = wall.dot(snow.to - at);
@@ -270,10 +275,11 @@ void apply_dams(const Model& model, State& state, Workspace& work) {
   Particles& p = state.particles;
   const CellPositions& now = work.cell_positions;
   std::vector<DamCrossing>& passed = work.passed_dams;
+  const Terrain& terrain = present_terrain(model, state);
   double kinetic = 0;
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (work.removed[i]) continue;
-    const Vec3& from = work.before_dams[i];
+    const Vec3& from = work.positions_before[i];
     Passage snow{from,
                  {p.x[i], p.y[i], p.z[i]},
                  {p.ux[i], p.uy[i], p.uz[i]},
@@ -286,22 +292,22 @@ void apply_dams(const Model& model, State& state, Workspace& work) {
     const double before = snow.kinetic;
     passed.clear();
     if (model.compatible())
-      reflect_as_avaframe(model, work.fields, snow, passed);
+      reflect_as_avaframe(model, terrain, work.fields, snow, passed);
     else
-      follow(model, snow, passed);
+      follow(model, terrain, snow, passed);
     if (!snow.changed) continue;
     for (const DamCrossing& c : passed) state.over_dams[c.dam] += p.mass[i];
-    const geometry::CellPosition end = model.terrain.cell_position(snow.to.x(), snow.to.y());
-    if (!end.inside() || !model.terrain.known(end)) {
-      work.removed[i] = 1;
+    const geometry::CellPosition end = terrain.cell_position(snow.to.x(), snow.to.y());
+    if (!end.inside() || !terrain.known(end)) {
+      work.removed[i] = left_terrain;
       kinetic -= p.mass[i] * before;
       state.energy.left_terrain += p.mass[i] * (before + model.gravity * p.z[i]);
       continue;
     }
-    if (!model.compatible()) turn_along(model.terrain.normal(end), snow);
+    if (!model.compatible()) turn_along(terrain.normal(end), snow);
     p.x[i] = snow.to.x();
     p.y[i] = snow.to.y();
-    p.z[i] = model.terrain.height(end);
+    p.z[i] = terrain.height(end);
     p.ux[i] = snow.velocity.x();
     p.uy[i] = snow.velocity.y();
     p.uz[i] = snow.velocity.z();

@@ -74,7 +74,7 @@ struct DamFact {
 };
 
 /// Lets the dams act on the particles that the step has moved from their positions before it
-/// (`work.before_dams`). Marks particles that leave the terrain in `work.removed`. Updates the
+/// (`work.positions_before`). Marks particles that leave the terrain in `work.removed`. Updates the
 /// kinetic energy, the energy that dams took, and the mass that has passed each dam.
 ///
 /// Improved mode: a dam is a vertical wall. Snow passes it if its energy suffices to climb from the

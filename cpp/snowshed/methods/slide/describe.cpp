@@ -38,6 +38,16 @@ void describe(SettingsVisitor& v, Settings& s) {
            "With detrainment, faster snow destroys the forest");
   v.number("forest_max_thickness", s.forest_max_thickness, "m", positive.up_to(100.0),
            "With detrainment, thicker snow destroys the forest");
+  v.flag("ground_gains_stopped", s.ground_gains_stopped,
+         "The ground rises where snow has stopped, which then moves no more");
+  v.flag("ground_gains_detrained", s.ground_gains_detrained,
+         "The ground rises where forest takes snow");
+  v.flag("ground_loses_entrained", s.ground_loses_entrained,
+         "The ground falls where the slide takes up snow");
+  v.number("ground_min_change", s.ground_min_change, "m", non_negative.up_to(100.0),
+           "The ground changes when the change at one node exceeds this depth");
+  v.number("ground_rest_time", s.ground_rest_time, "s", non_negative.up_to(1e4),
+           "Snow that rests as long as this is ground; in the improved mode only");
   v.number("artificial_viscosity", s.artificial_viscosity, "", non_negative.up_to(1e6),
            "AvaFrame's artificial viscosity; in the compatible mode only");
   v.choice("columns", s.columns,

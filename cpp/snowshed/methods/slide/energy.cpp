@@ -100,13 +100,21 @@ double pressure_energy(const Model& model, const State& state, const Workspace& 
 }  // namespace
 
 NamedEnergies named_energies(const EnergyBalance& e) {
-  return {{"kinetic_j", e.kinetic},     {"potential_j", e.potential},
-          {"bonds_j", e.bonds},         {"coulomb_j", e.coulomb},
-          {"turbulent_j", e.turbulent}, {"resistance_j", e.resistance},
-          {"viscosity_j", e.viscosity}, {"entrainment_j", e.entrainment},
-          {"broken_bonds_j", e.broken}, {"detrainment_j", e.detrainment},
-          {"dams_j", e.dams},           {"left_terrain_j", e.left_terrain},
-          {"added_j", e.added},         {"residual_j", e.residual()}};
+  return {{"kinetic_j", e.kinetic},
+          {"potential_j", e.potential},
+          {"bonds_j", e.bonds},
+          {"coulomb_j", e.coulomb},
+          {"turbulent_j", e.turbulent},
+          {"resistance_j", e.resistance},
+          {"viscosity_j", e.viscosity},
+          {"entrainment_j", e.entrainment},
+          {"broken_bonds_j", e.broken},
+          {"detrainment_j", e.detrainment},
+          {"dams_j", e.dams},
+          {"ground_j", e.ground},
+          {"left_terrain_j", e.left_terrain},
+          {"added_j", e.added},
+          {"residual_j", e.residual()}};
 }
 
 void store_energy(const Model& model, const State& state, const Workspace& work, EnergyBalance& e) {
@@ -188,6 +196,8 @@ void EnergyRecorder::after_motion(const Model& model, const State& state, const 
     if (work.removed[i] || is_gone) {
       if (is_gone && !work.removed[i])
         e.detrainment += mass * (0.5 * before_[i].squaredNorm() + model.gravity * heights_[i]);
+      else if (work.removed[i] == became_ground)
+        e.ground += mass * (0.5 * before_[i].squaredNorm() + model.gravity * heights_[i]);
       else
         e.left_terrain += mass * (0.5 * before_[i].squaredNorm() + model.gravity * heights_[i]);
       continue;

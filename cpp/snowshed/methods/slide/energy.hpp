@@ -25,13 +25,14 @@ struct EnergyBalance {
   double broken = 0;                  // energy of bonds when they broke
   double detrainment = 0;             // energy of snow that forest took
   double dams = 0;                    // loss to dams
+  double ground = 0;                  // energy of snow that became ground, less that of lifted snow
   double left_terrain = 0;            // energy of snow that left the terrain
   double added = 0;                   // energy of snow when it was released or entrained
 
   double stored() const { return kinetic + potential + bonds; }
   double spent() const {
     return coulomb + turbulent + resistance + viscosity + entrainment + broken + detrainment +
-           dams + left_terrain;
+           dams + ground + left_terrain;
   }
   double residual() const { return stored() + spent() - added; }
 };

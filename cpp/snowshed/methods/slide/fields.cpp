@@ -101,11 +101,13 @@ ReportsRun::Section SolverImpl::run_section() const {
   report(!model_.areas.inflows.empty(), "inflow_kg", m.inflow);
   report(true, "entrained_kg", m.entrained);
   report(model_.detrains(), "detrained_kg", m.detrained);
+  report(model_.settings.ground_gains_stopped, "stopped_kg", m.stopped);
   report(true, "left_terrain_kg", m.left_terrain);
   report(true, "on_terrain_kg", on_terrain);
   report(true, "residual_kg",
-         m.released + m.secondary + m.inflow + m.entrained - m.detrained - m.left_terrain -
-             on_terrain);
+         m.released + m.secondary + m.inflow + m.entrained - m.detrained - m.stopped -
+             m.left_terrain - on_terrain);
+  if (state_.ground) section.facts.push_back({"ground_gained_m3", state_.ground->volume()});
   return section;
 }
 
@@ -149,6 +151,7 @@ std::size_t SolverImpl::bytes() const {
                     state_.peaks.speed, state_.erodible, workspace_.thickness, workspace_.predicted,
                     workspace_.pressure_force, workspace_.sorted_pressure_factor,
                     workspace_.sorted_column_mass, workspace_.bond_force);
+  if (state_.ground) total += state_.ground->bytes();
   const Loads& l = workspace_.loads;
   total += bytes_of(l.ax, l.ay, l.az, l.coulomb_deceleration, l.drag, l.speed);
   CellPositions::for_each_array(workspace_.cell_positions,

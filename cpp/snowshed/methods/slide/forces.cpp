@@ -92,6 +92,14 @@ ForestAction forest_action(const Model& model, const State& state, const GridFie
 /// particle loses the same share in each step, so that it would never vanish, but get too light to
 /// divide by its mass. AvaFrame has no such limit; that of the compatible mode changes no figure.
 constexpr double min_share = 0.01, min_share_as_avaframe = 1e-12;
+/// On ground that changes, a particle of any mass decides on the peak speed where it flows alone.
+/// This limit only avoids numbers below the smallest.
+constexpr double min_share_on_changing_ground = 1e-250;
+
+double min_share_of(const Model& model) {
+  if (!model.compatible()) return min_share;
+  return model.settings.changes_ground() ? min_share_on_changing_ground : min_share_as_avaframe;
+}
 
 /// Takes mass from a particle. A particle that loses all of it keeps its mass to the end of the
 /// step, because accelerations are divided by it, but is marked.
@@ -105,12 +113,31 @@ void detrain(const Model& model, double area, double dt, double speed, std::size
   mass -= taken;
 }
 
+/// Improved mode: adds snow that forest has taken from a particle to the ground.
+void add_detrained_ground(const Model& model, State& state, const Workspace& work, std::size_t i,
+                          double mass) {
+  if (!state.ground || model.compatible() || !model.settings.ground_gains_detrained) return;
+  const double cell = model.terrain.cell();
+  state.ground->add_around(work.cell_positions.at(i), mass / (model.settings.density * cell * cell),
+                           false);
+}
+
+/// Improved mode: takes the entrained snow from the ground, where it lay.
+void take_entrained_ground(const Model& model, State& state, std::size_t node, double mass) {
+  if (!state.ground || model.compatible() || !model.settings.ground_loses_entrained) return;
+  const double cell = model.terrain.cell();
+  const int columns = model.terrain.columns();
+  state.ground->add(int(node) % columns, int(node) / columns,
+                    -mass / (model.settings.entrained_density * cell * cell));
+}
+
 /// Applies entrainment, and detrainment and resistance in forest.
 void apply_areas(const Model& model, State& state, Workspace& work) {
   View v = view_of(model, state, work);
   Particles& p = state.particles;
   std::fill(work.detrained.begin(), work.detrained.end(), 0.0);
   std::fill(work.gone.begin(), work.gone.end(), 0);
+  const double min_mass_share = min_share_of(model);
   if (!state.forest.empty())
     destroy_forest(model.settings, model.terrain, work.fields, state.forest);
   for (std::size_t i = 0; i < p.size(); ++i) {
@@ -121,19 +148,23 @@ void apply_areas(const Model& model, State& state, Workspace& work) {
     const ForestAction action = forest_action(model, state, work.fields, node);
     if (action == ForestAction::detrains)
       detrain(model, before / (h * model.settings.density), state.step, v.speed[i], i, p.mass[i],
-              (model.compatible() ? min_share_as_avaframe : min_share) * p.fresh_mass[i], work);
+              min_mass_share * p.fresh_mass[i], work);
     if (action == ForestAction::resists) v.drag[i] += model.resistance[node] / h;
     if (model.compatible() && p.mass[i] != before) {  // there forces act on the mass before
       const double share = before / p.mass[i];
       for (double* load : {v.ax, v.ay, v.az, v.coulomb_deceleration, v.drag}) load[i] *= share;
     }
-    if (!work.detrained.empty()) state.balance.detrained += work.detrained[i];
+    if (work.detrained.empty() || work.detrained[i] == 0) continue;
+    state.balance.detrained += work.detrained[i];
+    add_detrained_ground(model, state, work, i, work.detrained[i]);
   }
   for (std::size_t i = 0; i < work.entrained.size(); ++i) {
     if (work.entrained[i] == 0) continue;
     const std::size_t node = nearest_node(model.terrain, work.cell_positions.at(i));
     double& rest = state.erodible[node];
-    rest = std::max(0.0, rest - work.entrained[i] / model.terrain.nodes()[node].area);
+    rest =
+        std::max(0.0, rest - work.entrained[i] / present_terrain(model, state).nodes()[node].area);
+    take_entrained_ground(model, state, node, work.entrained[i]);
     state.balance.entrained += work.entrained[i];
   }
 }
@@ -188,7 +219,7 @@ void apply_neighbours(const Model& model, State& state, Workspace& work) {
   if (model.thins_bonds()) weaken_thinned(state, work);
 }
 
-void mark_detrained(State& state, Workspace& work) {
+void mark_detrained(const Model& model, State& state, Workspace& work) {
   if (work.gone.empty() || !std::memchr(work.gone.data(), 1, work.gone.size())) return;
   const Particles& p = state.particles;
   for (std::size_t i = 0; i < work.gone.size(); ++i) {
@@ -196,8 +227,9 @@ void mark_detrained(State& state, Workspace& work) {
       work.gone[i] = 0;
       continue;
     }
-    work.removed[i] = 1;
+    work.removed[i] = left_terrain;
     state.balance.detrained += p.mass[i];
+    add_detrained_ground(model, state, work, i, p.mass[i]);
     const double square = p.ux[i] * p.ux[i] + p.uy[i] * p.uy[i] + p.uz[i] * p.uz[i];
     state.kinetic_energy -= 0.5 * p.mass[i] * square;
   }

@@ -16,7 +16,7 @@ void apply_ground(const Model&, State&, Workspace&);
 void apply_neighbours(const Model&, State&, Workspace&);
 
 /// Marks the particles of which forest took all mass as removed, after they have moved.
-void mark_detrained(State&, Workspace&);
+void mark_detrained(const Model&, State&, Workspace&);
 
 /// Removes the bonds that are marked.
 void remove_broken(State&, Workspace&);

@@ -25,6 +25,33 @@ void check_mode(const Settings& s) {
         Mode::compatible);
   check("columns", s.columns != usual.columns, Mode::improved);
   check("mixing_rate", s.mixing_rate != usual.mixing_rate, Mode::improved);
+  check("ground_rest_time", s.ground_rest_time != usual.ground_rest_time, Mode::improved);
+}
+
+/// Refuses changes of the ground that cannot happen, or that AvaFrame would compute otherwise.
+void check_ground(const Settings& s, const TerrainSpec& terrain) {
+  const auto refuse = [](const char* key, const std::string& why) {
+    throw InputError(std::string("/numerics/") + key, why);
+  };
+  if (s.ground_gains_detrained && !(s.detrainment > 0 && !terrain.resistance.empty()) &&
+      s.mode == Mode::improved)
+    refuse("ground_gains_detrained",
+           "forest takes no snow: give areas of /terrain/resistance and "
+           "/numerics/detrainment above 0");
+  if (s.ground_loses_entrained && terrain.entrainment.empty() && s.mode == Mode::improved)
+    refuse("ground_loses_entrained",
+           "the slide takes up no snow: give areas of "
+           "/terrain/entrainment");
+  if (s.mode == Mode::improved || !s.changes_ground()) return;
+  const char* key = s.ground_gains_stopped     ? "ground_gains_stopped"
+                    : s.ground_gains_detrained ? "ground_gains_detrained"
+                                               : "ground_loses_entrained";
+  const char* later = !terrain.secondary_release.empty() ? "secondary releases"
+                      : !terrain.inflows.empty()         ? "inflows"
+                                                         : nullptr;
+  if (later)
+    refuse(key, std::string("not with ") + later +
+                    " in the mode \"compatible\": their snow would be that of the first ground");
 }
 
 void check_inflows(const TerrainSpec& terrain, Mode mode) {
@@ -82,6 +109,7 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
     if (!scene.terrain->thickness_file.empty() && settings_.mode == Mode::compatible)
       throw InputError("/terrain/thickness_file", "AvaFrame's com5SnowSlide takes no such raster");
     check_mode(settings_);
+    check_ground(settings_, *scene.terrain);
     check_inflows(*scene.terrain, settings_.mode);
     check_dams(*scene.terrain, settings_.mode);
   }

@@ -17,6 +17,8 @@ struct Particles {
   AlignedVector<double> fresh_mass;  // kg, of a particle when it is seeded; decides on splitting
   AlignedVector<std::uint32_t> id;
   AlignedVector<std::uint16_t> event;
+  AlignedVector<double> rest;  // s, for which each has rested; empty unless it is tracked
+  bool tracks_rest = false;
 
   std::size_t size() const { return x.size(); }
 
@@ -33,6 +35,7 @@ struct Particles {
     visit("fresh_mass", self.fresh_mass);
     visit("id", self.id);
     visit("event", self.event);
+    if (self.tracks_rest) visit("rest", self.rest);
   }
   template <class Visit>
   void for_each_array(const Visit& visit) {

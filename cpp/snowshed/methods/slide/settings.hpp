@@ -33,7 +33,13 @@ struct Settings {
   double forest_min_thickness = 0.6;  // m
   double forest_max_speed = 40;       // m/s
   double forest_max_thickness = 10;   // m
-  double artificial_viscosity = 100;  // compatible mode only
+  // Ground that adapts to the snow.
+  bool ground_gains_stopped = false;    // rises where snow has stopped
+  bool ground_gains_detrained = false;  // rises where forest takes snow
+  bool ground_loses_entrained = false;  // falls where snow is eroded
+  double ground_min_change = 0.1;       // m, of one node, at which the ground changes
+  double ground_rest_time = 1;          // s, after which resting snow is ground; improved mode only
+  double artificial_viscosity = 100;    // compatible mode only
   // Improved mode only.
   Columns columns = Columns::vertical;
   double mixing_rate = 8;  // 1/s, at which particles take over the mean velocity around them
@@ -54,6 +60,10 @@ struct Settings {
 
   /// The smallest length that the method resolves, m; 0 if the terrain determines it.
   double resolution() const { return cell; }
+
+  bool changes_ground() const {
+    return ground_gains_stopped || ground_gains_detrained || ground_loses_entrained;
+  }
 };
 
 /// The step of snow without bonds, s: the given one or, in the improved mode, a part of it so short

@@ -65,6 +65,14 @@ void check_on_terrain(const Terrain& terrain, const std::vector<Area>& areas,
   }
 }
 
+/// The unit vector of steepest descent; zero on level ground.
+Vec3 fall_line(const Terrain& terrain, const geometry::CellPosition& position) {
+  const Vec3 n = terrain.normal(position);
+  const Vec3 down = n.z() * n - Vec3::UnitZ();
+  const double length = down.norm();
+  return length > 0 ? Vec3(down / length) : Vec3(Vec3::Zero());
+}
+
 }  // namespace
 
 std::unique_ptr<Solver> make_solver(Options options) {
@@ -93,20 +101,21 @@ void SolverImpl::append(State& state, const ParticleBatch& batch, const std::vec
   check_batch(batch, 1);
   Particles& p = state.particles;
   const std::size_t old = p.size();
+  const Terrain& terrain = present_terrain(model_, state);
   const double fresh_mass = nominal_particle_mass(model_.settings, model_.terrain.cell());
   p.resize(old + batch.positions.size());
   for (std::size_t k = 0; k < batch.positions.size(); ++k) {
     const Vec3& x = batch.positions[k];
-    const geometry::CellPosition position = model_.terrain.cell_position(x.x(), x.y());
-    if (!position.inside() || std::isnan(model_.terrain.height(position)))
+    const geometry::CellPosition position = terrain.cell_position(x.x(), x.y());
+    if (!position.inside() || std::isnan(terrain.height(position)))
       throw SimulationError("a particle at (" + std::to_string(x.x()) + ", " +
                             std::to_string(x.y()) + ") m lies outside of the terrain");
     const std::size_t i = old + k;
-    const Vec3 u =
-        batch.fall_speed > 0 ? Vec3(batch.fall_speed * fall_line(position)) : batch.velocity;
+    const Vec3 u = batch.fall_speed > 0 ? Vec3(batch.fall_speed * fall_line(terrain, position))
+                                        : batch.velocity;
     p.x[i] = x.x();
     p.y[i] = x.y();
-    p.z[i] = model_.terrain.height(position);
+    p.z[i] = terrain.height(position);
     p.ux[i] = u.x();
     p.uy[i] = u.y();
     p.uz[i] = u.z();
@@ -114,6 +123,7 @@ void SolverImpl::append(State& state, const ParticleBatch& batch, const std::vec
     p.fresh_mass[i] = model_.compatible() ? fresh_mass : p.mass[i];
     p.id[i] = state.next_id++;
     p.event[i] = std::uint16_t(batch.event);
+    if (p.tracks_rest) p.rest[i] = 0;
   }
   if (!areas) return;
   // Compatible mode has bonds across gaps of the release.
@@ -123,14 +133,6 @@ void SolverImpl::append(State& state, const ParticleBatch& batch, const std::vec
   for (std::size_t b = 0; b < bonds.size(); ++b)
     state.bonds.add(bonds.first[b], bonds.second[b], bonds.rest_length[b]);
   state.bonds_made += std::int64_t(bonds.size());
-}
-
-/// The unit vector of steepest descent; zero on level ground.
-Vec3 SolverImpl::fall_line(const geometry::CellPosition& position) const {
-  const Vec3 n = model_.terrain.normal(position);
-  const Vec3 down = n.z() * n - Vec3::UnitZ();
-  const double length = down.norm();
-  return length > 0 ? Vec3(down / length) : Vec3(Vec3::Zero());
 }
 
 /// Appends the snow of the releases with this trigger that are due. Those of the compatible mode
@@ -255,6 +257,7 @@ void SolverImpl::replace(const std::vector<ParticleBatch>& batches) {
   next.next_id = state_.next_id;
   next.peaks = state_.peaks;
   next.erodible = state_.erodible;
+  next.ground = state_.ground;
   next.late = state_.late;
   next.over_dams = state_.over_dams;
   next.forest = state_.forest;
@@ -290,10 +293,12 @@ void SolverImpl::sort_if_due() {
   ++state_.sorts;
 }
 
-/// Keeps the positions before a step, because dams act on the paths of particles.
+/// Keeps the positions before a step: dams act on the paths of particles, and in the compatible
+/// mode snow that stops becomes ground where it was.
 void SolverImpl::keep_positions() {
   const Particles& p = state_.particles;
-  for (std::size_t i = 0; i < p.size(); ++i) workspace_.before_dams[i] = {p.x[i], p.y[i], p.z[i]};
+  for (std::size_t i = 0; i < p.size(); ++i)
+    workspace_.positions_before[i] = {p.x[i], p.y[i], p.z[i]};
 }
 
 void SolverImpl::choose_threads() {
@@ -310,6 +315,7 @@ void SolverImpl::step() {
     workspace_.reserve_memory(model_, state_);
     sort_if_due();
   }
+  if (state_.ground && slide::adapt_ground(model_, state_, workspace_)) order_.forget();
   choose_threads();
   // Nothing from here on allocates.
   const bool keeps_energy = model_.keeps_energy;
@@ -318,10 +324,13 @@ void SolverImpl::step() {
   apply_ground(model_, state_, workspace_);
   if (keeps_energy) recorder.after_ground(model_, state_, workspace_, state_.energy);
   apply_neighbours(model_, state_, workspace_);
-  if (!model_.dams.empty()) keep_positions();
+  if (model_.keeps_positions()) keep_positions();
   slide::advance(model_, state_, workspace_);
+  const bool follows_avaframe = state_.ground && model_.compatible();
+  if (follows_avaframe && model_.settings.ground_gains_stopped)
+    mark_stopped(model_, state_, workspace_);
   if (keeps_energy) recorder.after_motion(model_, state_, workspace_, state_.energy);
-  mark_detrained(state_, workspace_);
+  mark_detrained(model_, state_, workspace_);
   if (!model_.dams.empty()) apply_dams(model_, state_, workspace_);
   find_stop(model_, state_);
   remove_broken(state_, workspace_);
@@ -329,7 +338,9 @@ void SolverImpl::step() {
   split_heavy(model_, state_, workspace_);
   release_in_step();
   refresh_fields(model_, state_, workspace_, &state_.peaks);
+  if (follows_avaframe) take_changes_of_step(model_, state_, workspace_);
   state_.dt = state_.step;
+  count_rest(state_);
   ++state_.counters.steps;
   const bool step_is_constant = state_.counters.smallest_dt == longest_step(model_.settings);
   state_.time =

@@ -35,6 +35,10 @@ class Solver : public Method, public SeedsItself, public KeepsEnergy, public Rep
   virtual const MassBalance& mass_balance() const = 0;
   virtual std::vector<LateReleaseFact> late_releases() const = 0;
   virtual std::vector<DamFact> dams() const = 0;
+  /// The ground that adapts to the snow; null if it does not. `terrain` is the first ground.
+  virtual const ChangingGround* ground() const = 0;
+  /// Number of bonds of snow that became ground.
+  virtual std::int64_t bonds_in_ground() const = 0;
 };
 
 /// Throws InputError if a release area reaches beyond the terrain or into a hole of it, or makes

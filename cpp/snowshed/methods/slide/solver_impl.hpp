@@ -56,6 +56,10 @@ class SolverImpl final : public Solver {
   }
   std::vector<LateReleaseFact> late_releases() const override;
   std::vector<DamFact> dams() const override;
+  const ChangingGround* ground() const override {
+    return state_.ground ? &*state_.ground : nullptr;
+  }
+  std::int64_t bonds_in_ground() const override { return state_.bonds_in_ground; }
   const Terrain& terrain() const override { return model_.terrain; }
   const PeakFields& peaks() const override { return state_.peaks; }
   const GridFields& flow() const override { return workspace_.fields; }
@@ -68,7 +72,6 @@ class SolverImpl final : public Solver {
               const StopRequest&) const;
   void append_all(State&, const std::vector<ParticleBatch>&, const StopRequest&) const;
   void append_due(State&, Trigger) const;
-  Vec3 fall_line(const geometry::CellPosition&) const;
   bool release_before_step();
   void release_in_step();
   void accept(State);

@@ -75,7 +75,10 @@ State::State(const Model& model)
       over_dams(model.dams.size(), 0.0),
       forest(forest_at_nodes(model)),
       erodible(erodible_at_nodes(model)),
-      step(longest_step(model.settings)) {}
+      step(longest_step(model.settings)) {
+  if (model.settings.changes_ground()) ground.emplace(model.terrain);
+  particles.tracks_rest = model.settings.ground_gains_stopped && !model.compatible();
+}
 
 void Workspace::reserve_memory(const Model& model, State& state) {
   // Each particle may split.
@@ -91,11 +94,14 @@ void Workspace::reserve_memory(const Model& model, State& state) {
   entrained.resize(state.erodible.empty() ? 0 : now);
   removed.resize(now);
   detrained.resize(state.forest.empty() ? 0 : now);
-  gone.resize(state.forest.empty() ? 0 : now);
-  if (!model.dams.empty()) {
-    before_dams.resize(now);
-    passed_dams.reserve(model.dams.sections());
+  if (state.ground && model.compatible()) {
+    entrained.reserve(state.erodible.empty() ? 0 : most);
+    detrained.reserve(state.forest.empty() ? 0 : most);
+    for (std::vector<double>& mass : step_changes.mass) mass.resize(state.ground->rise.size());
   }
+  gone.resize(state.forest.empty() ? 0 : now);
+  if (model.keeps_positions()) positions_before.resize(now);
+  if (!model.dams.empty()) passed_dams.reserve(model.dams.sections());
   new_indices.reserve(most);
   piece_sums.resize(most / std::size_t(particles_in_piece) + 1);
   bond_force.resize(4 * state.bonds.size());
@@ -121,8 +127,8 @@ FrictionScheme friction_scheme(const Model& model) {
                                           : FrictionScheme::avaframe_implicit;
 }
 
-void view_model(const Model& model, View& v) {
-  const Terrain& t = model.terrain;
+void view_model(const Model& model, const State& state, View& v) {
+  const Terrain& t = present_terrain(model, state);
   const Settings& s = model.settings;
   static_assert(sizeof(Terrain::Node) == 4 * sizeof(double), "kernels read records of four");
   v.ground = &t.nodes()->height;
@@ -212,7 +218,7 @@ void view_bonds(const State& state, Workspace& work, View& v) {
 
 View view_of(const Model& model, State& state, Workspace& work) {
   View v{};
-  view_model(model, v);
+  view_model(model, state, v);
   view_cell_positions(model, work, v);
   view_loads(work, v);
   view_particles(state, v);
@@ -227,7 +233,7 @@ View view_of(const Model& model, State& state, Workspace& work) {
 void refresh_cell_positions(const Model& model, const State& state, Workspace& work,
                             std::size_t begin, std::size_t end) {
   View view{};
-  view_model(model, view);
+  view_model(model, state, view);
   view_cell_positions(model, work, view);
   view_particles(state, view);
   for_each_piece(work, end - begin, [&](std::ptrdiff_t first, std::ptrdiff_t last) {
@@ -264,7 +270,7 @@ void refresh_fields(const Model& model, const State& state, Workspace& work, Pea
   work.fields.take_shape(work.cells);
   work.thickness.resize(p.size());
   View view{};
-  view_model(model, view);
+  view_model(model, state, view);
   view_cell_positions(model, work, view);
   view_particles(state, view);
   if (raised) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "snowshed/core/aligned_vector.hpp"
@@ -13,6 +14,7 @@
 #include "snowshed/methods/slide/areas.hpp"
 #include "snowshed/methods/slide/bonds.hpp"
 #include "snowshed/methods/slide/cells.hpp"
+#include "snowshed/methods/slide/changing_ground.hpp"
 #include "snowshed/methods/slide/energy.hpp"
 #include "snowshed/methods/slide/friction.hpp"
 #include "snowshed/methods/slide/grid_fields.hpp"
@@ -29,6 +31,9 @@ inline constexpr std::size_t particles_per_thread = 400;
 /// For steps with fewer particles a trial decides whether threads make them faster.
 inline constexpr std::size_t particles_for_threads = 20000;
 
+/// Marks of particles that a step removes: in `Workspace::removed`. Kernels set the first one.
+inline constexpr char left_terrain = 1, became_ground = 2;
+
 struct Model {
   Model(const Settings&, double gravity, const geometry::HeightField&, Areas, bool keeps_energy);
 
@@ -36,6 +41,10 @@ struct Model {
   /// Whether bonds weaken with the mass that forest takes.
   bool thins_bonds() const { return detrains() && !compatible(); }
   bool compatible() const { return settings.mode == Mode::compatible; }
+  /// Whether the positions before a step are needed at its end.
+  bool keeps_positions() const {
+    return !dams.empty() || (compatible() && settings.ground_gains_stopped);
+  }
   /// Maximum number of threads for a step of this number of particles.
   int threads_for(std::size_t particles) const {
     return snowshed::threads_for(particles, particles_per_thread, threads);
@@ -58,6 +67,7 @@ struct Model {
 struct MassBalance {
   double released = 0, secondary = 0, inflow = 0, entrained = 0;  // kg
   double detrained = 0, left_terrain = 0;                         // kg
+  double stopped = 0;                                             // kg, that became ground
   std::int64_t particles_left = 0;
 };
 
@@ -72,7 +82,9 @@ struct State {
   std::vector<double> over_dams;  // kg that passed each dam
   // Whether forest stands at each node; empty without detrainment, when forest is never destroyed.
   std::vector<std::uint8_t> forest;
-  std::vector<double> erodible;  // kg/m2 of snow left to entrain at each node; may be empty
+  std::vector<double> erodible;          // kg/m2 of snow left to entrain at each node; may be empty
+  std::optional<ChangingGround> ground;  // none if the ground does not change
+  std::int64_t bonds_in_ground = 0;      // number, of snow that became ground
   MassBalance balance;
   double time = 0, dt = 0;                      // s
   double step;                                  // s, the length of the steps to come
@@ -132,9 +144,10 @@ struct Workspace {
   AlignedVector<double> bond_force;      // records of four for each bond
   std::vector<double> entrained;  // kg, by each particle in this step; empty without entrainment
   std::vector<double> detrained;  // kg, from each particle in this step; empty without detrainment
-  std::vector<char> removed;      // particles that left the terrain
+  std::vector<char> removed;      // marks of particles that left the terrain or became ground
   std::vector<char> gone;         // particles of which forest took all; empty without detrainment
-  std::vector<Vec3> before_dams;  // m, positions before the step; empty without dams
+  std::vector<Vec3> positions_before;  // m, before the step; empty if they are not needed
+  StepChanges step_changes;            // compatible mode, if the ground changes
   std::vector<DamCrossing> passed_dams;
   std::vector<char> broken;  // bonds that break in this step
   bool bonds_break = false;  // whether any bond breaks in this step

@@ -1,6 +1,7 @@
 // The ground that snow slides on, with the values for interpolation at each node.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -13,6 +14,29 @@ namespace snowshed::methods::slide {
 /// Slopes at the first row and column of the grid. AvaFrame 2.1 takes these nodes as level.
 enum class BorderSlope { one_sided, level_in_the_south_west };
 
+/// Columns and rows of a grid's nodes, the last ones included.
+struct NodeRectangle {
+  int first_column = 0, first_row = 0, last_column = -1, last_row = -1;
+
+  bool empty() const { return last_column < first_column || last_row < first_row; }
+  void include(int column, int row) {
+    if (empty()) {
+      *this = {column, row, column, row};
+      return;
+    }
+    first_column = std::min(first_column, column);
+    first_row = std::min(first_row, row);
+    last_column = std::max(last_column, column);
+    last_row = std::max(last_row, row);
+  }
+  /// Calls visit(column, row) for each node.
+  template <class Visit>
+  void for_each(Visit visit) const {
+    for (int row = first_row; row <= last_row; ++row)
+      for (int column = first_column; column <= last_column; ++column) visit(column, row);
+  }
+};
+
 /// Elevations, slopes and areas at the nodes of a grid. Positions are given from its south-west
 /// node. Vectors and scalars are bilinear between the nodes of a cell.
 class Terrain {
@@ -24,6 +48,10 @@ class Terrain {
   };
 
   explicit Terrain(const geometry::HeightField& field, BorderSlope border = BorderSlope::one_sided);
+
+  /// Sets the heights of the nodes in a rectangle to those of `first` plus a rise (m), and the
+  /// slopes and areas that follow from them.
+  void set_rise(const Terrain& first, const std::vector<double>& rise, const NodeRectangle& where);
 
   int columns() const { return columns_; }
   int rows() const { return rows_; }
@@ -72,8 +100,11 @@ class Terrain {
     return {slope_x * z, slope_y * z, z};
   }
 
+  void find_slope(int column, int row);
+
   int columns_, rows_;
   double cell_, per_cell_, west_, south_;
+  BorderSlope border_;
   std::vector<Node> nodes_;
 };
 

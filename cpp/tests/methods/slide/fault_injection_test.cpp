@@ -16,6 +16,10 @@ std::unique_ptr<Solver> eroding_slide() {
   o.areas.inflows = {{rectangle(20.3, 20.3, 26.3, 26.3), true, {{0.31, 0.4, 6}}}};
   o.areas.dams = {{"dam", {{78, 20, 1}, {80, 30, 1}}, 90, 0.2}};
   o.settings.detrainment = 20;
+  o.settings.ground_gains_stopped = o.settings.ground_gains_detrained = true;
+  o.settings.ground_loses_entrained = true;
+  o.settings.ground_min_change = 0.001;
+  o.settings.ground_rest_time = 0.05;
   return make_solver(o);
 }
 
@@ -44,6 +48,9 @@ void expect_same_slide(const Solver& actual, const Solver& expected) {
   EXPECT_EQ(actual.bonds().rest_length, expected.bonds().rest_length);
   EXPECT_EQ(actual.mass_balance().entrained, expected.mass_balance().entrained);
   EXPECT_EQ(actual.mass_balance().left_terrain, expected.mass_balance().left_terrain);
+  EXPECT_EQ(actual.mass_balance().stopped, expected.mass_balance().stopped);
+  EXPECT_EQ(actual.ground()->change(), expected.ground()->change());
+  EXPECT_EQ(actual.ground()->rise, expected.ground()->rise);
 }
 
 class SlideFaultInjection : public io::TemporaryFolder {};
@@ -59,6 +66,7 @@ TEST_F(SlideFaultInjection, FailedAllocationsLeaveTheStateUnchanged) {
   EXPECT_GT(max_left, 0);
   EXPECT_GT(reference.method->mass_balance().inflow, 0);
   EXPECT_GT(reference.method->mass_balance().detrained, 0);
+  EXPECT_NE(reference.method->ground()->volume(), 0);
   RecordProperty("faults", faults);
   EXPECT_GE(faults, 500);
 }

@@ -1,4 +1,4 @@
-"""Notes on a slide: the releases during it, forest, dams."""
+"""Notes on a slide: the releases during it, forest, dams, and the change of the ground."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 
 def event_notes(facts: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return notes on the late releases, the detrainment and the dams of a slide.
+    """Return notes on the late releases, the detrainment, the dams and the ground of a slide.
 
     Parameters
     ----------
@@ -30,6 +30,7 @@ def event_notes(facts: Mapping[str, Any]) -> tuple[str, ...]:
         *(_inflow_note(name, list(pulses)) for name, pulses in inflows),
         *_forest_notes(facts.get("detrained_kg", 0.0)),
         *(_dam_note(dam) for dam in facts.get("dams", ())),
+        *_ground_notes(facts),
     )
 
 
@@ -61,6 +62,16 @@ def _dam_note(dam: Mapping[str, Any]) -> str:
     return (
         f"{name}: {dam['passed_kg']:,.0f} kg of snow passed over it; snow counts each time that it "
         "passes."
+    )
+
+
+def _ground_notes(facts: Mapping[str, Any]) -> tuple[str, ...]:
+    if "ground_gained_m3" not in facts:
+        return ()
+    volume, stopped = facts["ground_gained_m3"], facts["stopped_kg"]
+    return (
+        f"The ground gained {volume:,.1f} m3 by the snow; {stopped:,.0f} kg of snow stopped and "
+        "became ground.",
     )
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import io
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,14 +35,22 @@ RASTERS: Mapping[str, str] = {
     "thickness": "flow/FT",
     "speed": "flow/FV",
 }
+#: The same for a slide whose ground adapts to the snow.
+GROUND_RASTERS: Mapping[str, str] = {
+    "ground_change": "ground/sfcChange",
+    "changed_terrain": "ground/demAdapted",
+}
 MEANINGS = {
     "peak_thickness": ("m", "Largest thickness of the snow, normal to the ground"),
     "peak_speed": ("m/s", "Largest speed of the snow"),
     "peak_pressure": ("kPa", "Largest pressure, density times the square of the speed"),
     "thickness": ("m", "Thickness of the snow, normal to the ground"),
     "speed": ("m/s", "Speed of the snow"),
+    "ground_change": ("m", "Vertical rise of the ground by the snow"),
+    "changed_terrain": ("m", "Elevation of the ground with this rise"),
 }
 Singles = NDArray[np.float32]
+Mask = NDArray[np.bool_]
 PEAKS_FILE = "peaks.npz"  # in the results folder of a compact run
 
 
@@ -63,6 +72,10 @@ class SlideMaps:
         Distance of the nodes, m.
     density
         Density of the snow, kg/m3.
+    ground_change
+        Vertical rise of the ground, m; None if the ground does not adapt to the snow.
+    stopped_depth
+        The share of it that is snow which has stopped, m.
     """
 
     terrain: Floats
@@ -74,6 +87,19 @@ class SlideMaps:
     south: float
     cell: float
     density: float
+    ground_change: Optional[Floats] = None
+    stopped_depth: Optional[Floats] = None
+
+    @property
+    def changed_terrain(self) -> Optional[Floats]:
+        """Elevations with the rise of the ground, m; None if the ground does not change."""
+        return None if self.ground_change is None else self.terrain + self.ground_change
+
+    @property
+    def holds_snow(self) -> Mask:
+        """Where snow of the slide lies: on the ground, or as a part of it after it stopped."""
+        on_ground: Mask = self.thickness > 0.0
+        return on_ground if self.stopped_depth is None else on_ground | (self.stopped_depth > 0.0)
 
     @property
     def peak_pressure(self) -> Floats:
@@ -117,10 +143,11 @@ def read_maps(folder: Path) -> xarray.Dataset:
     Returns
     -------
     xarray.Dataset
-        ``peak_thickness``, ``peak_speed``, ``peak_pressure``, ``thickness`` and ``speed`` with
-        dimensions y and x: map coordinates of the nodes, m. The attribute ``crs`` is the coordinate
-        system, if it is known; the coordinate ``spatial_ref`` describes it as the CF conventions
-        (and rioxarray) have it.
+        ``peak_thickness``, ``peak_speed``, ``peak_pressure``, ``thickness`` and ``speed``, and if
+        the ground adapts to the snow ``ground_change`` and ``changed_terrain``, with dimensions y
+        and x: map coordinates of the nodes, m. The attribute ``crs`` is the coordinate system, if
+        it is known; the coordinate ``spatial_ref`` describes it as the CF conventions (and
+        rioxarray) have it.
 
     Raises
     ------
@@ -129,7 +156,9 @@ def read_maps(folder: Path) -> xarray.Dataset:
     InputError
         If they are damaged, or xarray (extra ``study``) is not installed.
     """
-    dataset = _maps_dataset({name: read_raster(map_file(folder, name)) for name in RASTERS})
+    files = {name: map_file(folder, name) for name in RASTERS}
+    files.update(_ground_files(folder))
+    dataset = _maps_dataset({name: read_raster(file) for name, file in files.items()})
     for name in ("thickness", "speed"):
         dataset[name].attrs["long_name"] += ", at the end"
     return dataset
@@ -143,24 +172,33 @@ def map_file(folder: Path, name: str) -> Path:
     folder
         The results folder.
     name
-        Name in `RASTERS`.
+        Name in `RASTERS` or `GROUND_RASTERS`.
 
     Raises
     ------
     MissingResultError
         If it is missing.
     """
-    files = [folder / f"{RASTERS[name]}{ending}" for ending in ENDINGS.values()]
+    stem = {**RASTERS, **GROUND_RASTERS}[name]
+    files = [folder / f"{stem}{ending}" for ending in ENDINGS.values()]
     for file in files:
         if file.is_file():
             return file
     raise MissingResultError(f"{files[0]}: missing; a run that is not compact writes it")
 
 
+def _ground_files(folder: Path) -> dict[str, Path]:
+    """Return the files of the ground's change, by name; none if the ground did not change."""
+    named = product(GROUND_RASTERS.items(), ENDINGS.values())
+    files = ((name, folder / f"{stem}{ending}") for (name, stem), ending in named)
+    return {name: file for name, file in files if file.is_file()}
+
+
 def write_maps_of_run(folder: Path, maps: SlideMaps, crs: str, form: MapFormat) -> None:
     """Write all maps into a results folder, in place of those of another format."""
     others = {"ascii": (".tif",), "geotiff": (".asc", ".prj")}
-    for name, stem in RASTERS.items():
+    stems = {**RASTERS, **(GROUND_RASTERS if maps.ground_change is not None else {})}
+    for name, stem in stems.items():
         target = folder / f"{stem}{ENDINGS[form]}"
         target.parent.mkdir(exist_ok=True)
         write_raster(target, maps.raster(getattr(maps, name), crs))
@@ -171,13 +209,15 @@ def write_maps_of_run(folder: Path, maps: SlideMaps, crs: str, form: MapFormat) 
 def present_maps(core: _core.Simulation, scene: Mapping[str, Any]) -> xarray.Dataset:
     """Return the maps of a slide up to now, as `read_maps` does."""
     maps, crs = slide_maps(core), str(scene["terrain"].get("crs", ""))
-    return _maps_dataset({name: maps.raster(getattr(maps, name), crs) for name in RASTERS})
+    names = [*RASTERS, *(GROUND_RASTERS if maps.ground_change is not None else ())]
+    return _maps_dataset({name: maps.raster(getattr(maps, name), crs) for name in names})
 
 
 def _maps_dataset(rasters: Mapping[str, Raster]) -> xarray.Dataset:
     first = rasters["peak_thickness"]
     dataset = map_dataset({name: raster.heights for name, raster in rasters.items()}, first)
-    for name, (unit, meaning) in MEANINGS.items():
+    for name in rasters:
+        unit, meaning = MEANINGS[name]
         dataset[name].attrs.update(units=unit, long_name=meaning)
     return dataset
 

@@ -7,6 +7,8 @@ peaks/             largest values over time: thickness (pft, m), speed (pfv, m/s
                    (ppr, kPa), as ESRI ASCII grids, whose coordinate system is in a .prj if it is
                    known, or as GeoTIFF
 flow/              thickness (FT) and speed (FV) at the end
+ground/            if the ground adapts to the snow: its rise (sfcChange) and its elevations with
+                   it (demAdapted), m
 peaks.npz          the largest values, in place of the grids of a compact run
 slide.json         the figures of `SlideSummary`
 slide.png          the map: terrain, peak speed, outline of the release
@@ -129,7 +131,7 @@ def _summary(
     slide = simulation.slide_facts()
     corners = np.concatenate(release_outlines(scene))
     middle = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
-    rows, columns = np.nonzero(maps.thickness > 0.0)
+    rows, columns = np.nonzero(maps.holds_snow)
     x, y = maps.west + columns * maps.cell, maps.south + rows * maps.cell
     distance = np.hypot(x - middle[0], y - middle[1])
     reached = maps.peak_thickness > 0.0
@@ -143,7 +145,7 @@ def _summary(
         left_terrain_kg=slide["left_terrain_kg"],
         on_terrain_kg=math.fsum(simulation.masses()),
         bonds_made=slide["bonds_made"],
-        bonds_broken=slide["bonds_made"] - slide["bonds"],
+        bonds_broken=slide["bonds_made"] - slide["bonds"] - slide["bonds_in_ground"],
         peak_speed_m_s=float(maps.peak_speed.max()),
         peak_thickness_m=float(maps.peak_thickness.max()),
         peak_pressure_kpa=float(maps.peak_pressure.max()),
@@ -152,6 +154,8 @@ def _summary(
         secondary_kg=slide["secondary_kg"],
         inflow_kg=slide["inflow_kg"],
         detrained_kg=slide["detrained_kg"],
+        stopped_kg=slide.get("stopped_kg", 0.0),
+        ground_gained_m3=slide.get("ground_gained_m3", 0.0),
         drop_m=float(maps.terrain[reached].max() - elevations.min()) if elevations.size else 0.0,
     )
     of_files = str(scene["terrain"].get("notes", "")).splitlines()

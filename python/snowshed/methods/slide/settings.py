@@ -55,6 +55,18 @@ class SlideSettings(MethodSettings):
         With detrainment, faster snow destroys the forest [m/s]. 0 < value <= 1000; default 40.
     forest_max_thickness : float
         With detrainment, thicker snow destroys the forest [m]. 0 < value <= 100; default 10.
+    ground_gains_stopped : bool
+        The ground rises where snow has stopped, which then moves no more. Default False.
+    ground_gains_detrained : bool
+        The ground rises where forest takes snow. Default False.
+    ground_loses_entrained : bool
+        The ground falls where the slide takes up snow. Default False.
+    ground_min_change : float
+        The ground changes when the change at one node exceeds this depth [m]. 0 <= value <= 100;
+        default 0.1.
+    ground_rest_time : float
+        Snow that rests as long as this is ground; in the improved mode only [s]. 0 <= value <=
+        10000; default 1.
     artificial_viscosity : float
         AvaFrame's artificial viscosity; in the compatible mode only. 0 <= value <= 1e+06; default
         100.
@@ -105,6 +117,11 @@ class SlideSettings(MethodSettings):
     forest_min_thickness: Optional[float] = default(0.6)
     forest_max_speed: Optional[float] = default(40.0)
     forest_max_thickness: Optional[float] = default(10.0)
+    ground_gains_stopped: Optional[bool] = default(False)
+    ground_gains_detrained: Optional[bool] = default(False)
+    ground_loses_entrained: Optional[bool] = default(False)
+    ground_min_change: Optional[float] = default(0.1)
+    ground_rest_time: Optional[float] = default(1.0)
     artificial_viscosity: Optional[float] = default(100.0)
     columns: Optional[Literal["vertical", "across_flow"]] = default("vertical")
     mixing_rate: Optional[float] = default(8.0)

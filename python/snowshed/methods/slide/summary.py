@@ -26,10 +26,15 @@ class SlideSummary(Summary):
         inflows.
     entrained_kg, detrained_kg
         Mass that the slide took up, and that forest took from it.
+    stopped_kg, ground_gained_m3
+        Mass that stopped and became ground, and the volume by which the ground rose: that of snow
+        that stopped or that forest took, less that of entrained snow; 0 if the ground does not
+        adapt to the snow.
     left_terrain_kg, on_terrain_kg
         Mass that left the terrain or fell into its holes, and mass on the terrain at the end.
     bonds_made, bonds_broken
-        Numbers of bonds between particles, and of bonds that broke or left the terrain.
+        Numbers of bonds between particles, and of bonds that broke or left the terrain, without
+        those of snow that became ground.
     peak_speed_m_s, peak_thickness_m, peak_pressure_kpa
         Largest values anywhere.
     reached_m2
@@ -60,6 +65,8 @@ class SlideSummary(Summary):
     secondary_kg: float = 0.0
     inflow_kg: float = 0.0
     detrained_kg: float = 0.0
+    stopped_kg: float = 0.0
+    ground_gained_m3: float = 0.0
     notes: tuple[str, ...] = ()
 
     FILE: ClassVar[str] = "slide.json"
@@ -73,6 +80,7 @@ class SlideSummary(Summary):
             "released later": self.secondary_kg,
             "brought by inflows": self.inflow_kg,
             "taken by forest": self.detrained_kg,
+            "stopped and became ground": self.stopped_kg,
         }
         return {
             "ended": f"{self.ended} after {self.sim_time_s:.2f} s",

@@ -5,7 +5,7 @@ import re
 import pytest
 from helpers.slide_files import box, write_lines, write_polygons, write_project
 
-from snowshed import InputError, SnowshedNote
+from snowshed import InputError, SnowshedNote, _core
 from snowshed.scene import avaframe_scene
 from snowshed.scene.builders.avaframe.project import avaframe_simulations
 
@@ -112,3 +112,20 @@ def test_bad_hydrographs_are_refused(tmp_path, rows, message):
     write_hydrograph(project, rows=rows)
     with pytest.raises(InputError, match=re.escape(message)):
         avaframe_scene(project)
+
+
+def test_ground_that_adapts_has_avaframes_keys(tmp_path):
+    assert not avaframe_scene(write_project(tmp_path / "a")).numerics.ground_gains_stopped
+    ini = "adaptSfcStopped = 1\nadaptSfcEntrainment = 1\nthresholdAdaptSfc = 0.02\n"
+    numerics = avaframe_scene(write_project(tmp_path / "b", ini)).numerics
+    assert numerics.ground_gains_stopped
+    assert numerics.ground_loses_entrained
+    assert not numerics.ground_gains_detrained
+    assert numerics.ground_min_change == 0.02
+
+
+def test_ground_that_adapts_is_refused_with_later_snow(tmp_path):
+    project = write_project(tmp_path, "adaptSfcStopped = 1\n")
+    write_polygons(project / "Inputs/SECREL/sec.geojson", box(44, 10, 54, 30), thickness=0.7)
+    with pytest.raises(InputError, match="ground_gains_stopped: not with secondary releases"):
+        _core.Simulation(avaframe_scene(project).resolve().json, project)

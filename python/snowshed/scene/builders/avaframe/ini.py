@@ -22,6 +22,7 @@ from snowshed.scene.builders.avaframe.keys import (
     OTHER_FRICTION,
     OWN_KEYS,
     SETTINGS,
+    SWITCHES,
     VARIATIONS,
     WITHOUT_EFFECT,
 )
@@ -31,7 +32,9 @@ MAX_TIME = 400.0  # s
 MIN_STEP = 1e-6  # s; in shorter steps, rounding exceeds the motion
 MAX_THICKNESS = 100.0  # m, of snow
 SIM_TYPES = ("entres", "ent", "res", "null")
-RESULT_TYPES = ("ppr", "pft", "pfv", "P", "FT", "FV")
+RESULT_TYPES = ("ppr", "pft", "pfv", "P", "FT", "FV", "sfcChange", "demAdapted")
+#: Result types that need ground which adapts to the snow, and are made at the end only.
+OF_CHANGED_GROUND = ("sfcChange", "demAdapted")
 
 
 @dataclass
@@ -112,10 +115,10 @@ def read_ini(file: Optional[Path]) -> ProjectSettings:
     if given.is_blank("meshcellsize"):
         project.values["cell"] = 0.0
     project.values.update(_friction(given))
-    if "snowslide" in given:
-        project.values["bonds"] = given.switch("snowslide")
-    if "explicitfriction" in given:
-        project.values["explicit_friction"] = given.switch("explicitfriction")
+    for key, name in SWITCHES.items():
+        if key in given:
+            project.values[name] = given.switch(key)
+            project.positions[name] = given.where(key)
     project.max_time = given.number("tend", MAX_TIME, above=0, most=1e9)
     project.sim_types = given.words("simtypelist", ("available", *SIM_TYPES), ("available",))
     project.release_thickness = _forced_thickness(given, "relth")
@@ -125,6 +128,7 @@ def read_ini(file: Optional[Path]) -> ProjectSettings:
     project.result_types = _result_types(given)
     project.saved_times = _saved_times(given, project.max_time)
     project.positions["saved_times"] = given.where("tsteps")
+    _check_ground_maps(given, project)
     project.with_dam = given.switch("dam", True)
     project.with_secondary_release = given.switch("secrelarea", True)
     project.secondary_thickness = _forced_thickness(given, "secondaryrelth")
@@ -243,11 +247,12 @@ class _Keys:
                 )
             elif not (
                 key in SETTINGS
+                or key in SWITCHES
                 or key in OWN_KEYS
                 or key in WITHOUT_EFFECT
                 or key.endswith(OTHER_FRICTION)
             ):
-                near = suggestion(key, [*SETTINGS, *OWN_KEYS, *FIXED_VALUES])
+                near = suggestion(key, [*SETTINGS, *SWITCHES, *OWN_KEYS, *FIXED_VALUES])
                 raise InputError(f"{self.where(key)}: unknown key{near}")
 
 
@@ -348,6 +353,22 @@ def _result_types(given: _Keys) -> tuple[str, ...]:
     # com1DFA also writes a map of the first arrival of snow by default; it is not made here.
     types = given.words("restype", (*RESULT_TYPES, "timeInfo"), ("ppr", "pft", "pfv"))
     return tuple(kind for kind in types if kind != "timeInfo") or ("pfv",)
+
+
+def _check_ground_maps(given: _Keys, project: ProjectSettings) -> None:
+    """Refuse maps of the changed ground without changes, and before the end."""
+    wanted = [kind for kind in project.result_types if kind in OF_CHANGED_GROUND]
+    if not wanted:
+        return
+    if not any(project.values.get(name) for name in SWITCHES.values() if name.startswith("ground")):
+        raise InputError(
+            f"{given.where('restype')}: {wanted[0]} needs adaptSfcStopped, adaptSfcDetrainment or "
+            "adaptSfcEntrainment"
+        )
+    if project.saved_times:
+        raise InputError(
+            f"{given.where('restype')}: {wanted[0]} is made at the end only; leave tSteps empty"
+        )
 
 
 def _saved_times(given: _Keys, end: float) -> tuple[float, ...]:

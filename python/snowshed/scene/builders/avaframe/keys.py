@@ -26,6 +26,15 @@ SETTINGS: Mapping[str, str] = {
     "entdefresistance": "entrainment_work",
     "thresholdmasssplit": "split_ratio",
     "stopcrit": "stop_ratio",
+    "thresholdadaptsfc": "ground_min_change",
+}
+#: Keys that are switches here.
+SWITCHES: Mapping[str, str] = {
+    "snowslide": "bonds",
+    "explicitfriction": "explicit_friction",
+    "adaptsfcstopped": "ground_gains_stopped",
+    "adaptsfcdetrainment": "ground_gains_detrained",
+    "adaptsfcentrainment": "ground_loses_entrained",
 }
 #: The key of the Coulomb coefficient in each law of friction, and its default in com5SnowSlide.
 FRICTION: Mapping[str, tuple[str, float]] = {
@@ -34,9 +43,6 @@ FRICTION: Mapping[str, tuple[str, float]] = {
 }
 #: Keys that may only have the one value that is supported here.
 FIXED_VALUES: Mapping[str, str] = {
-    "adaptsfcdetrainment": "0",
-    "adaptsfcentrainment": "0",
-    "adaptsfcstopped": "0",
     "centeredposition": "1",
     "createrangetimediagram": "false",
     "curvaccinfriction": "1",
@@ -88,7 +94,7 @@ WITHOUT_EFFECT = (
     "resizethreshold", "rhosediment", "saveparticlesini", "scenario",
     "seed", "sizesediment", "sphkr0", "sphoptionini",
     "stopcritini", "stopcritinismall", "subgridmixingfactorini", "thfromini",
-    "thresholdadaptsfc", "thresholdprojection", "thresholdvalue",
+    "thresholdprojection", "thresholdvalue",
     "timestepdistance", "tini", "ttdiagram",
     "uflowingthreshold", "usecompression", "visuparticleproperties", "volclassmedium",
     "volclasssmall",
@@ -100,9 +106,9 @@ OTHER_FRICTION = (
 )  # fmt: skip
 OWN_KEYS = (
     "dam", "detk", "detrainment", "dissdam", "entth", "entthfromfile", "entthifmissinginshp",
-    "explicitfriction", "frictmodel", "niterdam", "releasescenario", "relth", "relthfromfile",
+    "frictmodel", "niterdam", "releasescenario", "relth", "relthfromfile",
     "restitutioncoefficient", "restype", "secondaryrelth", "secondaryrelthfromfile", "secrelarea",
-    "simtypelist", "snowslide", "sphkernelradius", "tend", "thresholdpointinrel",
+    "simtypelist", "sphkernelradius", "tend", "thresholdpointinrel",
     "timedependentrelease", "timedependentreleasescenarios", "tsteps",
     *(key for key, _ in FRICTION.values()),
 )  # fmt: skip
