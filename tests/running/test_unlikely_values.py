@@ -108,7 +108,7 @@ def flowing(**values):
     [
         ({"erosion_pressure": 100}, "erosion_pressure: 100 is not used, because erosion is false"),
         ({"rheology": "newtonian", "cohesion": 100}, "cohesion: 100 is not used"),
-        ({"regularisation": "bi_viscous"}, "because stress is \"elastoplastic\""),
+        ({"regularisation": "bi_viscous"}, 'because stress is "elastoplastic"'),
         ({"spacing": 0.15}, "/bodies/0: the box is 200 mm thick, less than two"),
         ({"cohesion": 0.2}, "/numerics/cohesion: 0.2 Pa is unusual"),
         ({"yield_iterations": 1}, "/numerics/yield_iterations: 1 is unusual; most values are 10"),

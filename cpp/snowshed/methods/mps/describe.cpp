@@ -68,24 +68,23 @@ void describe(SettingsVisitor& v, Settings& s) {
 
 std::vector<UnusedSettings> unused_settings(const Settings& s) {
   const bool newtonian = s.rheology == ShearLaw::newtonian;
-  return {{!s.erosion,
-           "erosion is false",
-           {"erodible_thickness", "erosion_pressure", "erosion_speed", "deposition_pressure",
-            "deposition_speed"}},
-          {newtonian,
-           "rheology is \"newtonian\"",
-           {"cohesion", "friction_angle", "regularisation", "stress_growth", "yield_strain",
-            "yield_iterations"}},
-          {s.rheology != ShearLaw::bingham_dilatant,
-           std::string("rheology is \"") + name_of(s.rheology) + "\"",
-           {"dilatant_rate", "dilatant_exponent"}},
-          {!newtonian && s.stress == Stress::published,
-           "stress is \"published\"",
-           {"yield_strain"}},
-          {!newtonian && s.stress == Stress::elastoplastic,
-           "stress is \"elastoplastic\"",
-           {"regularisation", "stress_growth"}},
-          {s.source == Source::published, "source is \"published\"", {"compensation"}}};
+  return {
+      {!s.erosion,
+       "erosion is false",
+       {"erodible_thickness", "erosion_pressure", "erosion_speed", "deposition_pressure",
+        "deposition_speed"}},
+      {newtonian,
+       "rheology is \"newtonian\"",
+       {"cohesion", "friction_angle", "regularisation", "stress_growth", "yield_strain",
+        "yield_iterations"}},
+      {s.rheology != ShearLaw::bingham_dilatant,
+       std::string("rheology is \"") + name_of(s.rheology) + "\"",
+       {"dilatant_rate", "dilatant_exponent"}},
+      {!newtonian && s.stress == Stress::published, "stress is \"published\"", {"yield_strain"}},
+      {!newtonian && s.stress == Stress::elastoplastic,
+       "stress is \"elastoplastic\"",
+       {"regularisation", "stress_growth"}},
+      {s.source == Source::published, "source is \"published\"", {"compensation"}}};
 }
 
 }  // namespace snowshed::methods::mps

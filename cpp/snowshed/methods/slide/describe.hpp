@@ -2,8 +2,8 @@
 #pragma once
 
 #include "snowshed/methods/enum_names.hpp"
-#include "snowshed/methods/settings_visitor.hpp"
 #include "snowshed/methods/scene_parts.hpp"
+#include "snowshed/methods/settings_visitor.hpp"
 #include "snowshed/methods/slide/settings.hpp"
 #include "snowshed/methods/unused_settings.hpp"
 
