@@ -23,7 +23,10 @@ from snowshed.scene.builders.grains import grains_scene
 from snowshed.scene.loading import LoadingStage
 
 FRAMES = 5  # of the film
-SEASON = "date,snowfall_m,temperature_c\n2024-12-01,0.2,-4\n2024-12-02T06:00+01:00,0.1,1.5\n"
+SEASON = """date,snowfall_m,temperature_c
+2024-12-01T06:00+01:00,0.2,-4
+2024-12-02T06:00+01:00,0.1,1.5
+"""
 MEASURED = "tilt_deg,event,height_m,height_std_m\n40,1,0.05,0.005\n50,2,0.08,0.01\n"
 STUDY = """name = "a"
 dimension = 2
