@@ -33,9 +33,9 @@ from snowshed.base.messages import csv_cell, printable
 from snowshed.io.atomic import write_text
 from snowshed.io.raster.output import write_raster
 from snowshed.io.raster.raster import GEOTIFF, Raster, read_raster
-from snowshed.methods.slide.maps import GROUND_RASTERS, RASTERS, SlideMaps, map_file, slide_maps
+from snowshed.methods.slide.maps import SlideMaps, map_file, rasters_of, slide_maps
 from snowshed.methods.slide.summary import SlideSummary
-from snowshed.scene.builders.avaframe.keys import SWITCHES
+from snowshed.scene.builders.avaframe.keys import GROUND_SWITCHES
 from snowshed.scene.builders.avaframe.project import AvaFrameSimulation
 from snowshed.scene.scene import ResolvedScene
 
@@ -153,11 +153,10 @@ def particle_table(quantities: Mapping[str, Numbers]) -> pd.DataFrame:
 def _final_maps(results: Path, resolved: ResolvedScene) -> dict[str, Raster]:
     """Return the maps at the end by type, from a results folder."""
     numerics = resolved.data["numerics"]
-    changes = any(numerics[name] for name in SWITCHES.values() if name.startswith("ground_"))
-    ground = GROUND_RASTERS if changes else {}
+    changes_ground = any(numerics[name] for name in GROUND_SWITCHES.values())
     maps = {
         stem.rpartition("/")[2]: read_raster(map_file(results, name))
-        for name, stem in {**RASTERS, **ground}.items()
+        for name, stem in rasters_of(changes_ground=changes_ground).items()
     }
     maps["P"] = replace(maps["FV"], heights=_pressure(resolved, maps["FV"].heights))
     crs = _crs(resolved)

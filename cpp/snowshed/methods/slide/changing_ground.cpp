@@ -188,10 +188,11 @@ bool mark_rested(const Model& model, const State& state, Workspace& work) {
 /// Turns the marked particles into ground.
 void bury_marked(const Model& model, State& state, Workspace& work) {
   const Particles& p = state.particles;
-  const double column = model.settings.density * model.terrain.cell() * model.terrain.cell();
+  ChangingGround& ground = *state.ground;
   for (std::size_t i = 0; i < p.size(); ++i)
     if (work.removed[i])
-      state.ground->add_around(work.cell_positions.at(i), p.mass[i] / column, true);
+      ground.add_around(work.cell_positions.at(i),
+                        ground.depth_of(p.mass[i], model.settings.density), true);
   remove_marked(state, work);
   work.reserve_memory(model, state);  // for fewer particles: allocates nothing
 }

@@ -31,7 +31,11 @@ struct ChangingGround {
     waiting[terrain.index(column, row)] += depth;
     waits.include(column, row);
   }
-  /// Adds a volume over the area of a cell (m) that waits, shared by the nodes around a position.
+  /// The depth of a mass (kg) of a density (kg/m3) over the area of a cell on the map, m.
+  double depth_of(double mass, double density) const {
+    return mass / (density * terrain.cell() * terrain.cell());
+  }
+  /// Adds such a depth that waits, shared by the nodes around a position.
   void add_around(const geometry::CellPosition&, double depth, bool has_stopped);
   /// Sets the ground and `waits` to what follows from the depths at the nodes.
   void derive(const Terrain& first);

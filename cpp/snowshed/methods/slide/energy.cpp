@@ -194,12 +194,10 @@ void EnergyRecorder::after_motion(const Model& model, const State& state, const 
     const double mass = state.particles.mass[i];
     const bool is_gone = !work.gone.empty() && work.gone[i];
     if (work.removed[i] || is_gone) {
-      if (is_gone && !work.removed[i])
-        e.detrainment += mass * (0.5 * before_[i].squaredNorm() + model.gravity * heights_[i]);
-      else if (work.removed[i] == became_ground)
-        e.ground += mass * (0.5 * before_[i].squaredNorm() + model.gravity * heights_[i]);
-      else
-        e.left_terrain += mass * (0.5 * before_[i].squaredNorm() + model.gravity * heights_[i]);
+      double& taken = !work.removed[i]                   ? e.detrainment
+                      : work.removed[i] == became_ground ? e.ground
+                                                         : e.left_terrain;
+      taken += mass * (0.5 * before_[i].squaredNorm() + model.gravity * heights_[i]);
       continue;
     }
     // Friction reduces the velocity, and afterwards the ground turns it.

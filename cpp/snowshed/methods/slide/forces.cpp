@@ -90,7 +90,7 @@ ForestAction forest_action(const Model& model, const State& state, const GridFie
 
 /// Shares of the fresh mass below which forest takes all of a particle. Among thicker snow a
 /// particle loses the same share in each step, so that it would never vanish, but get too light to
-/// divide by its mass. AvaFrame has no such limit; that of the compatible mode changes no figure.
+/// divide by its mass. AvaFrame has no such limit; with that of the compatible mode maps agree.
 constexpr double min_share = 0.01, min_share_as_avaframe = 1e-12;
 /// On ground that changes, a particle of any mass decides on the peak speed where it flows alone.
 /// This limit only avoids numbers below the smallest.
@@ -117,18 +117,16 @@ void detrain(const Model& model, double area, double dt, double speed, std::size
 void add_detrained_ground(const Model& model, State& state, const Workspace& work, std::size_t i,
                           double mass) {
   if (!state.ground || model.compatible() || !model.settings.ground_gains_detrained) return;
-  const double cell = model.terrain.cell();
-  state.ground->add_around(work.cell_positions.at(i), mass / (model.settings.density * cell * cell),
-                           false);
+  state.ground->add_around(work.cell_positions.at(i),
+                           state.ground->depth_of(mass, model.settings.density), false);
 }
 
 /// Improved mode: takes the entrained snow from the ground, where it lay.
 void take_entrained_ground(const Model& model, State& state, std::size_t node, double mass) {
   if (!state.ground || model.compatible() || !model.settings.ground_loses_entrained) return;
-  const double cell = model.terrain.cell();
   const int columns = model.terrain.columns();
   state.ground->add(int(node) % columns, int(node) / columns,
-                    -mass / (model.settings.entrained_density * cell * cell));
+                    -state.ground->depth_of(mass, model.settings.entrained_density));
 }
 
 /// Applies entrainment, and detrainment and resistance in forest.

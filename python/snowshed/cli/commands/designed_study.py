@@ -21,6 +21,7 @@ from snowshed.cli.options.common import (
     resume_option,
     same_version_option,
 )
+from snowshed.cli.options.no_effect import longest_name, refuse_given, refuse_without_effect
 from snowshed.snow.stack.quantities import MEASURES
 from snowshed.study.definition import Study
 
@@ -96,23 +97,13 @@ def check_options(context: click.Context) -> Path:
     folder: Optional[Path] = context.params["folder"]
     if folder is None:
         raise click.UsageError("give -o DIR, the folder of the results")
+    names = {parameter.name: longest_name(parameter) for parameter in context.command.params}
     for option, useless in IGNORED_OPTIONS.items():
         if context.params[option] is not None:
-            _refuse(context, useless, f"has no effect with {_flag(context, option)}")
+            refuse_without_effect(useless, f"with {names[option]}")
     if context.params["stored"] is None:
-        _refuse(context, ["name"], "needs --stored")
+        refuse_given(["name"], "needs --stored")
     return folder
-
-
-def _refuse(context: click.Context, names: Sequence[str], reason: str) -> None:
-    for name in names:
-        if context.params.get(name):
-            raise click.UsageError(f"{_flag(context, name)} {reason}")
-
-
-def _flag(context: click.Context, name: str) -> str:
-    parameters = {parameter.name: parameter for parameter in context.command.params}
-    return max(parameters[name].opts, key=len)
 
 
 def chosen_study(context: click.Context, folder: Path, design: Callable[[], Study]) -> Study:

@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Optional
 
 import click
-from click.core import ParameterSource
 
 from snowshed.analysis.regression.geometry import FRICTION
 from snowshed.cli.options.common import PATH, quiet_notes_option
+from snowshed.cli.options.no_effect import refuse_without_effect
 from snowshed.cli.output.terminal import write_out
 
 
@@ -65,8 +65,8 @@ def geometry(
     """  # noqa: D301 - click wants the control character
     from snowshed.analysis.regression.geometry import geometry_study
 
-    if trial and context.get_parameter_source("dx") == ParameterSource.COMMANDLINE:
-        raise click.UsageError("--dx has no effect with --trial, which has its own cell size")
+    if trial:
+        refuse_without_effect(["dx"], "with --trial, which has its own cell size")
     study = geometry_study(between, friction=friction, dx=dx, seeds=seeds, trial=trial)
     if file is None:
         write_out(study.to_toml())

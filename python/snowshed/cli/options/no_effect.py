@@ -23,8 +23,24 @@ def refuse_without_effect(names: Sequence[str], reason: str) -> None:
     click.UsageError
         Naming the first such option.
     """
+    refuse_given(names, f"has no effect {reason}")
+
+
+def refuse_given(names: Sequence[str], complaint: str) -> None:
+    """Refuse options of the current command that are given; the complaint follows their name.
+
+    Raises
+    ------
+    click.UsageError
+        Naming the first such option.
+    """
     context = click.get_current_context()
     for parameter in context.command.params:
         name = str(parameter.name)
         if name in names and context.get_parameter_source(name) is ParameterSource.COMMANDLINE:
-            raise click.UsageError(f"{max(parameter.opts, key=len)} has no effect {reason}")
+            raise click.UsageError(f"{longest_name(parameter)} {complaint}")
+
+
+def longest_name(parameter: click.Parameter) -> str:
+    """Return the longest name of an option, such as ``--output``."""
+    return max(parameter.opts, key=len)

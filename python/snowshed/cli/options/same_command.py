@@ -8,6 +8,8 @@ from collections.abc import Iterator
 import click
 from click.core import ParameterSource
 
+from snowshed.cli.options.no_effect import longest_name
+
 
 def same_command(*more: str) -> str:
     """Return the current command with further options, quoted for a shell.
@@ -35,5 +37,5 @@ def _argument_texts(parameter: click.Parameter, value: object) -> Iterator[str]:
     values = value if isinstance(value, (tuple, list)) else [value]
     for each in values:
         if isinstance(parameter, click.Option):
-            yield max(parameter.opts, key=len)
+            yield longest_name(parameter)
         yield str(each)

@@ -126,7 +126,7 @@ def note_replaced_fields(fields: Sequence[str], file: str, replacement: str) -> 
     fields
         Names of the fields of the file.
     file
-        The file, for the note.
+        Name of the file, which the note states.
     replacement
         Source of the thickness in their place, such as an argument or a raster.
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from datetime import datetime, timedelta, timezone
+from typing import Optional
 
 from snowshed._core import InputError
 from snowshed.io.weather.amounts import HOUR, usual_step
@@ -26,24 +27,18 @@ def on_one_clock(station: Station, source: str) -> Station:
     """
     rows, offset, notes = station.rows, station.utc_offset, [*station.notes]
     aware = rows[0].time.tzinfo is not None
-    for row in rows:
-        if (row.time.tzinfo is not None) != aware:
-            raise InputError(
-                f"{source}, line {row.line}, column date: {row.time.isoformat(' ')} has "
-                f"{'no' if aware else 'a'} UTC offset, but line {rows[0].line} has "
-                f"{'one' if aware else 'none'}; give all times an offset, or none"
-            )
-    if aware and are_local_days([row.time for row in rows]):
-        rows = [replace_values(row, time=row.time.replace(tzinfo=None)) for row in rows]
-    elif aware:
-        offsets = {row.time.utcoffset() or timedelta(0) for row in rows}
-        offset = min(offsets) / HOUR
-        rows = [_moved(row, min(offsets), source) for row in rows]
-        if len(offsets) > 1:
-            notes.append(
-                f"its times have {len(offsets)} UTC offsets; they are converted to UTC{offset:+g} "
-                "h, which also defines the days"
-            )
+    clock = standard_clock(
+        [row.time for row in rows],
+        lambda number: (
+            f"{source}, line {rows[number].line}, column date: {rows[number].time.isoformat(' ')}"
+        ),
+        f"line {rows[0].line}",
+    )
+    if aware:
+        rows = [replace_values(row, time=time) for row, time in zip(rows, clock.times)]
+    if clock.utc_offset is not None:
+        offset = clock.utc_offset
+    notes += clock.notes
     _check_years(rows, source)
     step = usual_step([row.time for row in rows])
     _check_order(rows, source, step)
@@ -52,31 +47,77 @@ def on_one_clock(station: Station, source: str) -> Station:
     return replace(station, rows=rows, utc_offset=offset, notes=notes)
 
 
-def are_local_days(times: Sequence[datetime]) -> bool:
+@dataclass(frozen=True)
+class StandardClock:
+    """Times without offsets on the clock of their smallest offset, hours; None if it is unknown."""
+
+    times: Sequence[datetime]
+    utc_offset: Optional[float] = None
+    notes: Sequence[str] = ()
+
+
+def standard_clock(
+    times: Sequence[datetime], describe: Callable[[int], str], first: str
+) -> StandardClock:
+    """Return times on the clock of their smallest offset, which is standard time.
+
+    Times without offsets, and midnights of local days, stay as they are.
+
+    Parameters
+    ----------
+    times
+        The times of a table.
+    describe
+        Returns the place and the text of a time by its number, for messages.
+    first
+        The place of the first time.
+
+    Raises
+    ------
+    InputError
+        If only some times have offsets, or one has no universal time.
+    """
+    aware = bool(times) and times[0].tzinfo is not None
+    for number, time in enumerate(times):
+        if (time.tzinfo is not None) != aware:
+            raise InputError(
+                f"{describe(number)} has {'no' if aware else 'a'} UTC offset, but {first} has "
+                f"{'one' if aware else 'none'}; give all times an offset, or none"
+            )
+    if not aware:
+        return StandardClock(times)
+    if _are_local_days(times):
+        return StandardClock([time.replace(tzinfo=None) for time in times])
+    offsets = {time.utcoffset() or timedelta(0) for time in times}
+    standard = timezone(min(offsets))
+    moved = []
+    for number, time in enumerate(times):
+        try:
+            moved.append(time.astimezone(standard).replace(tzinfo=None))
+        except OverflowError:
+            raise InputError(f"{describe(number)} has no universal time") from None
+    hours = min(offsets) / HOUR
+    notes = [
+        f"its times have {len(offsets)} UTC offsets; they are converted to UTC{hours:+g} h, which "
+        "also defines the days"
+    ]
+    return StandardClock(moved, hours, notes if len(offsets) > 1 else [])
+
+
+def _are_local_days(times: Sequence[datetime]) -> bool:
     """Return whether times with several offsets all are the midnight of a local day.
 
     Examples
     --------
     >>> zones = [timezone(timedelta(hours=hours)) for hours in (2, 1)]
     >>> times = [datetime(2024, 10, 27, tzinfo=zones[0]), datetime(2024, 10, 28, tzinfo=zones[1])]
-    >>> are_local_days(times), are_local_days(times[:1])
+    >>> _are_local_days(times), _are_local_days(times[:1])
     (True, False)
     """
     offsets = {time.utcoffset() for time in times}
     return len(offsets) > 1 and all(
         (time.hour, time.minute, time.second, time.microsecond) == (0, 0, 0, 0) for time in times
     )
-
-
-def _moved(row: Observation, offset: timedelta, source: str) -> Observation:
-    try:
-        time = row.time.astimezone(timezone(offset)).replace(tzinfo=None)
-        return replace_values(row, time=time)
-    except OverflowError:
-        raise InputError(
-            f"{source}, line {row.line}, column date: {row.time.isoformat(' ')} has no universal "
-            "time"
-        ) from None
 
 
 def _check_years(rows: Sequence[Observation], source: str) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
 
@@ -40,6 +39,7 @@ GROUND_RASTERS: Mapping[str, str] = {
     "ground_change": "ground/sfcChange",
     "changed_terrain": "ground/demAdapted",
 }
+
 MEANINGS = {
     "peak_thickness": ("m", "Largest thickness of the snow, normal to the ground"),
     "peak_speed": ("m/s", "Largest speed of the snow"),
@@ -52,6 +52,11 @@ MEANINGS = {
 Singles = NDArray[np.float32]
 Mask = NDArray[np.bool_]
 PEAKS_FILE = "peaks.npz"  # in the results folder of a compact run
+
+
+def rasters_of(*, changes_ground: bool) -> dict[str, str]:
+    """Return the rasters of a slide in its results folder, without their endings."""
+    return {**RASTERS, **(GROUND_RASTERS if changes_ground else {})}
 
 
 @dataclass(frozen=True)
@@ -156,9 +161,13 @@ def read_maps(folder: Path) -> xarray.Dataset:
     InputError
         If they are damaged, or xarray (extra ``study``) is not installed.
     """
-    files = {name: map_file(folder, name) for name in RASTERS}
-    files.update(_ground_files(folder))
-    dataset = _maps_dataset({name: read_raster(file) for name, file in files.items()})
+    of_ground = [
+        name
+        for name in GROUND_RASTERS
+        if any(file.is_file() for file in _possible_files(folder, name))
+    ]
+    names = [*RASTERS, *of_ground]
+    dataset = _maps_dataset({name: read_raster(map_file(folder, name)) for name in names})
     for name in ("thickness", "speed"):
         dataset[name].attrs["long_name"] += ", at the end"
     return dataset
@@ -179,26 +188,23 @@ def map_file(folder: Path, name: str) -> Path:
     MissingResultError
         If it is missing.
     """
-    stem = {**RASTERS, **GROUND_RASTERS}[name]
-    files = [folder / f"{stem}{ending}" for ending in ENDINGS.values()]
+    files = _possible_files(folder, name)
     for file in files:
         if file.is_file():
             return file
     raise MissingResultError(f"{files[0]}: missing; a run that is not compact writes it")
 
 
-def _ground_files(folder: Path) -> dict[str, Path]:
-    """Return the files of the ground's change, by name; none if the ground did not change."""
-    named = product(GROUND_RASTERS.items(), ENDINGS.values())
-    files = ((name, folder / f"{stem}{ending}") for (name, stem), ending in named)
-    return {name: file for name, file in files if file.is_file()}
+def _possible_files(folder: Path, name: str) -> list[Path]:
+    """Return the files of a map in all formats."""
+    stem = rasters_of(changes_ground=True)[name]
+    return [folder / f"{stem}{ending}" for ending in ENDINGS.values()]
 
 
 def write_maps_of_run(folder: Path, maps: SlideMaps, crs: str, form: MapFormat) -> None:
     """Write all maps into a results folder, in place of those of another format."""
     others = {"ascii": (".tif",), "geotiff": (".asc", ".prj")}
-    stems = {**RASTERS, **(GROUND_RASTERS if maps.ground_change is not None else {})}
-    for name, stem in stems.items():
+    for name, stem in rasters_of(changes_ground=maps.ground_change is not None).items():
         target = folder / f"{stem}{ENDINGS[form]}"
         target.parent.mkdir(exist_ok=True)
         write_raster(target, maps.raster(getattr(maps, name), crs))
@@ -209,7 +215,7 @@ def write_maps_of_run(folder: Path, maps: SlideMaps, crs: str, form: MapFormat) 
 def present_maps(core: _core.Simulation, scene: Mapping[str, Any]) -> xarray.Dataset:
     """Return the maps of a slide up to now, as `read_maps` does."""
     maps, crs = slide_maps(core), str(scene["terrain"].get("crs", ""))
-    names = [*RASTERS, *(GROUND_RASTERS if maps.ground_change is not None else ())]
+    names = rasters_of(changes_ground=maps.ground_change is not None)
     return _maps_dataset({name: maps.raster(getattr(maps, name), crs) for name in names})
 
 

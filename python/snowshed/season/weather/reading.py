@@ -11,7 +11,7 @@ import math
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from datetime import datetime, timezone
+from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Optional, Union
 
@@ -22,7 +22,7 @@ from snowshed.base.messages import quoted
 from snowshed.base.notes import InputNote, issue_note
 from snowshed.base.paths import PathLike
 from snowshed.io.csv_table import TableRow, frame_as_text, read_text_table
-from snowshed.io.weather.clock import are_local_days
+from snowshed.io.weather.clock import standard_clock
 from snowshed.io.weather.joined import read_stations
 from snowshed.io.weather.observation import Station, iso_time
 from snowshed.io.weather.recognise import read_station
@@ -154,12 +154,17 @@ def read_record(
         _check_units(season.attrs.get("units", {}))
     if snow_from != AUTO:
         raise InputError(f"{name}: its snow is that of its column snowfall_m, not {snow_from}")
-    dates, notes = _on_one_clock(
-        [_date(row.cells["date"], f"{row.where}, column date") for row in table.rows], table.rows
+    written = table.rows
+    clock = standard_clock(
+        [_date(row.cells["date"], f"{row.where}, column date") for row in written],
+        lambda number: (
+            f"{written[number].where}, column date: {quoted(written[number].cells['date'])}"
+        ),
+        written[0].place if written else "",
     )
-    rows = [_weather(row, date) for row, date in zip(table.rows, dates)]
+    rows = [_weather(row, date) for row, date in zip(written, clock.times)]
     check_rows(rows, table.rows, name)
-    return SeasonRecord(rows, [*notes, *unusual_numbers(rows), *warm_snow(rows)])
+    return SeasonRecord(rows, [*clock.notes, *unusual_numbers(rows), *warm_snow(rows)])
 
 
 def weather_files(season: Season) -> list[Path]:
@@ -247,44 +252,3 @@ def _date(text: str, where: str) -> datetime:
         raise InputError(
             f"{where}: {quoted(text)} is not a date such as 2024-12-31 or 2024-12-31T18:00"
         ) from None
-
-
-def _on_one_clock(
-    times: Sequence[datetime], rows: Sequence[TableRow]
-) -> tuple[list[datetime], list[str]]:
-    """Return times on the clock of the smallest offset, which is standard time, and notes.
-
-    Raises
-    ------
-    InputError
-        If only some times have offsets.
-    """
-    offsets = [time.utcoffset() for time in times]
-    for offset, row in zip(offsets, rows):
-        if (offset is None) != (offsets[0] is None):
-            raise InputError(
-                f"{row.where}, column date: {quoted(row.cells['date'])} has "
-                f"{'no' if offset is None else 'a'} UTC offset, but {rows[0].place} has "
-                f"{'none' if offsets[0] is None else 'one'}; give all times an offset, or none"
-            )
-    known = {offset for offset in offsets if offset is not None}
-    if not known:
-        return [*times], []
-    if are_local_days(times):
-        return [time.replace(tzinfo=None) for time in times], []
-    standard = timezone(min(known))
-    moved = []
-    for time, row in zip(times, rows):
-        try:
-            moved.append(time.astimezone(standard).replace(tzinfo=None))
-        except OverflowError:
-            raise InputError(
-                f"{row.where}, column date: {quoted(row.cells['date'])} has no universal time"
-            ) from None
-    if len(known) == 1:
-        return moved, []
-    hours = min(known).total_seconds() / 3600.0
-    return moved, [
-        f"its times have {len(known)} UTC offsets; they are converted to UTC{hours:+g} h, which "
-        "also defines the days"
-    ]

@@ -19,6 +19,7 @@ from snowshed.io.input_file import read_input
 from snowshed.scene.builders.avaframe.keys import (
     FIXED_VALUES,
     FRICTION,
+    GROUND_SWITCHES,
     OTHER_FRICTION,
     OWN_KEYS,
     SETTINGS,
@@ -360,7 +361,7 @@ def _check_ground_maps(given: _Keys, project: ProjectSettings) -> None:
     wanted = [kind for kind in project.result_types if kind in OF_CHANGED_GROUND]
     if not wanted:
         return
-    if not any(project.values.get(name) for name in SWITCHES.values() if name.startswith("ground")):
+    if not any(project.values.get(name) for name in GROUND_SWITCHES.values()):
         raise InputError(
             f"{given.where('restype')}: {wanted[0]} needs adaptSfcStopped, adaptSfcDetrainment or "
             "adaptSfcEntrainment"

@@ -28,13 +28,17 @@ SETTINGS: Mapping[str, str] = {
     "stopcrit": "stop_ratio",
     "thresholdadaptsfc": "ground_min_change",
 }
+#: Switches that let the ground adapt to the snow.
+GROUND_SWITCHES: Mapping[str, str] = {
+    "adaptsfcstopped": "ground_gains_stopped",
+    "adaptsfcdetrainment": "ground_gains_detrained",
+    "adaptsfcentrainment": "ground_loses_entrained",
+}
 #: Keys that are switches here.
 SWITCHES: Mapping[str, str] = {
     "snowslide": "bonds",
     "explicitfriction": "explicit_friction",
-    "adaptsfcstopped": "ground_gains_stopped",
-    "adaptsfcdetrainment": "ground_gains_detrained",
-    "adaptsfcentrainment": "ground_loses_entrained",
+    **GROUND_SWITCHES,
 }
 #: The key of the Coulomb coefficient in each law of friction, and its default in com5SnowSlide.
 FRICTION: Mapping[str, tuple[str, float]] = {
