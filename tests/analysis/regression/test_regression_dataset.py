@@ -66,7 +66,7 @@ def test_a_row_is_reproduced_by_its_scene(tmp_path):
     """
     panel = (2.0, 2.0, 70.0)
     table = pd.read_csv(geometry_table())
-    row = table[(table[PANEL] == panel).all(axis=1) & (table["event"] == 1)].iloc[0]
+    row = table[(table[PANEL] == list(panel)).all(axis=1) & (table["event"] == 1)].iloc[0]
     scene = Scene.from_data(panel_scenes(dx=row["dx"])[panel])
     scene.update({"events.count": 1, "seeding.seed": int(row["seed"])})
     event = run_events(scene, tmp_path / "out").iloc[0]

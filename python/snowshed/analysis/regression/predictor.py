@@ -11,6 +11,7 @@ import numpy as np
 
 from snowshed._core import InputError
 from snowshed.analysis.regression.dataset import MODEL
+from snowshed.analysis.regression.grid_error import PanelGridError, recorded_grid_error
 from snowshed.analysis.regression.model_file import StackModel, load_model
 from snowshed.analysis.regression.questions import Numbers, Questions
 from snowshed.analysis.regression.scaling import Scaling
@@ -41,13 +42,16 @@ class Prediction:
     table
         One row per panel, event and target: ``panel`` (its label in the table that was asked, or
         its number from 0), ``event``, ``target``, ``value``, ``spread`` (half width that holds
-        68 % of the stacks), ``low`` and ``high`` (between which 90 % lie), ``models`` (standard
-        deviation of the models), in m, or 1 for the ratio; ``extrapolated``: whether the panel lies
-        outside the data.
+        68 % of the stacks), ``low`` and ``high`` (between which 90 % lie, with the error of the
+        grid), ``models`` (standard deviation of the models), in m, or 1 for the ratio;
+        ``grid_factor``: factor of the grid's error in either direction, 1 if nothing is recorded
+        for the model's grid; ``extrapolated``: whether the panel lies outside the data.
     kind, title
         The kind of model, and the title of its data.
     measure, settings
         Measure of the snow, and common settings of the data, as in `StackModel`.
+    grid_error
+        Source of the error of the grid in the intervals; empty if they leave it out.
     objections
         Reasons why panels lie outside the data; empty if all lie inside.
     asked
@@ -59,6 +63,7 @@ class Prediction:
     title: str
     measure: str
     settings: Mapping[str, str]
+    grid_error: str = ""
     objections: tuple[str, ...] = ()
     asked: str = ""
 
@@ -162,11 +167,15 @@ def predict(
     outside = _objections(model, questions)
     if outside and not extrapolate:
         raise OutsideDataError(_refusal(outside, questions))
-    table = _answers(model, kind, questions)
+    grid_error = recorded_grid_error(model)
+    table = _answers(model, kind, questions, grid_error)
     table["extrapolated"] = np.isin(table["panel"], [questions.labels[n] for n in outside])
     reasons = tuple(text for number in outside for text in _reasons(outside, number, questions))
     asked = settings_text(dict(zip(model.names[1:], questions.inputs[0, 1:])))
-    return Prediction(table, kind, model.title, model.measure, model.settings, reasons, asked)
+    source = grid_error.sentence if grid_error else ""
+    return Prediction(
+        table, kind, model.title, model.measure, model.settings, source, reasons, asked
+    )
 
 
 @cache
@@ -205,27 +214,39 @@ def _refusal(outside: Mapping[int, list[str]], questions: Questions) -> str:
     )
 
 
-def _answers(model: StackModel, kind: str, questions: Questions) -> pd.DataFrame:
+def _answers(
+    model: StackModel, kind: str, questions: Questions, grid_error: Optional[PanelGridError]
+) -> pd.DataFrame:
     """Return the answers of one kind of model, the targets of an event below each other."""
     import pandas as pd
 
     scaled = Scaling.of(model.inputs).scaled(questions.inputs)
     targets = [target for target in model.targets if (target, kind) in model.members]
-    parts = [_columns(model, target, kind, scaled) for target in targets]
+    events = questions.inputs[:, 0]
+    factors = {
+        target: grid_error.factors(target, events) if grid_error else np.ones(len(events))
+        for target in targets
+    }
+    parts = [_columns(model, target, kind, scaled, factors[target]) for target in targets]
     rows, count = len(scaled), len(targets)
     columns = {name: np.stack([part[name] for part in parts], axis=1).ravel() for name in parts[0]}
     return pd.DataFrame(
         {
             "panel": questions.labels.take(np.repeat(questions.panel, count)),
-            "event": np.repeat(questions.inputs[:, 0].astype(int), count),
+            "event": np.repeat(events.astype(int), count),
             "target": targets * rows,
             **columns,
         }
     )
 
 
-def _columns(model: StackModel, target: str, kind: str, scaled: Floats) -> dict[str, Floats]:
-    """Return the numbers of one target, each with a value for every event."""
+def _columns(
+    model: StackModel, target: str, kind: str, scaled: Floats, grid_factor: Floats
+) -> dict[str, Floats]:
+    """Return the numbers of one target, each with a value for every event.
+
+    A stack may be larger or smaller by the factor of the grid.
+    """
     member = model.members[target, kind]
     predicted = member.ensemble.predict(scaled) * member.deviation + member.mean
     value, deviation = predicted.mean(axis=0), predicted.std(axis=0)
@@ -235,7 +256,8 @@ def _columns(model: StackModel, target: str, kind: str, scaled: Floats) -> dict[
         # Lengths and ratios are not negative, but a linear model may be.
         "value": np.maximum(value, 0.0),
         "spread": spread,
-        "low": np.maximum(value - reach, 0.0),
-        "high": np.maximum(value + reach, 0.0),
+        "low": np.maximum(value - np.hypot(reach, value * (1.0 - 1.0 / grid_factor)), 0.0),
+        "high": np.maximum(value + np.hypot(reach, value * (grid_factor - 1.0)), 0.0),
         "models": deviation,
+        "grid_factor": grid_factor,
     }

@@ -88,8 +88,6 @@ def _input(text: str) -> tuple[str, float]:
 
 def print_prediction(prediction: Prediction, title: str) -> None:
     """Print the answers, one line per event, and mark extrapolated ones."""
-    from snowshed.analysis.accuracy.mechanisms import Mechanisms
-    from snowshed.analysis.accuracy.stack_errors import recorded_bias
     from snowshed.analysis.regression.rows import TARGETS
     from snowshed.snow.stack.quantities import measure_named
 
@@ -108,14 +106,29 @@ def print_prediction(prediction: Prediction, title: str) -> None:
         table.add_row(f"{event}{mark}", *cells)
     wide_console().print(table)
     label = measure_named(prediction.measure).label
-    wide_console().print(" 68 % of the stacks lie within ±, 90 % within [ ].")
     wide_console().print(f" The stack is {'; '.join(filter(None, [label, _scene(prediction)]))}.")
+    wide_console().print(f" {_interval_text(prediction)}.")
+
+
+def _interval_text(prediction: Prediction) -> str:
+    """Return what the intervals contain of scatter and of the error of the grid."""
+    from snowshed.analysis.accuracy.mechanisms import Mechanisms
+    from snowshed.analysis.accuracy.stack_errors import recorded_bias
+
+    if prediction.grid_error:
+        return (
+            "68 % of the stacks on these cells lie within ±. The interval [ ] of 90 % also "
+            f"contains the error of the grid: {prediction.grid_error}"
+        )
     bias = recorded_bias(
         int(prediction.settings.get("dimension", 2)),
-        int(rows["event"].max()),
+        int(prediction.table["event"].max()),
         Mechanisms.of_texts(prediction.settings),
     )
-    wide_console().print(f" Neither contains the error of the grid: {bias}.")
+    return (
+        "68 % of the stacks lie within ±, 90 % within [ ]. Neither contains the error of the "
+        f"grid: {bias}"
+    )
 
 
 def _scene(prediction: Prediction) -> str:
@@ -137,6 +150,7 @@ def prediction_json(prediction: Prediction) -> str:
         "title": prediction.title,
         "measure": prediction.measure,
         "settings": dict(prediction.settings),
+        "grid_error": prediction.grid_error,
         "units": TARGETS,
         "extrapolated": prediction.extrapolated,
         "objections": list(prediction.objections),
