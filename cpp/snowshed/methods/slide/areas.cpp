@@ -59,8 +59,8 @@ FirstNode first_node_of(const geometry::HeightField& map, const Terrain& terrain
                          show_rounded(terrain.west() + map.west) + ", " +
                          show_rounded(terrain.south() + map.south) +
                          "); the mode \"compatible\" needs those of the terrain, " +
-                         show_rounded(terrain.cell()) + " m from (" +
-                         show_rounded(terrain.west()) + ", " + show_rounded(terrain.south()) + ")");
+                         show_rounded(terrain.cell()) + " m from (" + show_rounded(terrain.west()) +
+                         ", " + show_rounded(terrain.south()) + ")");
   return {int(std::lround(east)), int(std::lround(north))};
 }
 
@@ -100,12 +100,12 @@ double thickness_in_cell(const Area& area, const Terrain& terrain, int column, i
     throw InputError(path, name + "reaches beyond the thickness raster");
   const double h = m.height(column, row);
   if (h > 0 && h <= area.max_thickness) return h;
-  throw InputError(
-      path, name + "the thickness raster has " +
-                (std::isnan(h) ? "no value" : std::to_string(h) + " m") + " at (" +
-                std::to_string(terrain.west() + m.west + column * m.cell) + ", " +
-                std::to_string(terrain.south() + m.south + row * m.cell) +
-                "); allowed: above 0 and at most " + std::to_string(area.max_thickness) + " m");
+  throw InputError(path, name + "the thickness raster has " +
+                             (std::isnan(h) ? "no value" : std::to_string(h) + " m") + " at (" +
+                             std::to_string(terrain.west() + m.west + column * m.cell) + ", " +
+                             std::to_string(terrain.south() + m.south + row * m.cell) +
+                             "); allowed: above 0 and at most " +
+                             std::to_string(area.max_thickness) + " m");
 }
 
 std::vector<double> released_at_nodes(const std::vector<Area>& release, const Terrain& terrain,

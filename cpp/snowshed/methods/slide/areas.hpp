@@ -53,8 +53,8 @@ enum class Reach {
 std::vector<double> thickness_at_nodes(const std::vector<Area>& areas, const Terrain& terrain,
                                        Reach reach);
 
-/// Returns the thickness in a cell of an area's raster. Throws InputError, which names `path`, if it
-/// is missing or not above 0, or larger than the area accepts.
+/// Returns the thickness in a cell of an area's raster. Throws InputError, which names `path`, if
+/// it is missing or not above 0, or larger than the area accepts.
 double thickness_in_cell(const Area& area, const Terrain& terrain, int column, int row,
                          const std::string& path);
 

@@ -39,6 +39,9 @@ std::vector<double> erodible_at_nodes(const Model& model) {
       released_at_nodes(model.areas.release, model.terrain, model.settings.mode);
   for (std::size_t i = 0; i < values.size(); ++i)
     values[i] = released[i] > 0 ? 0.0 : values[i] * model.settings.entrained_density;
+  // Compatible mode: AvaFrame leaves out the nodes of secondary releases, too.
+  for (const LateRelease& late : model.late)
+    for (const std::size_t node : late.nodes) values[node] = 0.0;
   return values;
 }
 

@@ -179,8 +179,9 @@ TEST(SlideRelease, InTheCompatibleModeTheCellsAroundNodesAreFilledByTheirThickne
 
 TEST(SlideRelease, InTheCompatibleModeARasterNeedsTheNodesOfTheTerrainAndSnowAtAllWithin) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(make_solver(compatible_slide(with_nodal_thickness({1, 1, 1, 1, 1, 1}, 2.01))),
-               InputError);
+  EXPECT_THROW(
+      make_solver(compatible_slide(with_nodal_thickness({1, 1, 1, 1, 1, 1}, 2.01)))->seed(),
+      InputError);
   for (const double bad : {nan, 0.0, -0.5, 1e4})
     EXPECT_THROW(make_solver(compatible_slide(with_nodal_thickness({1, 1, 1, 1, bad, 1})))->seed(),
                  InputError)

@@ -43,7 +43,7 @@ def thickness_on_terrain(
     InputError
         If a value is missing or negative, or the raster does not cover the terrain.
     """
-    for wrong, what in ((np.isnan(depth.heights), "no value"), (depth.heights < 0, "a negative")):
+    for wrong, what in ((np.isnan(depth.heights), "no"), (depth.heights < 0, "a negative")):
         if wrong.any():
             row, column = np.argwhere(wrong)[0]
             raise InputError(
@@ -70,10 +70,11 @@ def thickness_on_terrain(
         )
     if depth.cell == step and np.allclose(shifts, 0.0, rtol=0.0, atol=SAME_PLACE):
         return _at(depth, terrain)
+    west, south = _as_gdal_has_it(terrain.east, terrain.north, rows, step)
     values = _interpolated(
         depth,
-        np.linspace(terrain.east, terrain.east + (columns - 1) * step, columns),
-        np.linspace(terrain.north, terrain.north + (rows - 1) * step, rows),
+        np.linspace(west, west + (columns - 1) * step, columns),
+        np.linspace(south, south + (rows - 1) * step, rows),
     )
     if np.isnan(values).any():
         raise InputError(
@@ -116,13 +117,23 @@ def _at(depth: Raster, terrain: Raster) -> Raster:
     return replace(depth, east=terrain.east, north=terrain.north, plain=False)
 
 
+def _as_gdal_has_it(east: float, north: float, rows: int, cell: float) -> tuple[float, float]:
+    """Return the middle of the south-west cell with GDAL's rounding, which counts from the north.
+
+    Where a result is halfway between two numbers in single precision, this rounding decides.
+    """
+    top = (north - 0.5 * cell) + rows * cell
+    return (east - 0.5 * cell) + cell / 2.0, (rows * -cell + top) + cell / 2.0
+
+
 def _interpolated(depth: Raster, east: Floats, north: Floats) -> Floats:
     """Return values at map coordinates; within half a cell of the edge, those of the nearest cell.
 
     Elsewhere beyond the raster they are NaN.
     """
-    u, v = np.meshgrid((east - depth.east) / depth.cell, (north - depth.north) / depth.cell)
     rows, columns = depth.heights.shape
+    west, south = _as_gdal_has_it(depth.east, depth.north, rows, depth.cell)
+    u, v = np.meshgrid((east - west) / depth.cell, (north - south) / depth.cell)
     values = np.full(u.shape, np.nan)
     near = (u > -0.5) & (u < columns - 0.5) & (v > -0.5) & (v < rows - 0.5)
     values[near] = depth.heights[np.round(v[near]).astype(int), np.round(u[near]).astype(int)]

@@ -91,8 +91,8 @@ def avaframe_simulations(
     ----------
     folder
         The project: ``Inputs`` with the terrain (.asc or .tif), ``REL`` (polygons, or rasters of
-        the thickness) and, where there are any, ``ENT``, ``RES``, ``SECREL`` and ``DAM``; the ini of com5SnowSlide, if any, in
-        ``Inputs/CFGs``, ``Inputs`` or the folder.
+        the thickness) and, where there are any, ``ENT``, ``RES``, ``SECREL`` and ``DAM``; the ini
+        of com5SnowSlide, if any, in ``Inputs/CFGs``, ``Inputs`` or the folder.
     settings
         Settings that override those of the ini, by their names in `SlideSettings`.
     thickness
