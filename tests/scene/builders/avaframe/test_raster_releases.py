@@ -6,7 +6,7 @@ import re
 import numpy as np
 import pytest
 from helpers.raster_releases import CASES, OTHER_CELLS, PLANE, RECORD, write_raster_project
-from helpers.slide_files import plane, write_polygons, write_project
+from helpers.slide_files import box, plane, write_polygons, write_project
 
 from snowshed import InputError, InputNote, _core
 from snowshed.cli.main import main
@@ -151,19 +151,26 @@ def test_a_scene_from_files_has_the_same_snow_as_the_project(tmp_path):
 def test_polygons_choose_the_nodes_of_a_raster(tmp_path):
     write_ascii_grid(tmp_path / "dem.asc", plane())
     write_ascii_grid(tmp_path / "depth.asc", some_snow())
-    rings = [[[15, 15], [23, 15], [23, 23], [15, 23], [15, 15]]]  # four nodes by four
-    scene = slide_scene(
-        tmp_path / "dem.asc",
-        write_polygons(tmp_path / "rel.geojson", rings),
-        thickness_raster=tmp_path / "depth.asc",
-        settings=SlideSettings(mode="compatible", bonds=False),
-        ascii_copy=tmp_path / "copy.asc",
-    )
-    resolved = scene.resolve()
-    slide = _core.Simulation(resolved.core, resolved.base_dir)
-    slide.begin_event()
-    exact = 16 * 4.0 / np.cos(np.radians(38.0)) * 0.5 * 300.0
-    assert slide.slide_facts()["released_kg"] == pytest.approx(exact, rel=0.1)
+    # Four nodes by four, from 16 to 22 m; their cells reach beyond the polygon.
+    polygon = write_polygons(tmp_path / "rel.geojson", box(15.8, 15.8, 22.2, 22.2))
+    cut = some_snow(0.0)
+    cut.heights[8:12, 8:12] = 0.5
+    write_ascii_grid(tmp_path / "cut.asc", cut)
+    released = []
+    for release, depth in ((polygon, "depth.asc"), (None, "cut.asc")):
+        scene = slide_scene(
+            tmp_path / "dem.asc",
+            release,
+            thickness_raster=tmp_path / depth,
+            settings=SlideSettings(mode="compatible", bonds=False),
+            ascii_copy=tmp_path / "copy.asc",
+        )
+        resolved = scene.resolve()
+        slide = _core.Simulation(resolved.core, resolved.base_dir)
+        slide.begin_event()
+        released.append((slide.particle_count, slide.slide_facts()["released_kg"]))
+    assert released[0] == released[1]
+    assert released[0][1] > 10_000
 
 
 def test_a_raster_in_double_precision_stays_exact_and_text_is_single():
@@ -172,6 +179,13 @@ def test_a_raster_in_double_precision_stays_exact_and_text_is_single():
     assert text.heights.max() == np.float32(0.1)
     exact = Raster(depth.heights, 0.0, 0.0, 2.0, numbers="float64")
     assert thickness_on_terrain(exact, terrain).heights.max() == 0.1
+
+
+def test_negative_values_are_refused_before_interpolation_hides_them():
+    depth = Raster(np.full((30, 40), 0.5), -3.0, -3.0, 3.0)
+    depth.heights[0, 0] = -0.1
+    with pytest.raises(InputError, match="a negative thickness at"):
+        thickness_on_terrain(depth, plane(columns=30, rows=30))
 
 
 def test_a_plane_case_is_on_the_nodes_of_the_terrain(tmp_path):
