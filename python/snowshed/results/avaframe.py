@@ -194,7 +194,7 @@ def maps_at(resolved: ResolvedScene, steps: Sequence[int]) -> Iterator[tuple[int
 
 
 def _name(simulation: AvaFrameSimulation, resolved: ResolvedScene) -> str:
-    terrain = {**resolved.data["terrain"], "file": ""}
+    terrain = {**resolved.data["terrain"], "file": "", "thickness_file": ""}
     content = {**resolved.data, "title": "", "terrain": terrain}
     text = json.dumps(content, sort_keys=True) + simulation.release
     identity = hashlib.shake_256(text.encode()).hexdigest(5)

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "snowshed/core/errors.hpp"
+#include "snowshed/core/message_format.hpp"
+
 namespace snowshed::methods::slide {
 namespace {
 
@@ -40,7 +43,78 @@ geometry::Ring scaled(const geometry::Ring& ring, double cell) {
   return result;
 }
 
+/// The node of a terrain at the south-west node of a raster. Throws InputError if the nodes differ.
+struct FirstNode {
+  int column, row;
+};
+FirstNode first_node_of(const geometry::HeightField& map, const Terrain& terrain) {
+  constexpr double rounding = 1e-6;  // cells
+  const double east = map.west / terrain.cell(), north = map.south / terrain.cell();
+  const double most = std::max({map.columns, map.rows, 1});
+  const auto is_whole = [](double x) { return std::abs(x - std::round(x)) <= rounding; };
+  if (std::abs(map.cell / terrain.cell() - 1) * most > rounding || !is_whole(east) ||
+      !is_whole(north))
+    throw InputError("/terrain/thickness_file",
+                     "has cells of " + show_rounded(map.cell) + " m from (" +
+                         show_rounded(terrain.west() + map.west) + ", " +
+                         show_rounded(terrain.south() + map.south) +
+                         "); the mode \"compatible\" needs those of the terrain, " +
+                         show_rounded(terrain.cell()) + " m from (" + show_rounded(terrain.west()) +
+                         ", " + show_rounded(terrain.south()) + ")");
+  return {int(std::lround(east)), int(std::lround(north))};
+}
+
+/// The thickness in a cell of a raster; NaN beyond it.
+double value_at(const geometry::HeightField& map, int column, int row) {
+  const bool inside = column >= 0 && row >= 0 && column < map.columns && row < map.rows;
+  return inside ? map.height(column, row) : std::nan("");
+}
+
+/// Thickness at the nodes within areas that share a raster.
+std::vector<double> thickness_of_raster(const std::vector<Area>& areas, const Terrain& terrain) {
+  const geometry::HeightField& map = *areas.front().map;
+  const FirstNode first = first_node_of(map, terrain);
+  std::vector<double> values = thickness_at_nodes(areas, terrain, Reach::edge);
+  for (int row = 0; row < terrain.rows(); ++row)
+    for (int column = 0; column < terrain.columns(); ++column) {
+      const std::size_t node = terrain.index(column, row);
+      if (values[node] == 0) continue;
+      const int east = column - first.column, north = row - first.row;
+      const double h = value_at(map, east, north);
+      for (std::size_t i = 0; i < areas.size() && !(h > 0 && h <= areas[i].max_thickness); ++i)
+        if (thickness_at_nodes({areas[i]}, terrain, Reach::edge)[node] > 0)
+          thickness_in_cell(areas[i], terrain, east, north,
+                            "/terrain/release/" + std::to_string(i));
+      values[node] = h;
+    }
+  return values;
+}
+
 }  // namespace
+
+double thickness_in_cell(const Area& area, const Terrain& terrain, int column, int row,
+                         const std::string& path) {
+  const geometry::HeightField& m = *area.map;
+  const std::string name = area.name.empty() ? "" : "\"" + area.name + "\" ";
+  if (column < 0 || row < 0 || column >= m.columns || row >= m.rows)
+    throw InputError(path, name + "reaches beyond the thickness raster");
+  const double h = m.height(column, row);
+  if (h > 0 && h <= area.max_thickness) return h;
+  throw InputError(path, name + "the thickness raster has " +
+                             (std::isnan(h) ? "no value" : std::to_string(h) + " m") + " at (" +
+                             std::to_string(terrain.west() + m.west + column * m.cell) + ", " +
+                             std::to_string(terrain.south() + m.south + row * m.cell) +
+                             "); allowed: above 0 and at most " +
+                             std::to_string(area.max_thickness) + " m");
+}
+
+std::vector<double> released_at_nodes(const std::vector<Area>& release, const Terrain& terrain,
+                                      Mode mode) {
+  if (mode == Mode::improved) return thickness_at_nodes(release, terrain, Reach::edge);
+  if (release.empty() || !release.front().map)
+    return thickness_at_nodes(release, terrain, Reach::one_cell);
+  return thickness_of_raster(release, terrain);
+}
 
 geometry::Ring widened_as_avaframe(const geometry::Ring& outline, double radius) {
   return geometry::offset_ring(outline,

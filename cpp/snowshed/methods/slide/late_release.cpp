@@ -21,7 +21,7 @@ std::string path_of(const char* list, std::size_t i) {
 std::vector<double> thickness_beside_release(const Area& area, const Areas& areas,
                                              const Terrain& terrain) {
   std::vector<double> values = thickness_at_nodes({area}, terrain, Reach::one_cell);
-  const std::vector<double> released = thickness_at_nodes(areas.release, terrain, Reach::one_cell);
+  const std::vector<double> released = released_at_nodes(areas.release, terrain, Mode::compatible);
   for (std::size_t i = 0; i < values.size(); ++i)
     if (released[i] > 0) values[i] = 0;
   return values;

@@ -106,8 +106,13 @@ class Descriptor final : public DescriptorBase<Descriptor, Settings> {
       throw InputError("/dimension", "a slide needs three dimensions; allowed: 3");
     if (scene.events.count != 1)
       throw InputError("/events/count", show(scene.events.count) + " events; a slide has 1");
-    if (!scene.terrain->thickness_file.empty() && settings_.mode == Mode::compatible)
-      throw InputError("/terrain/thickness_file", "AvaFrame's com5SnowSlide takes no such raster");
+    if (!scene.terrain->thickness_file.empty() && settings_.mode == Mode::compatible &&
+        settings_.bonds)
+      throw InputError(
+          "/numerics/bonds",
+          "not with a /terrain/thickness_file in the mode \"compatible\": AvaFrame 2.1 "
+          "fails to bond snow of a raster; set bonds to false, or use the mode "
+          "\"improved\"");
     check_mode(settings_);
     check_ground(settings_, *scene.terrain);
     check_inflows(*scene.terrain, settings_.mode);

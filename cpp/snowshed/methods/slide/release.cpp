@@ -117,15 +117,7 @@ double mean_thickness(const Area& area, const Terrain& terrain, const std::strin
       const double part =
           geometry::area_within(area.polygon, {x - half, y - half}, {x + half, y + half});
       if (part <= rounding * m.cell) continue;
-      const double h = m.height(column, row);
-      if (!(h > 0 && h <= area.max_thickness))
-        refuse_area(path, area.name,
-                    "the thickness raster has " +
-                        (std::isnan(h) ? "no value" : std::to_string(h) + " m") + " at (" +
-                        std::to_string(terrain.west() + x) + ", " +
-                        std::to_string(terrain.south() + y) + "); allowed: above 0 and at most " +
-                        std::to_string(area.max_thickness) + " m");
-      volume += part * h;
+      volume += part * thickness_in_cell(area, terrain, column, row, path);
       covered += part;
     }
   return volume / covered;
@@ -207,6 +199,8 @@ ParticleBatch seed_nodes(const Settings& s, const Terrain& terrain, const std::v
   StopCheck give_up(stop);
   const double cell = terrain.cell();
   const double share = projected_share(terrain, thickness);
+  // AvaFrame fills the cells around the nodes of a raster, and keeps to polygons otherwise.
+  const bool fills_cells = !areas.empty() && areas.front().map;
   std::vector<geometry::Ring> outlines;
   for (const Area& area : areas)
     outlines.push_back(widened_as_avaframe(area.polygon.outline, 1e-3));
@@ -220,7 +214,9 @@ ParticleBatch seed_nodes(const Settings& s, const Terrain& terrain, const std::v
       const double points = std::floor(wanted);
       if (points < 1)
         refuse_area(path, areas[0].name,
-                    "is too thin: " + std::to_string(h) + " m make no particle of " +
+                    "is too thin: " + std::to_string(h) + " m at (" +
+                        std::to_string(terrain.west() + column * cell) + ", " +
+                        std::to_string(terrain.south() + row * cell) + ") make no particle of " +
                         std::to_string(nominal_particle_mass(s, cell)) +
                         " kg; allowed in compatible mode: at least " + std::to_string(h / wanted) +
                         " m");
@@ -228,9 +224,11 @@ ParticleBatch seed_nodes(const Settings& s, const Terrain& terrain, const std::v
       for_lattice_points_near(
           column, row, cell, lattice_side(cell * cell, points), [&](double x, double y) {
             give_up();
-            const bool is_inside = std::any_of(
-                outlines.begin(), outlines.end(),
-                [&](const geometry::Ring& ring) { return geometry::contains(ring, {x, y}); });
+            const bool is_inside =
+                fills_cells ||
+                std::any_of(outlines.begin(), outlines.end(), [&](const geometry::Ring& ring) {
+                  return geometry::contains(ring, {x, y});
+                });
             if (is_inside) place_on_ground(terrain, x, y, mass, batch);
           });
     }
@@ -356,7 +354,7 @@ std::vector<ParticleBatch> seed_release(const Settings& settings, const Terrain&
   std::vector<ParticleBatch> batches;
   const std::vector<NamedArea> all = named_areas(areas, "release");
   if (settings.mode == Mode::compatible) {
-    const std::vector<double> thickness = thickness_at_nodes(areas, terrain, Reach::one_cell);
+    const std::vector<double> thickness = released_at_nodes(areas, terrain, settings.mode);
     batches = {seed_nodes(settings, terrain, areas, thickness, all[0].path, stop)};
     for (std::size_t i = 1; i < areas.size(); ++i) refuse_overlap(terrain, all, i, batches.front());
     return batches;

@@ -35,11 +35,13 @@ std::vector<double> erodible_at_nodes(const Model& model) {
   if (model.areas.entrainment.empty()) return {};
   std::vector<double> values =
       thickness_at_nodes(model.areas.entrainment, model.terrain, Reach::edge);
-  const Reach reach = model.compatible() ? Reach::one_cell : Reach::edge;
   const std::vector<double> released =
-      thickness_at_nodes(model.areas.release, model.terrain, reach);
+      released_at_nodes(model.areas.release, model.terrain, model.settings.mode);
   for (std::size_t i = 0; i < values.size(); ++i)
     values[i] = released[i] > 0 ? 0.0 : values[i] * model.settings.entrained_density;
+  // Compatible mode: AvaFrame leaves out the nodes of secondary releases, too.
+  for (const LateRelease& late : model.late)
+    for (const std::size_t node : late.nodes) values[node] = 0.0;
   return values;
 }
 

@@ -141,6 +141,56 @@ TEST(SlideRelease, InvalidThicknessRastersAreRefused) {
   EXPECT_THROW(seed_on_slope({}, with_thickness_raster(area, {1, 1, 1, 1, 1, 1}, 3)), InputError);
 }
 
+/// A raster of thickness on the nodes of `inclined`, from (20, 18) m.
+Area with_nodal_thickness(std::vector<double> heights, double cell = 2) {
+  geometry::HeightField map{3, 2, cell, 20, 18, std::move(heights)};
+  Area area = rectangle(19, 17, 25, 21);  // the edges of its cells
+  area.map = std::make_shared<const geometry::HeightField>(std::move(map));
+  return area;
+}
+
+Options compatible_slide(const Area& area) {
+  Options o = slide_on(inclined(35), area);
+  o.settings.mode = Mode::compatible;
+  o.settings.bonds = false;
+  o.settings.layer_thickness = 0.05;
+  return o;
+}
+
+TEST(SlideRelease, InTheCompatibleModeTheCellsAroundNodesAreFilledByTheirThickness) {
+  const std::vector<double> snow = {0.2, 0.4, 0.6, 0.3, 0.5, 0.1};
+  const Options o = compatible_slide(with_nodal_thickness(snow));
+  const ParticleBatch batch = make_solver(o)->seed().at(0);
+  std::vector<double> mass(6), count(6);
+  for (std::size_t k = 0; k < batch.positions.size(); ++k) {
+    const int column = int(std::floor((batch.positions[k].x() - 19) / 2));
+    const int row = int(std::floor((batch.positions[k].y() - 17) / 2));
+    ASSERT_TRUE(column >= 0 && column < 3 && row >= 0 && row < 2);
+    mass[std::size_t(row * 3 + column)] = batch.mass_of(k);
+    count[std::size_t(row * 3 + column)] += 1;
+  }
+  for (std::size_t i = 0; i < 6; ++i) {
+    const double stretch = 1 / std::cos(radians(35));
+    const double points = std::floor(snow[i] * stretch / o.settings.layer_thickness);
+    EXPECT_NEAR(mass[i], snow[i] * 4 * stretch * 300 / points, 1e-9) << i;
+    EXPECT_NEAR(count[i], points, 0.3 * points + 2) << i;
+  }
+}
+
+TEST(SlideRelease, InTheCompatibleModeARasterNeedsTheNodesOfTheTerrainAndSnowAtAllWithin) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(
+      make_solver(compatible_slide(with_nodal_thickness({1, 1, 1, 1, 1, 1}, 2.01)))->seed(),
+      InputError);
+  for (const double bad : {nan, 0.0, -0.5, 1e4})
+    EXPECT_THROW(make_solver(compatible_slide(with_nodal_thickness({1, 1, 1, 1, bad, 1})))->seed(),
+                 InputError)
+        << bad;
+  Area beyond = with_nodal_thickness({1, 1, 1, 1, 1, 1});
+  beyond.polygon = rectangle(19, 17, 29, 21).polygon;
+  EXPECT_THROW(make_solver(compatible_slide(beyond))->seed(), InputError);
+}
+
 TEST(SlideRelease, AreasMayTouchButNotOverlap) {
   const Terrain terrain(inclined(35));
   const auto seed = [&](double west, Mode mode) {

@@ -22,6 +22,7 @@ from snowshed.io.raster.areas import MapArea, read_areas
 from snowshed.io.raster.arrays import areas_of, raster_of
 from snowshed.io.raster.raster import Raster, is_single, read_raster, write_ascii_grid
 from snowshed.io.raster.release import areas_of_depth, snow_part
+from snowshed.io.raster.terrain_nodes import thickness_on_terrain
 from snowshed.methods.slide.settings import SlideSettings
 from snowshed.scene.builders.dams import read_dams
 from snowshed.scene.builders.hillside import hillside
@@ -36,6 +37,7 @@ from snowshed.scene.builders.terrain_checks import (
     note_small_areas,
     read_terrain,
 )
+from snowshed.scene.builders.terrain_copy import thickness_copy
 from snowshed.scene.components import Events
 from snowshed.scene.scene import Scene
 from snowshed.scene.terrain_components import Area, Hole, Inflow, Pulse, ResistanceArea, Terrain
@@ -62,7 +64,7 @@ def slide_scene(
     release: Optional[object] = None,
     *,
     thickness: Optional[float] = None,
-    thickness_raster: Optional[PathLike] = None,
+    thickness_raster: Optional[Union[PathLike, Raster]] = None,
     entrainment: Optional[object] = None,
     entrained_thickness: Optional[float] = None,
     resistance: Optional[object] = None,
@@ -96,7 +98,9 @@ def slide_scene(
     thickness
         Thickness of the snow, normal to the ground [m], instead of the thickness in the file.
     thickness_raster
-        Raster of the thickness, m, with a value everywhere in the release.
+        Raster of the thickness, m, with a value everywhere in the release: a file or a `Raster`.
+        In the mode "compatible" it covers the terrain; it is interpolated onto other cells as in
+        AvaFrame.
     entrainment, resistance
         Polygons of entrainment areas, and of forest.
     entrained_thickness
@@ -147,7 +151,9 @@ def slide_scene(
         terrain = _terrain(raster, band, steepest, max_cells or MAX_TERRAIN_CELLS)
         depth = None
         if thickness_raster is not None:
-            depth = read_raster(thickness_raster, thickness_band)
+            depth = _depth(thickness_raster, thickness_band)
+            if settings is not None and settings.mode == "compatible":
+                depth = thickness_on_terrain(depth, terrain, cell=settings.cell or 0.0)
         polygons = _Polygons(layers)
         areas = _release_areas(release, thickness, depth, polygons)
         eroded = polygons.areas(
@@ -234,6 +240,11 @@ def _terrain(
     return dataclasses.replace(terrain, plain=False)
 
 
+def _depth(raster: Union[PathLike, Raster], band: Optional[int]) -> Raster:
+    """Return thicknesses from a file, or those of a raster."""
+    return raster if isinstance(raster, Raster) else read_raster(raster, band)
+
+
 @checked
 def example_slide(folder: PathLike) -> Scene:
     """Write an example's terrain to a folder, and return the scene of a slide on it.
@@ -277,7 +288,7 @@ def _thickness_file(depth: Raster, ascii_copy: Optional[PathLike]) -> Path:
     """Return an ASCII grid of a raster of thickness; a copy has only the part with snow."""
     copy = None
     if ascii_copy is not None:
-        copy = Path(ascii_copy).with_name(f"{Path(ascii_copy).stem}-thickness.asc")
+        copy = thickness_copy(Path(ascii_copy))
     return _ascii_grid(Path(depth.name), depth if depth.plain else snow_part(depth), copy)
 
 

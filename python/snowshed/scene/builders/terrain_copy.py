@@ -18,12 +18,32 @@ def terrain_copy(folder: Path) -> Path:
 def copies_removed_on_failure(folder: Path) -> Iterator[None]:
     """Remove new copies of files beside a results folder if no run begins there."""
     copy = terrain_copy(folder)
-    copies = [copy, copy.with_name(f"{copy.stem}-thickness.asc")]
-    new = [file for file in copies if not file.exists()]
+    earlier = set(_copies(copy))
     try:
         yield
     except BaseException:
         if not folder.exists():
-            for file in new:
-                file.unlink(missing_ok=True)
+            for file in _copies(copy):
+                if file not in earlier:
+                    file.unlink(missing_ok=True)
         raise
+
+
+def thickness_copy(copy: Path, release: str = "") -> Path:
+    """Return the file of the copy of a raster of thickness, beside that of the terrain.
+
+    `release` tells apart the rasters of a project.
+    """
+    return copy.with_name(f"{copy.stem}-thickness{release and '-' + release}.asc")
+
+
+def _copies(copy: Path) -> list[Path]:
+    """Return the existing copies of terrain and thickness."""
+    start = f"{copy.stem}-thickness"
+    if not copy.parent.is_dir():
+        return []
+    return [
+        file
+        for file in copy.parent.iterdir()
+        if file == copy or (file.name.startswith(start) and file.suffix == ".asc")
+    ]

@@ -166,7 +166,6 @@ def test_the_ini_chooses_among_types_and_releases(tmp_path):
 @pytest.mark.parametrize(
     ("folder", "message"),
     [
-        ("REL", "takes no release from a raster"),
         ("ENT", "are taken from polygons only"),
         ("SECREL", "are taken from polygons only"),
     ],

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Optional
 
@@ -12,10 +12,13 @@ from snowshed.base.arguments import checked
 from snowshed.base.callers import argument
 from snowshed.base.limits import MAX_RASTER_CELLS, MAX_RESAMPLED_CELLS, MAX_SAVED_CELLS
 from snowshed.base.messages import quoted
+from snowshed.base.notes import record_notes
 from snowshed.base.paths import PathLike
 from snowshed.io.raster.areas import read_areas
-from snowshed.io.raster.raster import GEOTIFF, read_raster, write_ascii_grid
+from snowshed.io.raster.raster import GEOTIFF, Raster, read_raster, write_ascii_grid
+from snowshed.io.raster.release import snow_part
 from snowshed.io.raster.resampling import resampled_raster
+from snowshed.io.raster.terrain_nodes import thickness_on_terrain
 from snowshed.methods.slide.settings import SlideSettings
 from snowshed.scene.builders.avaframe.events import (
     set_dam,
@@ -25,10 +28,12 @@ from snowshed.scene.builders.avaframe.events import (
 from snowshed.scene.builders.avaframe.files import InputFile, check_own_file, project_inputs
 from snowshed.scene.builders.avaframe.ini import SIM_TYPES, ProjectSettings, read_ini
 from snowshed.scene.builders.slides import slide_scene
+from snowshed.scene.builders.terrain_copy import thickness_copy
 from snowshed.scene.scene import Scene
 
 POLYGONS = ("*.shp", "*.gpkg", "*.geojson")
 RASTERS = ("*.asc", "*.tif", "*.tiff")
+RASTER_SUFFIXES = (".asc", *GEOTIFF)
 #: Largest difference of equal cell sizes, m.
 SAME_CELL = 1e-3
 
@@ -85,16 +90,16 @@ def avaframe_simulations(
     Parameters
     ----------
     folder
-        The project: ``Inputs`` with the terrain (.asc or .tif), ``REL`` and, where there are any,
-        ``ENT``, ``RES``, ``SECREL`` and ``DAM``; the ini of com5SnowSlide, if any, in
-        ``Inputs/CFGs``, ``Inputs`` or the folder.
+        The project: ``Inputs`` with the terrain (.asc or .tif), ``REL`` (polygons, or rasters of
+        the thickness) and, where there are any, ``ENT``, ``RES``, ``SECREL`` and ``DAM``; the ini
+        of com5SnowSlide, if any, in ``Inputs/CFGs``, ``Inputs`` or the folder.
     settings
         Settings that override those of the ini, by their names in `SlideSettings`.
     thickness
         Thickness of the released snow [m], instead of that of the files.
     ascii_copy
-        File for a copy of the terrain, needed for a GeoTIFF or other cell sizes than those of the
-        ini.
+        File for a copy of the terrain, needed for a GeoTIFF, for other cell sizes than those of the
+        ini, and for a release from rasters, whose copies go beside it.
 
     Raises
     ------
@@ -184,9 +189,12 @@ def _scene(
     pulses = None if hydrograph is None else time_dependent_release(hydrograph, project)
     entrainment = areas["ent"] if sim_type.startswith("ent") else None
     resistance = areas["res"] if sim_type.endswith("res") else None
+    with record_notes() as notes:
+        depth = _release_raster(root, raster, terrain, release, project, ascii_copy)
     scene = slide_scene(
         terrain,
-        release,
+        release if depth is None else None,
+        thickness_raster=depth,
         thickness=project.release_thickness if pulses is None else pulses[0].thickness,
         entrainment=entrainment,
         entrained_thickness=_entrained_thickness(entrainment, project),
@@ -210,10 +218,40 @@ def _scene(
         # AvaFrame reads GeoTIFF in double precision, also its own resampled files.
         if raster.suffix.lower() in GEOTIFF:
             scene.terrain.single_precision = False
+        scene.terrain.notes = "\n".join(filter(None, (*notes, scene.terrain.notes))) or None
         set_dam(scene.terrain, project, areas["dam"])
         if pulses is not None:
             set_inflows(scene.terrain, pulses)
     return scene.set("events.max_time", project.max_time)
+
+
+def _release_raster(
+    root: Path,
+    raster: Path,
+    terrain: Path,
+    release: Path,
+    project: ProjectSettings,
+    ascii_copy: Optional[PathLike],
+) -> Optional[Raster]:
+    """Return the thickness at the nodes of the terrain if the release is a raster."""
+    if release.suffix.lower() not in RASTER_SUFFIXES:
+        return None
+    if project.release_thickness is not None:
+        raise InputError(
+            f"{release}: a raster holds the thickness; leave out relTh and relThFromFile in the "
+            f"ini, and {argument('thickness')}"
+        )
+    if ascii_copy is None:
+        raise InputError(f"{release}: give a file beside which its copy is written (ascii_copy)")
+    depth = thickness_on_terrain(
+        read_raster(release),
+        read_raster(terrain),
+        terrain_is_text=raster.suffix.lower() not in GEOTIFF,
+    )
+    snow_part(depth)  # checks the values
+    copy = thickness_copy(Path(ascii_copy), release.stem)
+    write_ascii_grid(copy, depth, exact=True)
+    return replace(depth, name=str(copy), plain=True, numbers="float64")
 
 
 def _entrained_thickness(file: Optional[Path], project: ProjectSettings) -> Optional[float]:
@@ -262,18 +300,23 @@ def _check_saved_maps(terrain: Path, project: ProjectSettings) -> None:
 
 def _releases(folder: Path, project: ProjectSettings) -> list[Path]:
     rasters = _files(folder, RASTERS)
-    if rasters:
-        raise InputError(
-            f"{rasters[0]}: com5SnowSlide takes no release from a raster; give polygons, or use "
-            f"{argument('terrain')} with {argument('thickness_raster')}"
-        )
     files = _files(folder, POLYGONS)
+    if rasters and files:
+        raise InputError(f"{folder}: has polygons and rasters; AvaFrame takes one kind")
+    if rasters and project.hydrographs is not None:
+        raise InputError(f"{rasters[0]}: timeDependentRelease needs polygons")
+    files = files or rasters
+    for before, after in zip(rasters, rasters[1:]):
+        if before.stem == after.stem:
+            raise InputError(f"{folder}: has two rasters {quoted(after.stem)}; keep one")
     if project.release_scenario:
         files = [file for file in files if file.stem == project.release_scenario]
         if not files:
             raise InputError(f"{folder}: no release area {quoted(project.release_scenario)}")
     if not files:
-        raise InputError(f"{folder}: no file of a release area ({', '.join(POLYGONS)})")
+        raise InputError(
+            f"{folder}: no file of a release area ({', '.join((*POLYGONS, *RASTERS))})"
+        )
     return files
 
 
