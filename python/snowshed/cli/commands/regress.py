@@ -112,10 +112,6 @@ def regress(
     rows = read_rows(table, measure, where, inputs or INPUTS[1:])
     rows = rows.of_one_seed() if one_seed else rows
     scheme = CrossValidation(rounds, folds, inner_folds, seed, split)
-    if rows.left_out and not quiet:
-        say(f"note: {rows.left_out} rows have no stack and are left out", err=True)
-    if rows.moving and not quiet:
-        say(f"note: {rows.moving} stacks were still moving at the time limit", err=True)
     try:
         with progress_bar(quiet=quiet, speed_period_s=LONG_PERIOD_S) as progress:
             reports = run(
