@@ -56,6 +56,17 @@ COMMANDS = {
     "no results folder": (PANEL, "Missing option '-o'"),
     "misspelled preset": (("panel", "--preset", "lab50", *NEW), 'did you mean "lab-50"?'),
     "misspelled command": (("pannel", *NEW), "No such command"),
+    "width in 2D": ((*PANEL, "--width", 3, *DRY), "--width has no effect: the scene is 2D"),
+    "width of the slab in 2D": (
+        (*PANEL, "--slab-width", 3, *DRY), "--slab-width has no effect: the scene is 2D"
+    ),
+    "between a single event": (
+        (*PANEL, "--events", 1, "--between", "reseed", *DRY),
+        "--between has no effect: there is a single event",
+    ),
+    "width of a season in 2D": (
+        ("season", "snowfalls.csv", *SEASON, "--width", 3, *DRY), "--width has no effect"
+    ),
     "tilt in radians": ((*PANEL, "--tilt", 0.87, *DRY), "0.87 degrees is unusual"),
     "height in cm": ((*PANEL, "--height", 330, *DRY), "330 m is unusual"),
     "strength in kPa": (
