@@ -20,6 +20,7 @@ from snowshed.base.formatting import number_in
 from snowshed.base.messages import shortened
 from snowshed.base.paths import PathLike
 from snowshed.io.csv_table import read_csv
+from snowshed.io.run_files import issue_unfinished_note
 from snowshed.results.folder import event_table
 from snowshed.scene.accuracy_settings import ACCURACY, FORMER_NAMES
 from snowshed.scene.resolved import scene_data
@@ -156,6 +157,7 @@ class StackTable:
         from snowshed.study.scene_hash import RunKey
         from snowshed.study.table import scene_columns
 
+        issue_unfinished_note(folder)
         run = RunKey.of(ResolvedScene.load(folder / "scene.json"))
         scene = scene_data(run.scene)
         axes = [f"panel.{name}" for name in scene.get("panel", {})]
@@ -318,7 +320,7 @@ class StackTable:
             if len(values) > 1:
                 raise InputError(
                     f"{name}: the rows have different values ({', '.join(values[:6])}), and their "
-                    "stacks are not comparable; leave all but one of them in the table"
+                    "stacks are not comparable; choose the rows of one of them"
                 )
 
     def varying(self, paths: Sequence[str], purpose: str) -> list[str]:

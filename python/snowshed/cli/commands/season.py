@@ -13,6 +13,7 @@ from snowshed._core import InputError
 from snowshed.base.formatting import plural
 from snowshed.base.interrupt import Interrupted
 from snowshed.base.notes import held_notes, record_notes
+from snowshed.base.paths import shell_words
 from snowshed.cli.exit_codes import Stopped
 from snowshed.cli.options.common import (
     PATH,
@@ -347,9 +348,9 @@ def print_season(result: SeasonResult, folder: Path, scene: ResolvedScene) -> No
         bias = recorded_bias(int(scene.data["dimension"]), result.simulated, mechanisms)
         console.print(f"error of the grid: {bias}")
     if result.simulated:
-        console.print(f"the snow in motion: snowshed view {folder}")
+        console.print(f"the snow in motion: {shell_words('snowshed', 'view', folder)}")
     if result.simulated and scene.data["output"]["forces"]:
-        console.print(f"the loads of the snow: snowshed loads {folder}")
+        console.print(f"the loads of the snow: {shell_words('snowshed', 'loads', folder)}")
 
 
 def _rows(result: SeasonResult) -> tuple[list[dict[str, Any]], int]:

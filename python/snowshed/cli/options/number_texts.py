@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from snowshed._core import InputError
+from snowshed.base.notes import InputNote, issue_note
 
 MAX_STEPS = 1000
 
@@ -35,7 +36,7 @@ def numbers(option: str, text: str, *, example: str, steps: bool = False) -> lis
     """
     try:
         if steps and ":" in text:
-            return _parse_steps(text)
+            return _parse_steps(option, text)
         return [float(part) for part in text.split(",")]
     except (ValueError, ZeroDivisionError, OverflowError):
         forms = f"a list of numbers such as {example}"
@@ -43,12 +44,15 @@ def numbers(option: str, text: str, *, example: str, steps: bool = False) -> lis
         raise InputError(f"{option}: {text!r} is not {forms}") from None
 
 
-def _parse_steps(text: str) -> list[float]:
+def _parse_steps(option: str, text: str) -> list[float]:
     low, high, step = (float(part) for part in text.split(":"))
     count = int((high - low) / step + 1e-9) + 1
     if not (step > 0 and 1 <= count <= MAX_STEPS):
         raise ValueError
-    return [round(low + n * step, 9) for n in range(count)]
+    values = [round(low + n * step, 9) for n in range(count)]
+    if high - values[-1] > 1e-6 * step:
+        issue_note(f"{option}: {text} ends at {values[-1]:g}", InputNote)
+    return values
 
 
 def span(option: str, text: str, *, example: str) -> tuple[float, float]:
