@@ -11,6 +11,7 @@ import click
 from snowshed.cli.commands.designed_study import measure_help
 from snowshed.cli.exit_codes import Stopped
 from snowshed.cli.options.common import PATH, jobs_option, quiet_option, resume_option
+from snowshed.cli.options.number_texts import named_once
 from snowshed.cli.output.terminal import narrow_table, say, wide_console
 
 if TYPE_CHECKING:
@@ -108,7 +109,7 @@ def regress(
     from snowshed.analysis.regression.rows import INPUTS, read_rows
     from snowshed.cli.output.progress import LONG_PERIOD_S, progress_bar
 
-    where = dict(map(_condition, conditions))
+    where = named_once("--where", map(_condition, conditions))
     rows = read_rows(table, measure, where, inputs or INPUTS[1:])
     rows = rows.of_one_seed() if one_seed else rows
     scheme = CrossValidation(rounds, folds, inner_folds, seed, split)

@@ -15,7 +15,7 @@ from snowshed.base.notes import InputNote, issue_note
 from snowshed.cli.compute_study import compute_study, print_study_cost
 from snowshed.cli.exit_codes import Failed, Stopped
 from snowshed.cli.options.common import jobs_option, same_version_option
-from snowshed.cli.options.number_texts import named_span, numbers
+from snowshed.cli.options.number_texts import named_once, named_span, numbers
 from snowshed.cli.output.terminal import PlainConsole
 from snowshed.io.raster.output import MapFormat
 from snowshed.methods.slide.settings import SlideSettings
@@ -61,10 +61,7 @@ class RangeOptions:
         InputError
             If a range, the number of runs or a list of pressures is wrong.
         """
-        ranges = options.pop("ranges")
-        spans = dict(map(_span, ranges))
-        if len(spans) < len(ranges):
-            raise InputError("--range: a name is given twice")
+        spans = named_once("--range", map(_span, options.pop("ranges")))
         draw = SAMPLINGS[options.pop("sampling")]
         runs, seed = options.pop("runs"), options.pop("sample_seed")
         return cls(

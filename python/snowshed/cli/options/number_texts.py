@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import TypeVar
+
 from snowshed._core import InputError
 from snowshed.base.notes import InputNote, issue_note
+
+Value = TypeVar("Value")
 
 MAX_STEPS = 1000
 
@@ -90,6 +95,27 @@ def _ends(text: str, *, single: bool = False) -> tuple[float, float]:
     if not (1 if single else 2) <= len(ends) <= 2:
         raise ValueError
     return ends[0], ends[-1]
+
+
+def named_once(option: str, pairs: Iterable[tuple[str, Value]]) -> dict[str, Value]:
+    """Return values by their names, from an option that is given once for each name.
+
+    Raises
+    ------
+    InputError
+        If a name comes twice, because one of its values would be ignored.
+
+    Examples
+    --------
+    >>> named_once("--where", [("panel.tilt", "40"), ("seed", "1")])
+    {'panel.tilt': '40', 'seed': '1'}
+    """
+    values: dict[str, Value] = {}
+    for name, value in pairs:
+        if name in values:
+            raise InputError(f"{option}: the name {name} is given twice")
+        values[name] = value
+    return values
 
 
 def named_span(
