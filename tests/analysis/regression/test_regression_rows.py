@@ -8,6 +8,7 @@ from synthetic_rows import few_inputs, synthetic_rows, thesis_inputs, write_tabl
 from snowshed import InputError
 from snowshed.analysis.regression import read_rows, stack_rows
 from snowshed.analysis.regression import rows as rows_module
+from snowshed.io.toml import parse_toml
 
 
 def test_a_table_gives_inputs_and_targets(tmp_path):
@@ -242,3 +243,27 @@ def test_rows_left_out_and_stacks_in_motion_are_noted(tmp_path):
         "2 rows have no stack and are left out",
         "1 stack was still moving at the time limit",
     ]
+
+
+@pytest.mark.parametrize(
+    ("height", "length", "message"),
+    [
+        ([1.0], [4.0, 4.0], r"height: shape \(1,\); needed: \(2,\), as inputs"),
+        ([1.0, 2.0], [4.0, 0.0], r"length\[1\]: 0 m; needed: a positive number"),
+        ([np.nan, 2.0], [4.0, 4.0], r"height\[0\]: nan m; needed: a positive number"),
+    ],
+)
+def test_arrays_that_are_no_stacks_are_refused(height, length, message):
+    """A single height would pass for that of every stack."""
+    with pytest.raises(InputError, match=message):
+        stack_rows([[1, 2, 4, 40], [2, 2, 4, 40]], np.array(height), np.array(length))
+
+
+def test_a_table_in_utf_16_is_named_as_such(tmp_path):
+    (tmp_path / "rows.csv").write_text("event,height_m\n", encoding="utf-16")
+    with pytest.raises(InputError, match=r"rows\.csv: not a table: text in UTF-16; save it in UTF-8"):
+        read_rows(tmp_path / "rows.csv")
+
+
+def test_a_study_file_may_begin_with_a_byte_order_mark():
+    assert parse_toml(b"\xef\xbb\xbfpanel.tilt = 40") == {"panel": {"tilt": 40}}

@@ -190,6 +190,11 @@ def stack_rows(inputs: Floats, height: Floats, length: Floats) -> StackRows:
     height, length
         Height and length of the stack, shape (n,), m.
 
+    Raises
+    ------
+    InputError
+        If the arrays have different lengths, or a height or length is not a positive number.
+
     Examples
     --------
     >>> inputs = np.array([[1, 2, 4, 40], [2, 2, 4, 40], [2, 2, 4, 40]])
@@ -201,6 +206,7 @@ def stack_rows(inputs: Floats, height: Floats, length: Floats) -> StackRows:
 
     inputs = number_array("inputs", inputs)
     height, length = number_array("height", height), number_array("length", length)
+    _check_arrays(inputs, height, length)
     alike = pd.DataFrame(inputs).groupby(list(range(inputs.shape[1])), sort=False)
     row, repetition = alike.ngroup().to_numpy(), alike.cumcount().to_numpy()
     first = repetition == 0
@@ -212,6 +218,19 @@ def stack_rows(inputs: Floats, height: Floats, length: Floats) -> StackRows:
 
     measured = {"ratio": height / length, "height": height, "length": length}
     return StackRows(inputs[first], {name: arranged(values) for name, values in measured.items()})
+
+
+def _check_arrays(inputs: Floats, height: Floats, length: Floats) -> None:
+    """Refuse arrays of different lengths, and stacks that are no stacks."""
+    if inputs.ndim != 2:
+        raise InputError(f"inputs: {inputs.ndim} dimensions; needed: 2, a row for each stack")
+    for name, values in (("height", height), ("length", length)):
+        if values.shape != (len(inputs),):
+            raise InputError(f"{name}: shape {values.shape}; needed: ({len(inputs)},), as inputs")
+        wrong = ~(np.isfinite(values) & (values > 0))
+        if wrong.any():
+            row = int(np.argmax(wrong))
+            raise InputError(f"{name}[{row}]: {values[row]:g} m; needed: a positive number")
 
 
 def _input_names(inputs: Sequence[str]) -> tuple[str, ...]:
