@@ -1,12 +1,18 @@
 """``snowshed loads``: of scenes, of results, of slides, and what it refuses."""
 
+import html
 import json
+import shutil
+from pathlib import Path
 
 import pandas as pd
 import pytest
 from conftest import tiny_scene
+from helpers.interrupted_runs import interrupt_at
 
+from snowshed import run_events
 from snowshed.cli.main import main
+from snowshed.study.errors import resume_study_command
 
 
 def snowshed(*arguments: object) -> int:
@@ -92,3 +98,57 @@ def test_unfinished_slides_of_many_are_counted_beside_the_loads(tmp_path, capsys
     assert pd.read_csv(tmp_path / "maps/object_loads.csv").slides[0] == 2
     shown = " ".join(capsys.readouterr().out.split())
     assert "In 2 of 2 runs the slide had not come to rest at the time limit." in shown
+
+
+@pytest.fixture(scope="module")
+def unfinished(tmp_path_factory):
+    """Return the folder of a run that was interrupted in its second event; its name has a space."""
+    folder = tmp_path_factory.mktemp("runs") / "the run"
+    scene = tiny_scene(**{"events.count": 3, "output.forces": True})
+    with pytest.raises(KeyboardInterrupt):
+        run_events(scene, folder, progress=interrupt_at(2, 0.05), pictures=False)
+    return folder
+
+
+def test_the_loads_of_an_unfinished_run_are_marked(unfinished, tmp_path, capsys):
+    note = f"{unfinished}: the run is not finished (interrupted): later events are missing"
+    assert snowshed("loads", unfinished, "-o", tmp_path / "loads") == 0
+    assert f"note: {note}" in capsys.readouterr().err
+    assert note in html.unescape((tmp_path / "loads/loads.html").read_text())
+
+
+def test_other_uses_of_an_unfinished_run_are_noted(unfinished, tmp_path, capsys):
+    run_events(tiny_scene(**{"events.count": 4}), tmp_path / "four", pictures=False)
+    assert snowshed("compare", unfinished, tmp_path / "four") == 0
+    messages = capsys.readouterr().err
+    assert "the run is not finished (interrupted)" in messages
+    assert "of only one of the two runs left out (" in messages
+    assert snowshed("view", unfinished, "-o", tmp_path / "view.html") == 0
+    assert "the run is not finished (interrupted)" in capsys.readouterr().err
+    shutil.copytree(unfinished, tmp_path / "copy")
+    (tmp_path / "copy/run.json").unlink()
+    assert snowshed("loads", tmp_path / "copy", "-o", tmp_path / "loads") == 0
+    assert "without run.json, so its run may not be finished" in capsys.readouterr().err
+
+
+def test_commands_in_messages_quote_the_names_of_folders(tmp_path, capsys):
+    scene = tiny_scene(**{"events.count": 1}).resolve()
+    scene.save(tmp_path / "small.json")
+    assert snowshed("run", tmp_path / "small.json", "-o", tmp_path / "my run", "--forces") == 0
+    shown = "".join(capsys.readouterr().out.split())
+    for command in ("view", "loads"):
+        assert f"snowshed{command}'{tmp_path / 'my run'}'".replace(" ", "") in shown
+    assert resume_study_command(Path("my study")) == "snowshed study resume 'my study'"
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--width", 300), "--width has no effect without --video"),
+        (("--seconds", 3), "--seconds has no effect without --video"),
+        (("--video", "a.gif", "-o", "a.html"), "--output has no effect with --video"),
+    ],
+)
+def test_options_of_the_other_view_are_refused(unfinished, capsys, options, message):
+    assert snowshed("view", unfinished, *options) == 2
+    assert message in capsys.readouterr().err

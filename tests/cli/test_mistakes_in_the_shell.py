@@ -49,6 +49,7 @@ FILES = {
     "nil.lua": "local x = heigth + 1\n",
 }
 SEASON = ("--dim", 2, "--height", 0.8, "--length", 2, "--tilt", 40, "--dx", 0.05, *NEW)
+CLEARANCE = ("clearance", "example", "--slope-length", 2, "--tilt", 50, "--dx", 0.1, *NEW)
 
 #: Commands, and what is told of them.
 COMMANDS = {
@@ -56,6 +57,26 @@ COMMANDS = {
     "no results folder": (PANEL, "Missing option '-o'"),
     "misspelled preset": (("panel", "--preset", "lab50", *NEW), 'did you mean "lab-50"?'),
     "misspelled command": (("pannel", *NEW), "No such command"),
+    "width in 2D": ((*PANEL, "--width", 3, *DRY), "--width has no effect: the scene is 2D"),
+    "width of the slab in 2D": (
+        (*PANEL, "--slab-width", 3, *DRY), "--slab-width has no effect: the scene is 2D"
+    ),
+    "between a single event": (
+        (*PANEL, "--events", 1, "--between", "reseed", *DRY),
+        "--between has no effect: there is a single event",
+    ),
+    "width of a season in 2D": (
+        ("season", "snowfalls.csv", *SEASON, "--width", 3, *DRY), "--width has no effect"
+    ),
+    "a range twice": (
+        (*CLEARANCE, "--range", "friction=0.3:0.5", "--range", "friction=0.4", *DRY),
+        "--range: the name friction is given twice",
+    ),
+    "a tilt twice": ((*CLEARANCE, "--tilt", "50,50", *DRY), "equal numbers count once"),
+    "a condition twice": (
+        ("regress", "t.csv", "--where", "seed=1", "--where", "seed=2", *NEW),
+        "--where: the name seed is given twice",
+    ),
     "tilt in radians": ((*PANEL, "--tilt", 0.87, *DRY), "0.87 degrees is unusual"),
     "height in cm": ((*PANEL, "--height", 330, *DRY), "330 m is unusual"),
     "strength in kPa": (

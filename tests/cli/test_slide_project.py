@@ -1,5 +1,6 @@
 """AvaFrame projects on the command line: interruption, resuming, and refusals."""
 
+import html
 import json
 import re
 import shlex
@@ -164,3 +165,16 @@ def test_layers_are_chosen_on_the_command_line(tmp_path, capsys):
     terrain = json.loads((tmp_path / "out/scene.json").read_text())["terrain"]
     assert terrain["release"][0]["outline"][0][0] in (40, 50)
     assert terrain["resistance"][0]["outline"][0][0] in (10, 20)
+
+
+def test_simulations_that_ranges_leave_out_are_told_and_recorded(tmp_path, capsys):
+    project = write_project(tmp_path / "project", releases=("north", "south"))
+    ranges = ["--range", "mu=0.3:0.5", "--runs", 2, "--jobs", 1, "--max-time", 0.2]
+    assert slide(project, tmp_path / "out", "--thickness", 0.5, *ranges, "--no-bonds") == 0
+    message = (
+        "of the project's 2 simulations, these slides are north (null); left out: south (null)"
+    )
+    assert f"note: {message}" in capsys.readouterr().err
+    assert message in json.loads((tmp_path / "out" / "hazard.json").read_text())["notes"]
+    page = html.unescape((tmp_path / "out" / "hazard.html").read_text())
+    assert message in page

@@ -8,6 +8,7 @@ import pytest
 
 from snowshed import InputError, Scene, SnowshedNote, UnusualValueNote
 from snowshed.base.notes import record_notes
+from snowshed.cli.main import main
 from snowshed.season import (
     SeasonSettings,
     Weather,
@@ -129,3 +130,32 @@ def test_a_season_tells_of_snow_in_warm_air_once(tmp_path):
         result = run_season(rows_with(temperature=25.0), flat, tmp_path / "s", pictures=False)
     for texts in (notes, result.notes):
         assert sum(WARM in note for note in texts) == 1
+
+
+def table_of(dates):
+    return pd.DataFrame({"date": dates, "snowfall_m": 0.1, "temperature_c": -4.0})
+
+
+def test_days_missing_in_a_daily_table_are_noted():
+    """A list of snowfalls and the summer between two winters have no gaps."""
+    days = pd.date_range("2024-01-01", "2024-03-31", freq="D")
+    record = read_season(table_of(days))
+    assert not record.notes
+    with pytest.warns(SnowshedNote, match="no rows on 20 days in 1 gap, from 2024-01-31 to 2024-"):
+        read_season(table_of(days[:30].append(days[50:])))
+    with pytest.warns(
+        SnowshedNote, match="no rows on 1 day in 1 gap, from 2024-02-29 to 2024-02-29"
+    ):
+        read_season(table_of(days[days != "2024-02-29"]))
+    assert read_season(table_of(days[::6])).notes == ()
+    assert read_season(table_of(days.append(days + pd.Timedelta(days=366)))).notes == ()
+
+
+def test_a_dry_run_counts_days_and_not_rows(tmp_path, capsys):
+    """Hourly tables have 24 rows on a day."""
+    hours = pd.date_range("2024-01-01", periods=72, freq="h")
+    table_of(hours).assign(snowfall_m=0.004).to_csv(tmp_path / "hours.csv", index=False)
+    panel = ["--dim=2", "--height=0.8", "--length=2", "--tilt=40", "--dx=0.05"]
+    arguments = ["season", str(tmp_path / "hours.csv"), *panel, "-o", str(tmp_path / "out")]
+    assert main([*arguments, "--dry-run"]) == 0
+    assert "in 3 days" in capsys.readouterr().out

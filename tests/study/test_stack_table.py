@@ -113,3 +113,44 @@ def test_every_stack_has_both_readings(store):
     }
     assert (lengths["stack"] == lengths["outermost_first"]).all()
     assert (lengths["equal_pace"] != lengths["outermost_first"]).any()
+
+
+def merged(store, tmp_path, change):
+    """Return the table of a store after a change, written and read again."""
+    frame = StackTable.read(store).frame
+    change(frame).to_csv(tmp_path / "merged.csv", index=False)
+    return tmp_path / "merged.csv"
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (
+            lambda t: pd.concat([t, t]),
+            "line 10: the stack of .*seed = 1, event = 1 is there twice",
+        ),
+        (
+            lambda t: pd.concat([t, t.assign(dx=0.05, seed=t["seed"] + 7, hash=t["hash"] + "b")]),
+            r"dx: the rows have different values \(0\.02, 0\.05\), and their stacks are not",
+        ),
+        (lambda t: t.assign(hash="one"), "hash one: the rows of this run differ .*panel.tilt"),
+        (lambda t: t.assign(hash=""), "line 2, hash: '' is not a run's hash"),
+        (lambda t: t.drop(columns="hash"), "no column hash"),
+        (lambda t: t.assign(length_m="0,5"), "line 2, length_m: '0,5' is not a number"),
+    ],
+)
+def test_tables_put_together_by_hand_are_refused_if_they_mislead(store, tmp_path, change, message):
+    """Copies would pass for seeds, and other settings for the scatter of the seeds."""
+    with pytest.raises(InputError, match=message):
+        read_study_runs(merged(store, tmp_path, change))
+
+
+def test_a_number_has_the_same_meaning_in_every_spelling(store, tmp_path):
+    def respelled(table):
+        texts = table["panel.tilt"].map(str)
+        return table.assign(**{"panel.tilt": texts.where(table.index % 2 > 0, texts + "0")})
+
+    file = merged(store, tmp_path, respelled)
+    assert set(pd.read_csv(file, dtype=str)["panel.tilt"]) == {"40.0", "40.00", "50.0", "50.00"}
+    assert len(read_study_runs(file).points) == len(read_study_runs(store).points) == 4
+    assert len(StackTable.read(file).chosen({"panel.tilt": "40"}).frame) == 4

@@ -2,7 +2,8 @@
 
 import pytest
 
-from snowshed import InputError
+from snowshed import InputError, SnowshedNote
+from snowshed.cli.options.number_texts import numbers
 from snowshed.study import Factor, Span, axis, latin_hypercube, linear, logarithmic, sobol
 
 
@@ -97,3 +98,13 @@ def test_a_seed_determines_the_sample():
     for method in (latin_hypercube, sobol):
         assert method(spans, 8, seed=3) == method(spans, 8, seed=3)
         assert method(spans, 8, seed=3) != method(spans, 8, seed=4)
+
+
+def test_a_range_that_misses_its_end_is_noted(recwarn):
+    linear(40, 60, step=10)
+    linear(0.1, 0.3, step=0.1)
+    assert not recwarn
+    with pytest.warns(SnowshedNote, match="from 40 to 60 in steps of 15 ends at 55"):
+        assert linear(40, 60, step=15) == [40, 55]
+    with pytest.warns(SnowshedNote, match="--heights: 1:2:0.3 ends at 1.9"):
+        numbers("--heights", "1:2:0.3", example="1,2", steps=True)

@@ -11,6 +11,8 @@ from pathlib import Path
 from types import FrameType
 from typing import Any, Optional, Union
 
+from snowshed.base.paths import shell_words
+
 Handler = Union[Callable[[int, Optional[FrameType]], Any], int, None]
 
 
@@ -24,7 +26,7 @@ class Interrupted(KeyboardInterrupt):
 
 def resume_run_command(folder: Path) -> str:
     """Return the command that resumes an interrupted run."""
-    return f"snowshed run {folder / 'scene.json'} -o {folder} --resume"
+    return shell_words("snowshed", "run", folder / "scene.json", "-o", folder, "--resume")
 
 
 @dataclass

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 from pathlib import Path
 from typing import Union
 
@@ -64,3 +65,14 @@ def utf8_path(path: PathLike) -> str:
     if "\0" in name or any("\ud800" <= c <= "\udfff" for c in name):
         raise InputError(f"{name!r}: this name is not UTF-8")
     return name
+
+
+def shell_words(*words: object) -> str:
+    """Return words of a command as a shell reads them, for messages.
+
+    Examples
+    --------
+    >>> shell_words("snowshed", "view", "my runs")
+    "snowshed view 'my runs'"
+    """
+    return shlex.join(map(str, words))

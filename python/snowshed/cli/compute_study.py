@@ -9,6 +9,7 @@ from typing import Any, Optional
 
 import snowshed._core as _core
 from snowshed.base.formatting import about, plural
+from snowshed.base.paths import shell_words
 from snowshed.base.progress import Progress, Reporter
 from snowshed.cli.exit_codes import Failed, Stopped
 from snowshed.cli.output.terminal import PlainConsole, say
@@ -65,8 +66,8 @@ def print_outcome(folder: Path, names: list[str], quiet: bool) -> None:
         print_failures(failed, PlainConsole(soft_wrap=True))
         done = len(runs) - len(failed)
         say(f"{done} of {len(runs)} runs done")
-        say(f"To write a table: snowshed study export {folder} -o table.csv")
-        say(f"To draw a picture: snowshed study picture {folder}")
+        say(f"To write a table: snowshed study export {shell_words(folder)} -o table.csv")
+        say(f"To draw a picture: snowshed study picture {shell_words(folder)}")
     if failed:
         listed = ", ".join(run.hash[:12] for run in failed[:MAX_NAMED_RUNS])
         listed += ", ..." if len(failed) > MAX_NAMED_RUNS else ""

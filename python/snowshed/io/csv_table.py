@@ -5,6 +5,7 @@ All follow the same rules: UTF-8, a unique name for each column, and a cell for 
 
 from __future__ import annotations
 
+import codecs
 import csv
 import hashlib
 import io
@@ -339,6 +340,8 @@ def parse_csv(text: str, where: Path | str, *, as_text: bool = False) -> pd.Data
 
 def _read_table_text(path: Path, largest: int) -> str:
     content = unpacked(read_input(path, largest), path, largest)
+    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        raise InputError(f"{path}: not a table: text in UTF-16; save it in UTF-8")
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -15,7 +15,7 @@ from typing import Any
 from snowshed._core import InputError
 from snowshed.base.callers import resuming_call
 from snowshed.base.json_values import JsonValue
-from snowshed.base.notes import InputNote, issue_note
+from snowshed.base.notes import InputNote, ResultNote, issue_note
 from snowshed.io.csv_table import Table
 from snowshed.io.input_file import read_regular
 from snowshed.io.json_file import check_seal, read_object
@@ -36,6 +36,33 @@ def read_run_record(folder: Path) -> dict[str, Any]:
     """
     path = folder / RECORD
     return read_object(path) if path.is_file() else {}
+
+
+def unfinished_note(folder: Path) -> str:
+    """Return a sentence about a run that is not finished, or may not be; empty if it is.
+
+    Records of earlier versions have no status, and their runs count as finished.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     _ = (Path(folder) / RECORD).write_text('{"status": "interrupted"}')
+    ...     unfinished_note(Path(folder)).replace(folder, "out")
+    'out: the run is not finished (interrupted): later events are missing'
+    """
+    if not (folder / RECORD).is_file():
+        return f"{folder}: without {RECORD}, so its run may not be finished"
+    status = read_run_record(folder).get("status", "finished")
+    if status == "finished":
+        return ""
+    return f"{folder}: the run is not finished ({status}): later events are missing"
+
+
+def issue_unfinished_note(folder: Path) -> None:
+    """Issue a note if the run in a results folder is not finished."""
+    if note := unfinished_note(folder):
+        issue_note(note, ResultNote)
 
 
 def origin_of_record(record: Mapping[str, Any]) -> dict[str, str]:

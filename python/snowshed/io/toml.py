@@ -38,7 +38,7 @@ def parse_toml(content: bytes) -> dict[str, Any]:
     {'panel': {'tilt': 40}}
     """
     try:
-        text = content.decode("utf-8")
+        text = content.decode("utf-8-sig")  # programs of Windows begin files with a mark
         if long := LONG_KEY.search(text):
             line = text.count("\n", 0, long.start()) + 1
             raise InputError(f"not TOML: a key of more than {MAX_PARTS} parts (at line {line})")

@@ -15,7 +15,7 @@ from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.io.film import Film
 from snowshed.io.json_file import read_object
-from snowshed.io.run_files import read_run_record
+from snowshed.io.run_files import issue_unfinished_note, read_run_record
 from snowshed.methods.registry import method_of
 from snowshed.plot.caption import scene_caption
 from snowshed.plot.film_page import MeasureLine, ViewContent, write_view_page
@@ -68,6 +68,7 @@ def write_view(results: PathLike, page: Optional[PathLike] = None) -> Path:
     run = shown_results(results)
     file = Path(page) if page is not None else Path(results) / PAGE
     film = run.film
+    issue_unfinished_note(run.folder)
     content = view_content(run, film)
     notes = list(dict.fromkeys([*_season_notes(results), *content.notes]))
     write_view_page(file, film, replace(content, notes=notes))

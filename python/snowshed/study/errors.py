@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from snowshed._core import SimulationError
+from snowshed.base.paths import shell_words
 
 
 class StudyError(SimulationError):
@@ -26,4 +27,4 @@ class StudyInterrupted(KeyboardInterrupt):
 
 def resume_study_command(folder: Path) -> str:
     """Return the command that resumes the studies in a folder."""
-    return f"snowshed study resume {folder}"
+    return shell_words("snowshed", "study", "resume", folder)

@@ -15,7 +15,7 @@ from typing import Optional
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
 from snowshed.base.messages import shortened
-from snowshed.base.notes import issue_note
+from snowshed.base.notes import InputNote, issue_note
 
 MAX_COUNT = 1_000_000  # values of one factor; more are a mistyped range
 SCALES = ("linear", "log")
@@ -120,7 +120,8 @@ def linear(
     start, stop
         First value, and upper limit of the last value.
     step
-        Distance of the values; `stop` is one of them if a whole number of steps reaches it.
+        Distance of the values; `stop` is one of them if a whole number of steps reaches it. A note
+        says if none does.
     count
         Number of values, at least 2; give either this or `step`.
 
@@ -149,7 +150,13 @@ def linear(
     steps = (float(stop) - float(start)) / step * (1 + 1e-9)
     if not steps < MAX_COUNT:
         raise InputError(f"has too many values; at most {MAX_COUNT} are allowed")
-    return [_without_rounding(start + i * step) for i in range(math.floor(steps) + 1)]
+    values = [_without_rounding(start + i * step) for i in range(math.floor(steps) + 1)]
+    if stop - values[-1] > 1e-6 * step:
+        issue_note(
+            f"the range from {start:g} to {stop:g} in steps of {step:g} ends at {values[-1]:g}",
+            InputNote,
+        )
+    return values
 
 
 @checked

@@ -16,9 +16,11 @@ from snowshed._core import InputError
 from snowshed.base.arrays import Booleans, Floats
 from snowshed.base.callers import STUDY_RESUME, argument, either
 from snowshed.base.extras import require
+from snowshed.base.formatting import number_in
 from snowshed.base.messages import shortened
 from snowshed.base.paths import PathLike
 from snowshed.io.csv_table import read_csv
+from snowshed.io.run_files import issue_unfinished_note
 from snowshed.results.folder import event_table
 from snowshed.scene.accuracy_settings import ACCURACY, FORMER_NAMES
 from snowshed.scene.resolved import scene_data
@@ -146,7 +148,7 @@ class StackTable:
         points = frame[[path for path in ("hash", *axes) if path in frame]]
         if "seed" in frame:
             points = points.assign(**{SEED: frame["seed"]})
-        points = _as_numbers(points.drop_duplicates(ignore_index=True), [*axes, SEED])
+        points = as_numbers(points, [*axes, SEED]).drop_duplicates(ignore_index=True)
         return cls(frame, axes, points, name=name)
 
     @classmethod
@@ -155,6 +157,7 @@ class StackTable:
         from snowshed.study.scene_hash import RunKey
         from snowshed.study.table import scene_columns
 
+        issue_unfinished_note(folder)
         run = RunKey.of(ResolvedScene.load(folder / "scene.json"))
         scene = scene_data(run.scene)
         axes = [f"panel.{name}" for name in scene.get("panel", {})]
@@ -175,10 +178,11 @@ class StackTable:
             if column not in frame:
                 raise InputError(f"{column}: no such column; the table has {self.columns}")
             cells = frame[column].astype(str)
-            if not (cells == value).any():
+            equal = (cells == value) | cells.map(number_in).eq(number_in(value))
+            if not equal.any():
                 there = ", ".join(sorted(set(cells))[:8])
                 raise InputError(f"{column}: no row has the value {value}; there are: {there}")
-            frame = frame.loc[cells == value]
+            frame = frame.loc[equal]
         return replace(self, frame=frame)
 
     @property
@@ -243,24 +247,81 @@ class StackTable:
         Raises
         ------
         InputError
-            If the measure is unknown, or there is no such row.
+            If the measure is unknown, there is no such row, a cell is neither empty nor a number,
+            a stack is there twice, or the rows differ in their settings.
         """
-        import pandas as pd
-
         columns = measure_named(measure).columns(quantities)
-        self.check_columns(list(columns))
+        self.check_columns(["event", *columns])
+        self._check_stacks()
         numbers = {
-            quantity: pd.to_numeric(self.frame[column], errors="coerce")
-            for column, quantity in columns.items()
+            quantity: self._numbers_or_nothing(column) for column, quantity in columns.items()
         }
         frame = self.frame.drop(columns=list(columns)).assign(**numbers)
         frame = frame.dropna(subset=list(quantities))
-        frame = _as_numbers(frame, [*self.axes, "seed", "event"])
+        frame = as_numbers(frame, [*self.axes, "seed", "event"])
         if frame.empty:
             raise InputError(
                 f"none of its runs is computed yet; {either(*STUDY_RESUME)} computes them"
             )
         return frame
+
+    def _numbers_or_nothing(self, column: str) -> pd.Series[float]:
+        """Return a column as numbers, NaN for empty cells; refuse any other cell."""
+        import pandas as pd
+
+        cells = self.frame[column]
+        numbers = pd.to_numeric(cells, errors="coerce")
+        nothing = cells.isna() | cells.astype(str).str.strip().str.lower().isin(["", "nan"])
+        self.refuse(column, np.asarray(numbers.isna() & ~nothing), "a number")
+        return numbers
+
+    def check_hashes(self) -> None:
+        """Raise InputError unless each run has a hash of its own."""
+        self.check_columns(["hash"])
+        cells = self.frame["hash"]
+        self.refuse("hash", np.asarray(cells.isna() | (cells.astype(str) == "")), "a run's hash")
+        again = self.points["hash"].duplicated()
+        if again.any():
+            hash_ = self.points["hash"][again].iloc[0]
+            raise InputError(
+                f"hash {shortened(str(hash_), 40)}: the rows of this run differ in their "
+                f"parameters ({self._columns_that_differ(hash_)}); needed: a hash of its own for "
+                "each run"
+            )
+
+    def _check_stacks(self) -> None:
+        """Refuse stacks that are there twice, and rows that differ in their settings.
+
+        Tables that were put together by hand may have both. Copies of a run would pass for other
+        seeds, and stacks of other settings for the scatter of the seeds.
+        """
+        names = [name for name in (*self.axes, "seed", "event") if name in self.frame]
+        stacks = as_numbers(self.frame, names)[list(dict.fromkeys(names))]
+        again = stacks.duplicated()
+        if again.any():
+            row = int(again.argmax())
+            values = ", ".join(f"{name} = {stacks[name].iloc[row]}" for name in stacks)
+            raise InputError(f"line {self.line(row)}: the stack of {values} is there twice")
+        self._check_settings()
+
+    def _columns_that_differ(self, hash_: object) -> str:
+        """Return the names of the columns in which the points of a run differ."""
+        points = self.points[self.points["hash"] == hash_]
+        return ", ".join(str(name) for name in points if points[name].nunique(dropna=False) > 1)
+
+    def _check_settings(self) -> None:
+        """Refuse rows that differ in a setting that is not among the axes."""
+        axes = {path.rpartition(".")[2] for path in self.axes}
+        for name in SETTINGS:
+            if name not in self.frame or name in axes:
+                continue
+            cells = as_numbers(self.frame, [name])[name]
+            values = sorted(set(cells[cells.notna()].astype(str)) - {""})
+            if len(values) > 1:
+                raise InputError(
+                    f"{name}: the rows have different values ({', '.join(values[:6])}), and their "
+                    "stacks are not comparable; choose the rows of one of them"
+                )
 
     def varying(self, paths: Sequence[str], purpose: str) -> list[str]:
         """Return the axes with several values; these must be numbers.
@@ -303,7 +364,7 @@ class StackTable:
         return common
 
 
-def _as_numbers(frame: pd.DataFrame, columns: Sequence[str]) -> pd.DataFrame:
+def as_numbers(frame: pd.DataFrame, columns: Sequence[str]) -> pd.DataFrame:
     """Return a table in which columns of texts that are all numbers are numbers."""
     import pandas as pd
 

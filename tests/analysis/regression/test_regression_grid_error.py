@@ -106,7 +106,7 @@ def test_the_answer_names_the_source_of_the_error(capsys):
 
 
 def test_stacks_on_the_finest_grid_lie_in_the_intervals():
-    """Nine of ten stacks should: without this error it was 68 % of the heights, 8 % of the lengths."""
+    """Nine of ten should: without this error it was 68 % of heights and 8 % of lengths."""
     rows = pd.read_csv(recorded.TABLE)
     rows = rows[(rows["scheme"] == "thesis") & (rows["dx"] == FINE)]
     inside = []

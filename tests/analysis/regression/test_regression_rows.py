@@ -8,6 +8,7 @@ from synthetic_rows import few_inputs, synthetic_rows, thesis_inputs, write_tabl
 from snowshed import InputError
 from snowshed.analysis.regression import read_rows, stack_rows
 from snowshed.analysis.regression import rows as rows_module
+from snowshed.io.toml import parse_toml
 
 
 def test_a_table_gives_inputs_and_targets(tmp_path):
@@ -182,3 +183,87 @@ def test_stacks_by_two_trimming_rules_are_not_mixed(tmp_path):
     chosen = read_rows(tmp_path / "rows.csv", measure="equal_pace")
     assert len(chosen) == 96 and chosen.settings["trimming"] == "equal_pace"
     assert chosen.targets["height"][0] == 2 * table["height_m"][0]
+
+
+@pytest.mark.parametrize(
+    ("change", "note"),
+    [
+        (
+            {"panel.height": 1000.0, "panel.length": 1000.0},
+            "panel.height = 1000.0: .*check its unit",
+        ),
+        ({"panel.tilt": np.pi / 180}, "panel.tilt = 0.698.* degrees is unusual.*check its unit"),
+        ({"height_m": 100.0, "length_m": 100.0}, "96 stacks reach above the top of their panel"),
+        ({"length_m": 0.01}, "96 of 96 stacks are higher than long"),
+    ],
+)
+def test_values_in_other_units_are_noted(tmp_path, change, note):
+    table = write_table(synthetic_rows(few_inputs()), tmp_path / "rows.csv")
+    scaled = {name: table[name] * factor for name, factor in change.items()}
+    table.assign(**scaled).to_csv(tmp_path / "rows.csv", index=False)
+    with pytest.warns(UserWarning, match=note):
+        read_rows(tmp_path / "rows.csv")
+
+
+def test_an_input_that_no_scene_can_have_is_refused(tmp_path):
+    table = write_table(synthetic_rows(few_inputs()), tmp_path / "rows.csv")
+    table.assign(**{"panel.tilt": table["panel.tilt"] + 70}).to_csv(
+        tmp_path / "rows.csv", index=False
+    )
+    with pytest.raises(InputError, match=r"line 2: /panel/tilt: 110 is outside the allowed range"):
+        read_rows(tmp_path / "rows.csv")
+
+
+def test_a_column_that_varies_and_is_ignored_is_noted(tmp_path):
+    rows = synthetic_rows(few_inputs())
+    write_table(rows, tmp_path / "rows.csv", friction=np.arange(len(rows)) % 2)
+    with pytest.warns(UserWarning, match="^friction: the rows differ here"):
+        read_rows(tmp_path / "rows.csv")
+
+
+def test_copies_of_stacks_are_noted_and_refused_without_seeds(tmp_path):
+    """Copies would make the scatter of the seeds too small."""
+    table = write_table(synthetic_rows(few_inputs()), tmp_path / "rows.csv")
+    pd.concat([table, table.assign(seed=2)]).to_csv(tmp_path / "rows.csv", index=False)
+    with pytest.warns(UserWarning, match="96 stacks equal another stack .* are they copies?"):
+        read_rows(tmp_path / "rows.csv")
+    pd.concat([table, table.assign(seed=np.nan)]).to_csv(tmp_path / "rows.csv", index=False)
+    with pytest.raises(InputError, match=r"seed twice \(some rows have no seed\)"):
+        read_rows(tmp_path / "rows.csv")
+
+
+def test_rows_left_out_and_stacks_in_motion_are_noted(tmp_path):
+    table = write_table(synthetic_rows(few_inputs()), tmp_path / "rows.csv")
+    table.loc[[3, 7], ["height_m", "length_m"]] = np.nan
+    table.loc[5, "ended"] = "time_limit"
+    table.to_csv(tmp_path / "rows.csv", index=False)
+    with pytest.warns(UserWarning) as notes:
+        read_rows(tmp_path / "rows.csv")
+    assert [str(note.message) for note in notes] == [
+        "2 rows have no stack and are left out",
+        "1 stack was still moving at the time limit",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("height", "length", "message"),
+    [
+        ([1.0], [4.0, 4.0], r"height: shape \(1,\); needed: \(2,\), as inputs"),
+        ([1.0, 2.0], [4.0, 0.0], r"length\[1\]: 0 m; needed: a positive number"),
+        ([np.nan, 2.0], [4.0, 4.0], r"height\[0\]: nan m; needed: a positive number"),
+    ],
+)
+def test_arrays_that_are_no_stacks_are_refused(height, length, message):
+    """A single height would pass for that of every stack."""
+    with pytest.raises(InputError, match=message):
+        stack_rows([[1, 2, 4, 40], [2, 2, 4, 40]], np.array(height), np.array(length))
+
+
+def test_a_table_in_utf_16_is_named_as_such(tmp_path):
+    (tmp_path / "rows.csv").write_text("event,height_m\n", encoding="utf-16")
+    with pytest.raises(InputError, match=r"rows\.csv: not a table: text in UTF-16; save it"):
+        read_rows(tmp_path / "rows.csv")
+
+
+def test_a_study_file_may_begin_with_a_byte_order_mark():
+    assert parse_toml(b"\xef\xbb\xbfpanel.tilt = 40") == {"panel": {"tilt": 40}}

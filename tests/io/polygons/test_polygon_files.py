@@ -238,6 +238,15 @@ def test_the_field_of_the_thickness_is_noted(tmp_path, ending, field, value, met
     assert [note in text for text in notes] == [True] if note else not notes
 
 
+@pytest.mark.parametrize("ending", [".gpkg", ".geojson"])
+def test_a_truth_value_is_no_thickness(tmp_path, ending):
+    """SQLite stores it as 1, which would be a metre."""
+    file = write(tmp_path / f"a{ending}", [SQUARE, polygon((50, 0), (60, 0), (60, 9))],
+                 d0=[True, False])  # fmt: skip
+    with pytest.raises(InputError, match="feature 1: d0 'True' is not a number"):
+        read_areas(file)
+
+
 def test_fields_that_contradict_each_other_are_refused(tmp_path):
     file = write(tmp_path / "a.gpkg", [SQUARE], thickness=[0.5], d0=[0.6])
     with pytest.raises(InputError, match=r"thickness says 0.5 m and d0 0.6 m"):

@@ -7,6 +7,7 @@ from synthetic_weather import epw, hourly, imis, meteoswiss, smet, tmy3
 
 from snowshed import InputError
 from snowshed.io.weather.observation import time_of
+from snowshed.io.weather.smet import read_smet
 from snowshed.io.weather.swiss import FORMATS as SWISS_TIMES
 
 
@@ -214,3 +215,42 @@ def test_positions_of_stations_are_read(station):
     assert read.latitude is None
     with pytest.raises(InputError, match=r"line 4, column latitude: '146.5'; allowed: -90 <="):
         station(smet("TA HS", ["268.15 0.3"]).replace("46.5", "146.5"))
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("20240131T120000", datetime(2024, 1, 31, 12)),
+        ("20240131", datetime(2024, 1, 31)),
+        ("2024-01-31T12", datetime(2024, 1, 31, 12)),
+        ("2024-01-31 12:00:01.5Z", datetime(2024, 1, 31, 12, 0, 1, 500000, timezone.utc)),
+        ("20240131T1200-0330", datetime(2024, 1, 31, 15, 30, tzinfo=timezone.utc)),
+        ("2024-02-29", datetime(2024, 2, 29)),
+    ],
+)
+def test_all_forms_of_iso_times_are_read_on_all_versions_of_python(text, expected):
+    """Python's own reader learnt the basic form in version 3.11."""
+    assert time_of(text, "here") == expected
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["2024-01-31+01:00", "2024-W05-1", "2024-1-31", "2024-01-31T24:00", "2023-02-29", "2024-0131",
+     "2024-01-31T1200:00", "2024-01-31T12:60", "20240131T12:00:0", "", "2024-01-31T12:00+25:00"],
+)  # fmt: skip
+def test_other_texts_are_no_times(text):
+    with pytest.raises(InputError, match="is not a date such as 2024-12-31T06:00"):
+        time_of(text, "here")
+
+
+def test_comments_among_the_rows_of_smet_are_left_out():
+    """The format allows both signs, in a line of their own or behind a row."""
+    rows = ["268.15 0.0"] * 48
+    plain = smet("TA PSUM", rows)
+    lines = plain.splitlines(keepends=True)
+    first = lines.index("[DATA]\n") + 1
+    lines[first] = lines[first].rstrip("\n") + " ; maintenance\n"
+    lines[first + 1 : first + 1] = ["; the sensor was moved\n", "  # and cleaned\n"]
+    expected, read = (read_smet("a.smet", text.splitlines()) for text in (plain, "".join(lines)))
+    assert [row.time for row in read.rows] == [row.time for row in expected.rows]
+    assert len(read.rows) == 48

@@ -14,7 +14,7 @@ from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.snow.stack.quantities import QUANTITIES
 from snowshed.study.factors import SEED
-from snowshed.study.stack_table import StackTable
+from snowshed.study.stack_table import StackTable, as_numbers
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -82,10 +82,11 @@ def simulated(frame: pd.DataFrame, measure: str = "stack") -> SimulatedStacks:
     table = StackTable.of(frame)
     axes = [path for path in table.axes if path not in (TILT, SEED)]
     varied = table.varying(axes, "calibration")
-    measured = table.measured(measure, QUANTITIES)
     if not varied:
         raise InputError("only tilt and seed vary in it, so nothing can be calibrated")
-    numbered = frame.assign(**{SET: frame.groupby(varied, sort=False).ngroup() + 1})
+    measured = table.measured(measure, QUANTITIES)
+    numbers = as_numbers(frame, varied)  # "40" and "40.0" are the same
+    numbered = numbers.assign(**{SET: numbers.groupby(varied, sort=False).ngroup() + 1})
     sets = numbered.drop_duplicates(SET).set_index(SET)[varied].astype(float)
     rows = measured.assign(**{SET: numbered[SET]}).rename(columns={TILT: "tilt"})
     return SimulatedStacks(

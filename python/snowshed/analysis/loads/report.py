@@ -19,6 +19,7 @@ from snowshed.base.arguments import checked
 from snowshed.base.formatting import percent
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
+from snowshed.io.run_files import issue_unfinished_note, unfinished_note
 from snowshed.plot.html_page import HtmlTable, Picture, template
 from snowshed.scene.panel_edge import ground_tilt, panel_edge
 
@@ -64,6 +65,8 @@ def write_loads(
     """
     import pandas as pd
 
+    for run in results:
+        issue_unfinished_note(run.folder)
     designs = [Design(run, name) for run, name in zip(results, _names(results))]
     several = len(designs) > 1
     table = pd.concat(
@@ -140,6 +143,8 @@ class Design:
     def warnings(self) -> list[str]:
         """Limits of the loads, a sentence each."""
         sentences = [peak_error_sentence(self.scene)]
+        if note := unfinished_note(self.results.folder):
+            sentences.insert(0, f"{note}.")
         if (self.loads["at_rest"] == 0).any():
             sentences.append(
                 "An event ended at its time limit: its loads at rest are those of snow that moves."

@@ -11,8 +11,14 @@ from typing import Optional
 import numpy as np
 
 from snowshed._core import InputError
+from snowshed.analysis.regression.unusual_rows import (
+    check_inputs,
+    note_on_ignored_columns,
+    note_on_unusual_stacks,
+)
 from snowshed.base.arguments import checked
 from snowshed.base.arrays import Floats, Integers, number_array
+from snowshed.base.notes import InputNote, issue_note
 from snowshed.base.paths import PathLike
 from snowshed.snow.stack.quantities import Measure, measure_named
 from snowshed.study.factors import SEED
@@ -184,6 +190,11 @@ def stack_rows(inputs: Floats, height: Floats, length: Floats) -> StackRows:
     height, length
         Height and length of the stack, shape (n,), m.
 
+    Raises
+    ------
+    InputError
+        If the arrays have different lengths, or a height or length is not a positive number.
+
     Examples
     --------
     >>> inputs = np.array([[1, 2, 4, 40], [2, 2, 4, 40], [2, 2, 4, 40]])
@@ -195,6 +206,7 @@ def stack_rows(inputs: Floats, height: Floats, length: Floats) -> StackRows:
 
     inputs = number_array("inputs", inputs)
     height, length = number_array("height", height), number_array("length", length)
+    _check_arrays(inputs, height, length)
     alike = pd.DataFrame(inputs).groupby(list(range(inputs.shape[1])), sort=False)
     row, repetition = alike.ngroup().to_numpy(), alike.cumcount().to_numpy()
     first = repetition == 0
@@ -206,6 +218,19 @@ def stack_rows(inputs: Floats, height: Floats, length: Floats) -> StackRows:
 
     measured = {"ratio": height / length, "height": height, "length": length}
     return StackRows(inputs[first], {name: arranged(values) for name, values in measured.items()})
+
+
+def _check_arrays(inputs: Floats, height: Floats, length: Floats) -> None:
+    """Refuse arrays of different lengths, and stacks that are no stacks."""
+    if inputs.ndim != 2:
+        raise InputError(f"inputs: {inputs.ndim} dimensions; needed: 2, a row for each stack")
+    for name, values in (("height", height), ("length", length)):
+        if values.shape != (len(inputs),):
+            raise InputError(f"{name}: shape {values.shape}; needed: ({len(inputs)},), as inputs")
+        wrong = ~(np.isfinite(values) & (values > 0))
+        if wrong.any():
+            row = int(np.argmax(wrong))
+            raise InputError(f"{name}[{row}]: {values[row]:g} m; needed: a positive number")
 
 
 def _input_names(inputs: Sequence[str]) -> tuple[str, ...]:
@@ -235,12 +260,25 @@ def _rows(table: StackTable, measure: Measure, names: Sequence[str]) -> StackRow
     events = inputs[:, 0]
     _check_seeds(table, inputs)
     table.refuse(INPUTS[0], (events < 1) | (events % 1 != 0), "a whole number, 1 or more")
+    check_inputs(table, names[1:])
+    note_on_unusual_stacks(table, inputs, height, length)
+    note_on_ignored_columns(table)
     selected = stack_rows(inputs, height, length)
     _check_enough(len(selected), left_out)
     if len(selected) > MAX_ROWS:
         raise InputError(f"{len(selected)} rows; at most {MAX_ROWS} are allowed")
     frame = table.frame
     moving = int((frame["ended"] == "time_limit").sum()) if "ended" in frame else 0
+    if left_out:
+        rows = (
+            "1 row has no stack and is"
+            if left_out == 1
+            else f"{left_out} rows have no stack and are"
+        )
+        issue_note(f"{rows} left out", InputNote)
+    if moving:
+        stacks = "1 stack was" if moving == 1 else f"{moving} stacks were"
+        issue_note(f"{stacks} still moving at the time limit", InputNote)
     return replace(
         selected, left_out=left_out, moving=moving, settings=settings, names=tuple(names)
     )
@@ -257,11 +295,17 @@ def _check_seeds(table: StackTable, inputs: Floats) -> None:
     import pandas as pd
 
     frame = table.frame
-    stacks = pd.DataFrame(inputs).assign(seed=frame["seed"].to_numpy() if "seed" in frame else "")
+    seeds = frame["seed"].to_numpy() if "seed" in frame else np.full(len(frame), "")
+    stacks = pd.DataFrame(inputs)
+    unknown = pd.isna(seeds) | (seeds.astype(str) == "")
+    if unknown.any():  # any of these may be the seed of any other stack
+        seeds = np.where(stacks.duplicated(keep=False) & unknown.any(), "", seeds)
+    stacks = stacks.assign(seed=seeds)
     again = stacks.duplicated()
     if again.any():
         row = int(again.argmax())
         first = int((stacks == stacks.iloc[row]).all(axis=1).argmax())
         raise InputError(
-            f"lines {table.line(first)} and {table.line(row)}: the same panel, event and seed twice"
+            f"lines {table.line(first)} and {table.line(row)}: the same panel, event and seed "
+            "twice" + (" (some rows have no seed)" if unknown.any() else "")
         )

@@ -89,6 +89,7 @@ def read_study_runs(
 
 def stored_runs(table: StackTable, measure: str = "stack") -> StudyRuns:
     """Return the runs in a table of stacks."""
+    table.check_hashes()
     measured = table.measured(measure, TARGETS)[["hash", "event", *TARGETS]]
     varying = table.varying(table.axes, "sensitivity")
     axes = tuple(path for path in table.axes if path == SEED or path in varying)

@@ -9,6 +9,7 @@ from snowshed._core import InputError
 from snowshed.analysis.tomography.ice_image import IceImage
 from snowshed.base.arguments import checked
 from snowshed.base.arrays import AnyIntegers, SingleFloats
+from snowshed.base.notes import InputNote, issue_note
 
 MAX_FACTOR = 16
 
@@ -40,6 +41,13 @@ def downscaled(image: IceImage, factor: int) -> IceImage:
         raise InputError(f"{image.source}: {image.ice.shape} voxels; too few to join {factor}")
     if factor == 1:
         return image
+    lost = [count % factor for count in image.ice.shape[::-1]]
+    if any(lost):
+        issue_note(
+            f"{image.source}: {', '.join(map(str, lost))} voxels along x, y, z are left out at the "
+            f"far sides, because its size is no multiple of {factor}",
+            InputNote,
+        )
     counts = _block_counts(image, factor)
     target = round(int(counts.sum(dtype=np.int64)) / factor**3)
     # Unequal counts differ by at least one, the second term by less: it only decides ties.

@@ -7,6 +7,7 @@ from math import prod
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.analysis.tomography.ice_image import IceImage
 from snowshed.analysis.tomography.microstructure import measure_microstructure
 from snowshed.analysis.tomography.sample import Fact, SampleNumbers, check_new, write_grains
 from snowshed.analysis.tomography.segmentation import SegmentationSettings, segment
@@ -18,11 +19,12 @@ from snowshed.analysis.tomography.threshold import (
 )
 from snowshed.base.arguments import checked
 from snowshed.base.formatting import duration, number
-from snowshed.base.notes import record_notes
+from snowshed.base.notes import InputNote, issue_note, record_notes
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Progress, Reporter
 from snowshed.io.voxels.voxel_file import VoxelFile
 
+MAX_ANISOTROPY = 3.0  # ratio of correlation lengths; that of depth hoar is about 2
 BYTES_READ = 2  # memory per voxel of the file
 BYTES_SEGMENTED = 45  # memory per voxel of the segmentation
 #: Time on one core of a desktop computer, s per voxel.
@@ -94,7 +96,7 @@ def segment_image(
     report(0.0, "reading")
     with record_notes() as notes:
         read = read_ice(file, wanted)
-    measure_microstructure(read.image)  # what cannot be snow is refused before the long part
+        _note_on_axes(read.image)  # what cannot be snow is refused before the long part
     segmentation = segment(
         read.image,
         settings,
@@ -111,6 +113,20 @@ def segment_image(
     numbers = write_grains(folder, segmentation, facts, surface=surface)
     report(1.0, "")
     return numbers, read
+
+
+def _note_on_axes(image: IceImage) -> None:
+    """Note an anisotropy that no snow has, as of an image whose axes are in another order."""
+    ice = measure_microstructure(image)
+    lengths = (ice.correlation_length_x_m, ice.correlation_length_y_m, ice.correlation_length_z_m)
+    ratio = max(lengths) / min(lengths)
+    if ratio > MAX_ANISOTROPY:
+        issue_note(
+            f"{image.source}: its correlation lengths differ by a factor of {ratio:.1f} along x, "
+            "y and z, which is unusual for snow; is the order of its axes, or its number type, "
+            "another?",
+            InputNote,
+        )
 
 
 def plan_text(file: VoxelFile, settings: ImageSettings) -> str:

@@ -11,6 +11,7 @@ import click
 
 from snowshed._core import InputError
 from snowshed.base.formatting import about, percent, plural
+from snowshed.base.notes import InputNote, issue_note
 from snowshed.cli.exit_codes import Stopped
 from snowshed.cli.options.accuracy import parse_fraction
 from snowshed.cli.options.common import (
@@ -23,7 +24,7 @@ from snowshed.cli.options.common import (
     same_version_option,
 )
 from snowshed.cli.options.no_effect import refuse_without_effect
-from snowshed.cli.options.number_texts import named_span, numbers
+from snowshed.cli.options.number_texts import named_once, named_span, numbers
 from snowshed.cli.options.rows import rows_options
 from snowshed.cli.options.weather import weather_options
 from snowshed.cli.output.terminal import plain_table, say, wide_console
@@ -282,7 +283,7 @@ def _ranges(spans: Sequence[str], draws: Optional[int], seed: int) -> SnowRanges
     """Return the ranges; errors have the names of the options."""
     from snowshed.analysis.clearance.panel_design import SnowRanges, default_ranges
 
-    given = dict(map(_span, spans))
+    given = named_once("--range", map(_span, spans))
     try:
         return SnowRanges({**default_ranges(), **given}, draws, seed)
     except InputError as error:
@@ -293,7 +294,12 @@ def _ranges(spans: Sequence[str], draws: Optional[int], seed: int) -> SnowRanges
 
 
 def _numbers(option: str, text: str) -> list[float]:
-    return numbers(option, text, example="2,3", steps=True)
+    """Return the numbers in the text of an option, each once, with a note on repeated ones."""
+    values = numbers(option, text, example="2,3", steps=True)
+    distinct = list(dict.fromkeys(values))
+    if len(distinct) < len(values):
+        issue_note(f"{option} {text}: equal numbers count once", InputNote)
+    return distinct
 
 
 def _span(text: str) -> tuple[str, tuple[float, float]]:

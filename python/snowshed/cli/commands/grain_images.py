@@ -15,6 +15,7 @@ from snowshed.analysis.tomography.segmentation import SegmentationSettings
 from snowshed.base.formatting import number, percent
 from snowshed.base.messages import quoted
 from snowshed.cli.options.common import PATH, given_values, quiet_option
+from snowshed.cli.options.no_effect import refuse_without_effect
 from snowshed.cli.output.results import print_rows
 from snowshed.cli.output.terminal import PlainConsole
 
@@ -24,6 +25,9 @@ if TYPE_CHECKING:
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
+#: Options of one method, and of one format.
+OF_WATERSHED, OF_CURVATURE = ("depth",), ("smoothing", "neck_curvature")
+OF_RAW_FILES = ("raw_shape", "raw_type")
 FEW_GRAINS = 1000  # fewer grains do not represent the snow
 VOXEL = "Edge of a voxel [m]."
 HELP = {
@@ -213,6 +217,7 @@ def segment_command(
     from snowshed.methods.grains.sample_folder import SNOW, find_sample
 
     check_new(folder)
+    _refuse_other_options(image, options["method"])
     names = {field.name for field in fields(SegmentationSettings)}
     settings = SegmentationSettings(
         threads=threads or available_cores(),
@@ -238,6 +243,16 @@ def segment_command(
     if not quiet:
         print_image(read)
         print_sample(numbers, folder)
+
+
+def _refuse_other_options(image: Path, method: str) -> None:
+    """Refuse options of the other method of segmentation, and of files of another format."""
+    if method != "watershed":
+        refuse_without_effect(OF_WATERSHED, f"with --method {method}")
+    if method != "curvature":
+        refuse_without_effect(OF_CURVATURE, f"with --method {method}")
+    if image.suffix.lower() != ".raw":
+        refuse_without_effect(OF_RAW_FILES, "without a .raw file")
 
 
 def _crop(text: Optional[str]) -> Optional[Crop]:

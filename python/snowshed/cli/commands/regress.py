@@ -11,6 +11,7 @@ import click
 from snowshed.cli.commands.designed_study import measure_help
 from snowshed.cli.exit_codes import Stopped
 from snowshed.cli.options.common import PATH, jobs_option, quiet_option, resume_option
+from snowshed.cli.options.number_texts import named_once
 from snowshed.cli.output.terminal import narrow_table, say, wide_console
 
 if TYPE_CHECKING:
@@ -108,14 +109,10 @@ def regress(
     from snowshed.analysis.regression.rows import INPUTS, read_rows
     from snowshed.cli.output.progress import LONG_PERIOD_S, progress_bar
 
-    where = dict(map(_condition, conditions))
+    where = named_once("--where", map(_condition, conditions))
     rows = read_rows(table, measure, where, inputs or INPUTS[1:])
     rows = rows.of_one_seed() if one_seed else rows
     scheme = CrossValidation(rounds, folds, inner_folds, seed, split)
-    if rows.left_out and not quiet:
-        say(f"note: {rows.left_out} rows have no stack and are left out", err=True)
-    if rows.moving and not quiet:
-        say(f"note: {rows.moving} stacks were still moving at the time limit", err=True)
     try:
         with progress_bar(quiet=quiet, speed_period_s=LONG_PERIOD_S) as progress:
             reports = run(

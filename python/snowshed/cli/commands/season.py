@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING, Any, Optional, Union
 import click
 
 from snowshed._core import InputError
+from snowshed.base.formatting import plural
 from snowshed.base.interrupt import Interrupted
 from snowshed.base.notes import held_notes, record_notes
+from snowshed.base.paths import shell_words
 from snowshed.cli.exit_codes import Stopped
 from snowshed.cli.options.common import (
     PATH,
@@ -20,9 +22,10 @@ from snowshed.cli.options.common import (
     quiet_option,
     resume_flag,
 )
-from snowshed.cli.options.no_effect import refuse_without_effect
+from snowshed.cli.options.no_effect import note_options_without_effect, refuse_without_effect
 from snowshed.cli.options.rows import rows_options
 from snowshed.cli.options.scene import (
+    given_options,
     in_terms_of_options,
     path_of,
     scene_from_options,
@@ -247,25 +250,18 @@ def _scene(
 ) -> ResolvedScene:
     if file is not None and (preset or snow_preset):
         raise click.UsageError("--scene cannot be combined with --preset or --snow")
-    given = _given_options(options)
+    given = given_options(options)
     scene = Scene.load(file) if file else scene_from_options(preset, snow_preset, {})
     if scene.slab is not None:
         scene.slab.layers = None
     try:
-        return scene.update({**PLACEHOLDERS, **given}).resolve()
+        resolved = scene.update({**PLACEHOLDERS, **given}).resolve()
     except InputError as error:
         if file is not None and path_of(error) not in given:
             raise InputError(f"{file}: {error}") from None
         raise in_terms_of_options(error) from None
-
-
-def _given_options(options: dict[str, Any]) -> dict[str, Any]:
-    """Return the given options by their paths in a scene."""
-    return {
-        name.replace("__", "."): value
-        for name, value in options.items()
-        if value is not None and value != ()
-    }
+    note_options_without_effect(given, resolved.data, events_known=False)
+    return resolved
 
 
 def _run(
@@ -318,7 +314,9 @@ def print_plan_cost(plan: SeasonPlan, *, quiet: bool) -> None:
     """Print the number of releases of a planned season, and the cost of its slide-offs."""
     for note in () if quiet else plan.record.notes:
         say(f"note: {note}")
-    say(f"{sum(day.released for day in plan.days)} releases in {len(plan.days)} days")
+    dates = {day.weather.date.date() for day in plan.days}
+    releases = plural(sum(day.released for day in plan.days), "release")
+    say(f"{releases} in {plural((max(dates) - min(dates)).days + 1, 'day')}")
     if plan.slides is not None:
         print_cost(plan.slides)
 
@@ -350,9 +348,9 @@ def print_season(result: SeasonResult, folder: Path, scene: ResolvedScene) -> No
         bias = recorded_bias(int(scene.data["dimension"]), result.simulated, mechanisms)
         console.print(f"error of the grid: {bias}")
     if result.simulated:
-        console.print(f"the snow in motion: snowshed view {folder}")
+        console.print(f"the snow in motion: {shell_words('snowshed', 'view', folder)}")
     if result.simulated and scene.data["output"]["forces"]:
-        console.print(f"the loads of the snow: snowshed loads {folder}")
+        console.print(f"the loads of the snow: {shell_words('snowshed', 'loads', folder)}")
 
 
 def _rows(result: SeasonResult) -> tuple[list[dict[str, Any]], int]:

@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Any, Optional
 import click
 
 from snowshed._core import InputError
-from snowshed.base.messages import suggestion
+from snowshed.base.messages import shortened, suggestion
+from snowshed.base.notes import InputNote, issue_note
 from snowshed.cli.compute_study import compute_study, print_study_cost
 from snowshed.cli.exit_codes import Failed, Stopped
 from snowshed.cli.options.common import jobs_option, same_version_option
-from snowshed.cli.options.number_texts import named_span, numbers
-from snowshed.cli.output.terminal import PlainConsole, say
+from snowshed.cli.options.number_texts import named_once, named_span, numbers
+from snowshed.cli.output.terminal import PlainConsole
 from snowshed.io.raster.output import MapFormat
 from snowshed.methods.slide.settings import SlideSettings
 from snowshed.scene.builders.terrain_copy import copies_removed_on_failure, terrain_copy
@@ -26,6 +27,7 @@ from snowshed.study.factors import Factor, Span, latin_hypercube, sobol
 
 if TYPE_CHECKING:
     from snowshed.analysis.hazard.maps import HazardMaps
+    from snowshed.scene.builders.avaframe.project import AvaFrameSimulation
 
 RUNS = "runs"
 STUDY = "slides"
@@ -59,10 +61,7 @@ class RangeOptions:
         InputError
             If a range, the number of runs or a list of pressures is wrong.
         """
-        ranges = options.pop("ranges")
-        spans = dict(map(_span, ranges))
-        if len(spans) < len(ranges):
-            raise InputError("--range: a name is given twice")
+        spans = named_once("--range", map(_span, options.pop("ranges")))
         draw = SAMPLINGS[options.pop("sampling")]
         runs, seed = options.pop("runs"), options.pop("sample_seed")
         return cls(
@@ -168,11 +167,24 @@ def run_project_ranges(
         )
         if max_time is not None:
             first.scene.set("events.max_time", max_time)
-        if others and not quiet:
-            say(f"{first.release}, {first.sim_type}; {len(others)} other simulations are left out")
+        if others:
+            _note_left_out(first, others)
         run_ranges(
             first.scene, folder, options, dry_run=dry_run, quiet=quiet, map_format=map_format
         )
+
+
+def _note_left_out(first: AvaFrameSimulation, others: Sequence[AvaFrameSimulation]) -> None:
+    """Issue a note on the simulations of a project that are left out, and record it."""
+    names = shortened(", ".join(f"{other.release} ({other.sim_type})" for other in others), 200)
+    note = (
+        f"of the project's {len(others) + 1} simulations, these slides are {first.release} "
+        f"({first.sim_type}); left out: {names}"
+    )
+    terrain = first.scene.terrain
+    assert terrain is not None
+    terrain.notes = "\n".join(filter(None, (terrain.notes, note)))
+    issue_note(note, InputNote)
 
 
 def _study(scene: Scene, options: RangeOptions) -> Study:

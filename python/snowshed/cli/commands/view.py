@@ -8,6 +8,7 @@ from typing import Optional
 import click
 
 from snowshed.cli.options.common import PATH, quiet_option
+from snowshed.cli.options.no_effect import refuse_without_effect
 from snowshed.cli.output.progress import progress_bar
 from snowshed.cli.output.terminal import say
 
@@ -45,10 +46,12 @@ def view(
       snowshed view results --video film.mp4
     """  # noqa: D301 - click wants the control character
     if video is None:
+        refuse_without_effect(["seconds", "width", "colour"], "without --video")
         from snowshed.results.view import write_view
 
         written = write_view(results, page)
     else:
+        refuse_without_effect(["page"], "with --video")
         from snowshed.results.video import write_video
 
         with progress_bar(quiet=quiet) as progress:

@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import TypeVar
+
 from snowshed._core import InputError
+from snowshed.base.notes import InputNote, issue_note
+
+Value = TypeVar("Value")
 
 MAX_STEPS = 1000
 
@@ -35,7 +41,7 @@ def numbers(option: str, text: str, *, example: str, steps: bool = False) -> lis
     """
     try:
         if steps and ":" in text:
-            return _parse_steps(text)
+            return _parse_steps(option, text)
         return [float(part) for part in text.split(",")]
     except (ValueError, ZeroDivisionError, OverflowError):
         forms = f"a list of numbers such as {example}"
@@ -43,12 +49,15 @@ def numbers(option: str, text: str, *, example: str, steps: bool = False) -> lis
         raise InputError(f"{option}: {text!r} is not {forms}") from None
 
 
-def _parse_steps(text: str) -> list[float]:
+def _parse_steps(option: str, text: str) -> list[float]:
     low, high, step = (float(part) for part in text.split(":"))
     count = int((high - low) / step + 1e-9) + 1
     if not (step > 0 and 1 <= count <= MAX_STEPS):
         raise ValueError
-    return [round(low + n * step, 9) for n in range(count)]
+    values = [round(low + n * step, 9) for n in range(count)]
+    if high - values[-1] > 1e-6 * step:
+        issue_note(f"{option}: {text} ends at {values[-1]:g}", InputNote)
+    return values
 
 
 def span(option: str, text: str, *, example: str) -> tuple[float, float]:
@@ -86,6 +95,27 @@ def _ends(text: str, *, single: bool = False) -> tuple[float, float]:
     if not (1 if single else 2) <= len(ends) <= 2:
         raise ValueError
     return ends[0], ends[-1]
+
+
+def named_once(option: str, pairs: Iterable[tuple[str, Value]]) -> dict[str, Value]:
+    """Return values by their names, from an option that is given once for each name.
+
+    Raises
+    ------
+    InputError
+        If a name comes twice, because one of its values would be ignored.
+
+    Examples
+    --------
+    >>> named_once("--where", [("panel.tilt", "40"), ("seed", "1")])
+    {'panel.tilt': '40', 'seed': '1'}
+    """
+    values: dict[str, Value] = {}
+    for name, value in pairs:
+        if name in values:
+            raise InputError(f"{option}: the name {name} is given twice")
+        values[name] = value
+    return values
 
 
 def named_span(

@@ -7,7 +7,8 @@ from typing import Any, Optional
 
 from snowshed._core import InputError
 from snowshed.cli.options.accuracy import check_alone, choose
-from snowshed.cli.options.scene import in_terms_of_options, scene_from_options
+from snowshed.cli.options.no_effect import note_options_without_effect
+from snowshed.cli.options.scene import given_options, in_terms_of_options, scene_from_options
 from snowshed.cli.output.terminal import say
 from snowshed.scene.scene import ResolvedScene, Scene
 
@@ -26,9 +27,11 @@ def resolve_options(
         if accuracy is not None:
             check_alone(options)
             scene = with_accuracy(scene, accuracy, quiet=quiet)
-        return scene.resolve()
+        resolved = scene.resolve()
     except InputError as error:
         raise in_terms_of_options(error) from None
+    note_options_without_effect(given_options(options), resolved.data)
+    return resolved
 
 
 def with_accuracy(scene: Scene, accuracy: float, *, quiet: bool = False) -> Scene:

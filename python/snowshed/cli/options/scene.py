@@ -127,8 +127,16 @@ def scene_from_options(
     scene = Scene.preset(preset) if preset else Scene(panel=Panel(), slab=Slab(), ground=Ground())
     if snow_preset:
         scene.update({"snow": Snow.preset_or_file(snow_preset).to_data()})
-    given = {k.replace("__", "."): v for k, v in options.items() if v is not None and v != ()}
-    return scene.update(given)
+    return scene.update(given_options(options))
+
+
+def given_options(options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the given options by their paths in a scene."""
+    return {
+        name.replace("__", "."): value
+        for name, value in options.items()
+        if value is not None and value != ()
+    }
 
 
 def in_terms_of_options(error: InputError) -> InputError:

@@ -9,6 +9,7 @@ from typing import Any, Optional
 from rich.table import Table
 
 from snowshed.analysis.accuracy.stack_errors import error_sentence
+from snowshed.base.paths import shell_words
 from snowshed.cli.output.terminal import PlainConsole, plain_table, wide_console
 from snowshed.io.json_file import read_object
 from snowshed.methods.registry import method_of, settings_of
@@ -52,9 +53,9 @@ def print_events(results: Results) -> None:
     drawn += ["forces.png"] * forces
     pictures = f"{', '.join(drawn[:-1])} and {drawn[-1]}"
     console.print(f"results, {pictures} in {folder}")
-    console.print(f"the snow in motion: snowshed view {folder}")
+    console.print(f"the snow in motion: {shell_words('snowshed', 'view', folder)}")
     if (folder / "loads.csv").is_file():
-        console.print(f"loads on what the snow meets: snowshed loads {folder}")
+        console.print(f"loads on what the snow meets: {shell_words('snowshed', 'loads', folder)}")
 
 
 def energy_residual(folder: Path) -> Optional[float]:

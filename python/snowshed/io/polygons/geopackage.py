@@ -131,11 +131,15 @@ class _Package:
             self._check_table(table)
         table, geometry, system = self._choose(layer, option)
         self._check_table(table)
-        fields = self._fields(table)
+        types = self._types(table)
+        fields = [*types]
         wanted = [field for field in fields if field != geometry and is_wanted(field)]
         shapes, rows = self._features(table, [geometry, *wanted])
+        records = [
+            {name: _typed(value, types[name]) for name, value in zip(wanted, row)} for row in rows
+        ]
         names = [field for field in fields if field != geometry]
-        return PolygonLayer(shapes, [dict(zip(wanted, r)) for r in rows], names, self._crs(system))
+        return PolygonLayer(shapes, records, names, self._crs(system))
 
     def _check_table(self, table: str) -> None:
         """Refuse a name that is not a stored table of the file."""
@@ -185,10 +189,10 @@ class _Package:
             )
         return str(readable[0][0]), str(readable[0][1]), readable[0][3]
 
-    def _fields(self, table: str) -> list[str]:
-        """Return the stored columns of a table."""
+    def _types(self, table: str) -> dict[str, str]:
+        """Return the stored columns of a table, and their types."""
         columns = self.connection.execute(f"PRAGMA table_xinfo({_name(table)})").fetchall()
-        return [str(name) for _, name, _, _, _, _, hidden in columns if not hidden]
+        return {str(name): str(kind) for _, name, kind, _, _, _, hidden in columns if not hidden}
 
     def _features(self, table: str, columns: Sequence[str]) -> tuple[list[Any], list[Any]]:
         """Return the geometries, and the rows of the other columns."""
@@ -239,6 +243,17 @@ class _Package:
         if not plain:
             raise InputError(f"{self.path}: its coordinate system {system} is not supported")
         return plain
+
+
+def _typed(value: object, kind: str) -> object:
+    """Return a value; SQLite stores truth values as 0 and 1, which are no numbers.
+
+    Examples
+    --------
+    >>> _typed(1, "BOOLEAN"), _typed(1, "INTEGER"), _typed(None, "BOOLEAN")
+    (True, 1, None)
+    """
+    return bool(value) if kind.upper() == "BOOLEAN" and isinstance(value, int) else value
 
 
 def _name(text: str) -> str:

@@ -7,7 +7,7 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from datetime import date, datetime, timedelta
+from datetime import date, datetime, timedelta, timezone
 from functools import lru_cache
 from typing import Any, Optional
 
@@ -280,7 +280,7 @@ def time_of(text: str, where: str, *formats: str) -> datetime:
             continue
     if not formats:
         try:
-            return datetime.fromisoformat(iso_time(cell))
+            return iso_time(cell)
         except ValueError:
             pass
     example = datetime(2024, 12, 31, 6).strftime(formats[0] if formats else "%Y-%m-%dT%H:%M")
@@ -301,15 +301,41 @@ def _pattern(form: str) -> re.Pattern[str]:
     return re.compile(text)
 
 
-def iso_time(cell: str) -> str:
-    """Return a time of ISO 8601 in a form that Python 3.9 can read."""
-    if cell[-1:] in ("Z", "z"):
-        return cell[:-1] + "+00:00"
-    if cell[-5:-4] in ("+", "-") and ":" in cell[:-5]:
-        return f"{cell[:-2]}:{cell[-2:]}"
-    if cell[-3:-2] in ("+", "-") and ":" in cell[:-3]:
-        return cell + ":00"
-    return cell
+#: Times of ISO 8601, extended (2024-01-31T12:00) or basic (20240131T1200).
+ISO_DATE = r"(\d{4})(-?)(\d\d)\2(\d\d)"
+ISO_CLOCK = r"([01]\d|2[0-3])(?:(:?)([0-5]\d)(?:\6([0-5]\d)(?:[.,](\d{1,12}))?)?)?"
+ISO_OFFSET = r"([Zz]|[+-]\d\d(?::?[0-5]\d)?)?"
+ISO_TIME = re.compile(f"{ISO_DATE}(?:[Tt _]{ISO_CLOCK}{ISO_OFFSET})?", re.ASCII)
+
+
+def iso_time(cell: str) -> datetime:
+    """Return a time of ISO 8601: the same on every version of Python.
+
+    Raises
+    ------
+    ValueError
+        If the text is not such a time.
+
+    Examples
+    --------
+    >>> iso_time("20240131T120000Z") == iso_time("2024-01-31 12:00+0000")
+    True
+    """
+    match = ISO_TIME.fullmatch(cell)
+    if match is None:
+        raise ValueError(f"{cell!r} is not a time of ISO 8601")
+    year, _, month, day, hour, _, minute, second, parts, zone = match.groups("")
+    offset = None
+    if zone in ("Z", "z"):
+        offset = timezone.utc
+    elif zone:
+        shift = timedelta(hours=int(zone[1:3]), minutes=int(zone[3:].lstrip(":") or 0))
+        offset = timezone(-shift if zone[0] == "-" else shift)
+    return datetime(
+        int(year), int(month), int(day),
+        int(hour or 0), int(minute or 0), int(second or 0), int(parts[:6].ljust(6, "0")),
+        tzinfo=offset,
+    )  # fmt: skip
 
 
 def coordinate(text: str, where: str, largest: float) -> Optional[float]:

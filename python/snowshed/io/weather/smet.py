@@ -94,7 +94,8 @@ def read_smet(name: str, lines: Sequence[str]) -> Station:
         raise InputError(f"{name}, line 1, column 3: {quoted(kind)}; allowed: ASCII")
     header = _header(name, [re.sub(r"\s[#;].*", "", line).strip() for line in lines])
     fields = header.values.get("fields", "").split()
-    return _station("SMET", header, lines, fields, _by_factors(header, fields, None), None)
+    rows = [re.sub(r"(^|\s)[#;].*", "", line) for line in lines]  # comments of the standard
+    return _station("SMET", header, rows, fields, _by_factors(header, fields, None), None)
 
 
 def is_icsv(lines: Sequence[str]) -> bool:

@@ -14,12 +14,14 @@ from datetime import date, timedelta
 from typing import Optional
 
 from snowshed._core import InputError
+from snowshed.base.formatting import plural
 from snowshed.io.weather.plain import LIST_SPACING_HOURS
 from snowshed.season.weather.row import Weather
 from snowshed.season.weather.source import SnowSource
 from snowshed.season.weather.winter_years import Calendar, SnowSeason, snow_season_of
 
 COVERAGE = 0.9  # share of the days of the snow season on which snow must have been observed
+MAX_GAP_DAYS = 120  # days between two rows of a winter; longer spans are summers
 MAX_ROW_GAP_DAYS = 3  # days between two rows of a table, covered by the later row
 LIST_SPACING = timedelta(hours=LIST_SPACING_HOURS)
 
@@ -148,6 +150,34 @@ def is_list(rows: Sequence[Weather]) -> bool:
         return False
     spans = [later.date - earlier.date for earlier, later in zip(rows, rows[1:])]
     return sorted(spans)[len(spans) // 2] > LIST_SPACING
+
+
+def gap_notes(rows: Sequence[Weather]) -> list[str]:
+    """Return a note on the days that a table of every day or hour lacks; none for a list.
+
+    Longer spans, such as summers between winters, are no gaps.
+
+    Examples
+    --------
+    >>> from datetime import datetime
+    >>> rows = [Weather(2, datetime(2024, 12, day), 0.1, None, -5.0) for day in (1, 2, 3, 6)]
+    >>> gap_notes(rows)
+    ['no rows on 2 days in 1 gap, from 2024-12-04 to 2024-12-05: no snow is assumed there']
+    """
+    days = sorted({row.date.date() for row in rows})
+    if is_list(rows) or any(row.source is not SnowSource.GIVEN for row in rows):
+        return []
+    gaps = [
+        (earlier + timedelta(1), later - timedelta(1), (later - earlier).days - 1)
+        for earlier, later in zip(days, days[1:])
+        if 1 < (later - earlier).days <= MAX_GAP_DAYS
+    ]
+    if not gaps:
+        return []
+    first, last, _ = max(gaps, key=lambda gap: gap[2])
+    where = "1 gap, " if len(gaps) == 1 else f"{len(gaps)} gaps, the longest "
+    missing = plural(sum(days for *_, days in gaps), "day")
+    return [f"no rows on {missing} in {where}from {first} to {last}: no snow is assumed there"]
 
 
 def observed_days(rows: Sequence[Weather], begin: date, after: date) -> int:

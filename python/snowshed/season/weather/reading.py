@@ -35,6 +35,7 @@ from snowshed.season.weather.checks import (
 )
 from snowshed.season.weather.columns import ALLOWED, COLUMNS, MeasuredColumn
 from snowshed.season.weather.observed import record_of
+from snowshed.season.weather.quality import gap_notes
 from snowshed.season.weather.row import Weather
 from snowshed.season.weather.season_record import ReadSeason, SeasonRecord
 from snowshed.season.weather.source import AUTO, CHOICES
@@ -147,7 +148,7 @@ def read_record(
         if not season:
             raise InputError("the season: no rows")
         rows = check_given_rows(season)
-        return SeasonRecord(rows, [*unusual_numbers(rows), *warm_snow(rows)])
+        return SeasonRecord(rows, _notes_on_rows(rows))
     else:
         table, name = frame_as_text(season, "the season", index="date"), "the season"
         _check_columns(table.columns, name)
@@ -164,7 +165,12 @@ def read_record(
     )
     rows = [_weather(row, date) for row, date in zip(written, clock.times)]
     check_rows(rows, table.rows, name)
-    return SeasonRecord(rows, [*clock.notes, *unusual_numbers(rows), *warm_snow(rows)])
+    return SeasonRecord(rows, [*clock.notes, *_notes_on_rows(rows)])
+
+
+def _notes_on_rows(rows: Sequence[Weather]) -> list[str]:
+    """Return the notes on a table or on rows that no station's file gave."""
+    return [*gap_notes(rows), *unusual_numbers(rows), *warm_snow(rows)]
 
 
 def weather_files(season: Season) -> list[Path]:
@@ -247,7 +253,7 @@ def _number(text: str, column: MeasuredColumn, where: str) -> Optional[float]:
 def _date(text: str, where: str) -> datetime:
     """Read a date or a time, which keeps its offset from universal time."""
     try:
-        return datetime.fromisoformat(iso_time(text))
+        return iso_time(text)
     except ValueError:
         raise InputError(
             f"{where}: {quoted(text)} is not a date such as 2024-12-31 or 2024-12-31T18:00"
