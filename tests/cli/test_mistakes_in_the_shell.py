@@ -77,6 +77,10 @@ COMMANDS = {
         ("regress", "t.csv", "--where", "seed=1", "--where", "seed=2", *NEW),
         "--where: the name seed is given twice",
     ),
+    "an input twice": (
+        ("predict", "--input", "snow.cohesion=0.1", "--input", "snow.cohesion=0.2"),
+        "--input: the name snow.cohesion is given twice",
+    ),
     "tilt in radians": ((*PANEL, "--tilt", 0.87, *DRY), "0.87 degrees is unusual"),
     "height in cm": ((*PANEL, "--height", 330, *DRY), "330 m is unusual"),
     "strength in kPa": (

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Optional
 
 import numpy as np
 
@@ -57,6 +57,9 @@ class PanelGridError:
         Size of the cells, and of those of the finest recorded grid, m.
     panels
         Number of recorded panels.
+    others
+        Mean, as `mean`, of the logarithm of a stack's ratio by another scheme on the same cells to
+        that by this one, for each scheme.
     """
 
     mean: Mapping[str, Floats]
@@ -64,6 +67,7 @@ class PanelGridError:
     cells: float
     finest_cells: float
     panels: int
+    others: Mapping[str, Mapping[str, Floats]]
 
     def factors(self, target: str, events: Floats) -> Floats:
         """Return the factors within which 90 % of the errors lie, if their logarithms are normal.
@@ -76,20 +80,15 @@ class PanelGridError:
     @property
     def sentence(self) -> str:
         """The error in a sentence, with its source."""
+        schemes = "".join(
+            f"; with {scheme} on the same cells they are {_span(mean)}"
+            for scheme, mean in self.others.items()
+        )
         return (
             f"below {self.panels} panels, stacks on these cells of {_cm(self.cells)} cm are "
-            f"{self._span('height', ('higher', 'lower'))} and "
-            f"{self._span('length', ('longer', 'shorter'))} on average than those on "
-            f"{_cm(self.finest_cells)} cm, which are not converged either"
+            f"{_span(self.mean)} on average than those on {_cm(self.finest_cells)} cm, which are "
+            f"not converged either{schemes}"
         )
-
-    def _span(self, target: str, words: tuple[str, str]) -> str:
-        ratios = np.exp(self.mean[target])
-        low, high = 100 * (ratios.min() - 1), 100 * (ratios.max() - 1)
-        if low < 0 < high:
-            return f"{-low:.0f} % {words[1]} to {high:.0f} % {words[0]}"
-        near, far = sorted((abs(low), abs(high)))
-        return f"{near:.0f} to {far:.0f} % {words[0] if low >= 0 else words[1]}"
 
 
 def recorded_grid_error(model: StackModel) -> Optional[PanelGridError]:
@@ -118,8 +117,7 @@ def recorded_grid_error(model: StackModel) -> Optional[PanelGridError]:
     common = {name: settings.get(name) for name in RECORDED_WITH}
     if tuple(model.names) != INPUTS or model.measure != "stack" or common != RECORDED_WITH:
         return None
-    stacks = _recorded().get(Mechanisms.of_texts(settings).label)
-    return None if stacks is None else _error(stacks, float(settings[CELLS]))
+    return _error(Mechanisms.of_texts(settings).label, float(settings[CELLS]))
 
 
 @cache
@@ -141,27 +139,49 @@ def _recorded() -> Mapping[str, pd.DataFrame]:
     }
 
 
-def _error(stacks: pd.DataFrame, cells: float) -> Optional[PanelGridError]:
-    recorded = np.array(sorted(stacks.columns.unique(CELLS)))
-    nearest = recorded[np.abs(np.log(recorded / cells)).argmin()]
-    if nearest == recorded[0] or not 1 / MAX_CELL_RATIO < nearest / cells < MAX_CELL_RATIO:
+def _error(label: str, cells: float) -> Optional[PanelGridError]:
+    if label not in _recorded():
         return None
-    finest = recorded[0]
-    stacks = stacks.dropna(subset=[("height", nearest), ("height", finest)])
-    deviations: dict[str, Any] = {
-        target: np.log(stacks[target, nearest] / stacks[target, finest]).groupby(EVENT)
-        for target in TARGETS
+    stacks = _recorded()[label]
+    recorded = sorted(stacks.columns.unique(CELLS))
+    finest, nearest = recorded[0], min(recorded, key=lambda other: abs(np.log(other / cells)))
+    if nearest == finest or not 1 / MAX_CELL_RATIO < nearest / cells < MAX_CELL_RATIO:
+        return None
+    on_grid = stacks.xs(nearest, axis=1, level=CELLS)
+    logs = np.log(on_grid / stacks.xs(finest, axis=1, level=CELLS)).dropna()
+    others = {
+        other: _means(np.log(table.xs(nearest, axis=1, level=CELLS) / on_grid))
+        for other, table in _recorded().items()
+        if other != label and nearest in table.columns.unique(CELLS)
     }
     return PanelGridError(
-        mean={target: each.mean().to_numpy() for target, each in deviations.items()},
-        root_mean_square={
-            target: np.sqrt(each.agg(lambda values: np.mean(values**2)).to_numpy())
-            for target, each in deviations.items()
-        },
+        mean=_means(logs),
+        root_mean_square={name: np.sqrt(values) for name, values in _means(logs**2).items()},
         cells=float(nearest),
         finest_cells=float(finest),
-        panels=len(stacks.index.droplevel(EVENT).unique()),
+        panels=len(logs.index.droplevel(EVENT).unique()),
+        others=others,
     )
+
+
+def _means(table: pd.DataFrame) -> dict[str, Floats]:
+    """Return the means over panels after each event, for each target."""
+    means = table.groupby(EVENT).mean()
+    return {target: means[target].to_numpy() for target in TARGETS}
+
+
+def _span(logs: Mapping[str, Floats]) -> str:
+    """Return the ratios of heights and lengths over the events as text."""
+    words = {"height": ("higher", "lower"), "length": ("longer", "shorter")}
+    return " and ".join(_range_text(np.exp(logs[name]) - 1, *words[name]) for name in words)
+
+
+def _range_text(shares: Floats, more: str, less: str) -> str:
+    low, high = 100 * shares.min(), 100 * shares.max()
+    if low < 0 < high:
+        return f"{-low:.0f} % {less} to {high:.0f} % {more}"
+    near, far = (f"{share:.0f}" for share in sorted((abs(low), abs(high))))
+    return f"{near if near == far else f'{near} to {far}'} % {more if low >= 0 else less}"
 
 
 def _cm(length: float) -> str:

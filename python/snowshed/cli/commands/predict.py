@@ -11,6 +11,7 @@ import click
 
 from snowshed._core import InputError
 from snowshed.cli.options.common import PATH
+from snowshed.cli.options.number_texts import named_once
 from snowshed.cli.output.terminal import narrow_table, say, wide_console, write_out
 
 if TYPE_CHECKING:
@@ -61,7 +62,7 @@ def predict(
     from snowshed.analysis.regression.predictor import predict as ask
 
     asked: dict[str, Any] = {"height": height, "length": length, "tilt": tilt, "events": events}
-    others = dict(map(_input, inputs))
+    others = named_once("--input", map(_input, inputs))
     try:
         prediction = ask(**asked, inputs=others, model=model, kind=kind, extrapolate=extrapolate)
     except InputError as error:
