@@ -75,7 +75,7 @@ class PanelGridError:
         Events after the last recorded one have its factor.
         """
         sizes = self.root_mean_square[target]
-        return np.exp(NORMAL_90 * sizes[np.minimum(events.astype(int), len(sizes)) - 1])
+        return np.asarray(np.exp(NORMAL_90 * sizes[np.minimum(events.astype(int), len(sizes)) - 1]))
 
     @property
     def sentence(self) -> str:
@@ -132,10 +132,10 @@ def _recorded() -> Mapping[str, pd.DataFrame]:
     means = rows.groupby([SCHEME, DAMPING, *PANEL, EVENT, CELLS])[["height_m", "length_m"]].mean()
     means = means.rename(columns={"height_m": "height", "length_m": "length"})
     means["ratio"] = means["height"] / means["length"]
-    by_scheme = means.unstack(CELLS).groupby([SCHEME, DAMPING])
+    wide = pd.DataFrame(means.unstack(CELLS))
     return {
         Mechanisms.of_settings({SCHEME: scheme, DAMPING: damping}).label: table.droplevel([0, 1])
-        for (scheme, damping), table in by_scheme
+        for (scheme, damping), table in wide.groupby([SCHEME, DAMPING])
     }
 
 
@@ -143,25 +143,33 @@ def _error(label: str, cells: float) -> Optional[PanelGridError]:
     if label not in _recorded():
         return None
     stacks = _recorded()[label]
-    recorded = sorted(stacks.columns.unique(CELLS))
+    recorded = sorted(map(float, stacks.columns.unique(CELLS)))
     finest, nearest = recorded[0], min(recorded, key=lambda other: abs(np.log(other / cells)))
     if nearest == finest or not 1 / MAX_CELL_RATIO < nearest / cells < MAX_CELL_RATIO:
         return None
-    on_grid = stacks.xs(nearest, axis=1, level=CELLS)
-    logs = np.log(on_grid / stacks.xs(finest, axis=1, level=CELLS)).dropna()
+    logs = _log_ratio(_on_grid(stacks, nearest), _on_grid(stacks, finest))
     others = {
-        other: _means(np.log(table.xs(nearest, axis=1, level=CELLS) / on_grid))
+        other: _means(_log_ratio(_on_grid(table, nearest), _on_grid(stacks, nearest)))
         for other, table in _recorded().items()
         if other != label and nearest in table.columns.unique(CELLS)
     }
     return PanelGridError(
         mean=_means(logs),
         root_mean_square={name: np.sqrt(values) for name, values in _means(logs**2).items()},
-        cells=float(nearest),
-        finest_cells=float(finest),
-        panels=len(logs.index.droplevel(EVENT).unique()),
+        cells=nearest,
+        finest_cells=finest,
+        panels=len(logs.groupby(list(PANEL))),
         others=others,
     )
+
+
+def _on_grid(stacks: pd.DataFrame, cells: float) -> pd.DataFrame:
+    return stacks[[(target, cells) for target in TARGETS]].droplevel(CELLS, axis=1)
+
+
+def _log_ratio(over: pd.DataFrame, under: pd.DataFrame) -> pd.DataFrame:
+    """Return the logarithms of the ratios of the stacks that are in both tables."""
+    return (over / under).dropna().apply(np.log)
 
 
 def _means(table: pd.DataFrame) -> dict[str, Floats]:
