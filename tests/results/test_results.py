@@ -139,7 +139,8 @@ def test_a_damaged_table_of_events_is_named(tmp_path, content):
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (b"\xff\xfe\x00\x01", ", line 1: not a table: not UTF-8 text"),
+        (b"\xff\x00\x01", ", line 1: not a table: not UTF-8 text"),
+        (b"\xff\xfe\x00\x01", ": not a table: text in UTF-16; save it in UTF-8"),
         (b"event,mass\n1,2,3\n", ", line 2: not a table: 3 cells in 2 columns"),
         (b"event,mass\n1\n", ", line 2: not a table: 1 cells in 2 columns"),
         (b"mass\n1\n", ": damaged: a row without the number of its event"),

@@ -84,7 +84,7 @@ def test_rounds_repeat_an_experiment(tmp_path):
     ("text", "message"),
     [
         ("", "empty; `snowshed calibrate --template FILE`"),
-        (b"\xff\xfe\x00", "line 1: not a table: not UTF-8 text"),
+        (b"\xff\x00", "line 1: not a table: not UTF-8 text"),
         ("tilt_deg;event\n", "line 1: its cells are separated by semicolons; separate them"),
         ("[" * 20_000, f"line 1: {'[' * 60!r}... is not a column; allowed: tilt_deg"),
         ("tilt_deg,event,height_cm\n", "line 1: 'height_cm' is not a column"),

@@ -136,7 +136,7 @@ def test_a_folder_of_an_early_version_is_resumed(tmp_path):
             b"model\nrbf\nlinear\n",
             "damaged: no numbers in a column development_score",
         ),
-        ("ratio/errors.csv", b"\xff\xfe\x00", "not a table: not UTF-8 text"),
+        ("ratio/errors.csv", b"\xff\x00", "not a table: not UTF-8 text"),
         (
             "ratio/errors.csv",
             b"model,held_out_error\nrbf,x\n",
