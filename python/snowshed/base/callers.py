@@ -6,10 +6,11 @@ The program `snowshed` tells that it is the caller; else the caller is a script.
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Optional
+
+from snowshed.base.paths import shell_words
 
 # Not a context variable, because messages are made in threads, too.
 _caller = {"is_shell": False}
@@ -73,6 +74,17 @@ def argument(name: str, value: object = None, *, option: Optional[str] = None) -
     return either(f"`{name}={text}`", words if text in ("", "True") else f"{words} {text}")
 
 
+def resuming_command(scene: object, folder: object) -> str:
+    """Return the command that resumes a run, as a shell reads it.
+
+    Examples
+    --------
+    >>> resuming_command("out/scene.json", "my runs")
+    "snowshed run out/scene.json -o 'my runs' --resume"
+    """
+    return shell_words("snowshed", "run", scene, "-o", folder, "--resume")
+
+
 def resuming_call(scene: object, folder: object) -> str:
     """Return what resumes a run, for messages.
 
@@ -84,10 +96,9 @@ def resuming_call(scene: object, folder: object) -> str:
     ...     resuming_call("my runs/scene.json", "my runs")
     "`snowshed run 'my runs/scene.json' -o 'my runs' --resume`"
     """
-    names = shlex.quote(str(scene)), shlex.quote(str(folder))
     return either(
         f"`snowshed.run({str(scene)!r}, {str(folder)!r}, resume=True)`",
-        f"`snowshed run {names[0]} -o {names[1]} --resume`",
+        f"`{resuming_command(scene, folder)}`",
     )
 
 

@@ -76,6 +76,32 @@ def percent(value: Optional[float], digits: int = 3) -> str:
     return f"{number(100 * value, digits)} %"
 
 
+def number_span(low: float, high: float) -> str:
+    """Return two numbers as whole ones, or a single one if they are equal then.
+
+    Examples
+    --------
+    >>> number_span(3.8, 25.1), number_span(3.8, 4.1)
+    ('4 to 25', '4')
+    """
+    return f"{low:.0f}" if round(low) == round(high) else f"{low:.0f} to {high:.0f}"
+
+
+def percent_span(low: float, high: float, more: str, less: str) -> str:
+    """Return a span of changes in percent, with words for positive and for negative ones.
+
+    Examples
+    --------
+    >>> percent_span(4, 25, "higher", "lower"), percent_span(-6, 13, "too high", "too low")
+    ('4 to 25 % higher', 'from 6 % too low to 13 % too high')
+    """
+    if low >= 0:
+        return f"{number_span(low, high)} % {more}"
+    if high <= 0:
+        return f"{number_span(-high, -low)} % {less}"
+    return f"from {-low:.0f} % {less} to {high:.0f} % {more}"
+
+
 def duration(seconds: Optional[float]) -> str:
     """Return a time.
 

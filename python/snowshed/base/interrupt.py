@@ -11,7 +11,7 @@ from pathlib import Path
 from types import FrameType
 from typing import Any, Optional, Union
 
-from snowshed.base.paths import shell_words
+from snowshed.base.callers import resuming_command
 
 Handler = Union[Callable[[int, Optional[FrameType]], Any], int, None]
 
@@ -26,7 +26,7 @@ class Interrupted(KeyboardInterrupt):
 
 def resume_run_command(folder: Path) -> str:
     """Return the command that resumes an interrupted run."""
-    return shell_words("snowshed", "run", folder / "scene.json", "-o", folder, "--resume")
+    return resuming_command(folder / "scene.json", folder)
 
 
 @dataclass

@@ -5,7 +5,6 @@ All follow the same rules: UTF-8, a unique name for each column, and a cell for 
 
 from __future__ import annotations
 
-import codecs
 import csv
 import hashlib
 import io
@@ -32,7 +31,7 @@ from snowshed.base.limits import (
 from snowshed.base.messages import csv_cell, quoted
 from snowshed.base.paths import PathLike
 from snowshed.io.atomic import write_text
-from snowshed.io.input_file import read_input
+from snowshed.io.input_file import is_utf16, read_input
 from snowshed.io.packed import unpacked
 
 if TYPE_CHECKING:
@@ -340,7 +339,7 @@ def parse_csv(text: str, where: Path | str, *, as_text: bool = False) -> pd.Data
 
 def _read_table_text(path: Path, largest: int) -> str:
     content = unpacked(read_input(path, largest), path, largest)
-    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+    if is_utf16(content):
         raise InputError(f"{path}: not a table: text in UTF-16; save it in UTF-8")
     try:
         text = content.decode("utf-8-sig")

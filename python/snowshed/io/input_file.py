@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import os
 import resource
 import select
@@ -36,6 +37,17 @@ def read_regular(path: Path) -> bytes:
         if size > _memory() / 2:
             raise InputError(f"{path}: {size / 1e9:.3g} GB do not fit into memory")
         return file.read()
+
+
+def is_utf16(content: bytes) -> bool:
+    """Return whether a text begins with the mark of UTF-16.
+
+    Examples
+    --------
+    >>> is_utf16("date".encode("utf-16")), is_utf16(b"date")
+    (True, False)
+    """
+    return content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
 
 
 def first_bytes(path: Path, count: int) -> bytes:

@@ -27,7 +27,7 @@ from snowshed.analysis.accuracy.recorded_stacks import (
     slab_thickness,
 )
 from snowshed.base.arguments import checked
-from snowshed.base.formatting import number
+from snowshed.base.formatting import number, number_span, percent_span
 from snowshed.running.scene_notes import MIN_CELLS_ACROSS
 from snowshed.scene.scene import ResolvedScene, Scene
 
@@ -192,10 +192,10 @@ def recorded_bias(dimension: int, events: int, mechanisms: Optional[Mechanisms] 
     if not resolved:
         return _no_runs_text(mechanisms)
     biases = [stack.biases[0] for stack in resolved.values()]
-    low, high = 100 * min(biases), 100 * max(biases)
+    span = percent_span(100 * min(biases), 100 * max(biases), "too high", "too low")
     return _clauses(
-        f"stacks of {_scene_label(stacks[0].settings)} were {_span(low, high)} with "
-        f"{_numbers(min(resolved), max(resolved))} cells in the slab, relative to the finest "
+        f"stacks of {_scene_label(stacks[0].settings)} were {span} with "
+        f"{number_span(min(resolved), max(resolved))} cells in the slab, relative to the finest "
         "recorded grid of this scheme",
         mechanisms.calibration_note,
     )
@@ -259,19 +259,6 @@ def _clauses(*clauses: str) -> str:
 
 def _no_runs_text(mechanisms: Mechanisms) -> str:
     return f"no runs are recorded for {mechanisms.label}"
-
-
-def _numbers(low: float, high: float) -> str:
-    return f"{low:.0f}" if round(low) == round(high) else f"{low:.0f} to {high:.0f}"
-
-
-def _span(low: float, high: float) -> str:
-    """Return a span of percentages as text."""
-    if low >= 0:
-        return f"{_numbers(low, high)} % too high"
-    if high <= 0:
-        return f"{_numbers(-high, -low)} % too low"
-    return f"from {-low:.0f} % too low to {high:.0f} % too high"
 
 
 def _bias_text(share: float) -> str:

@@ -20,7 +20,8 @@ from snowshed.analysis.accuracy.mechanisms import SCHEME, Mechanisms
 from snowshed.analysis.regression.dataset import FOLDER, MODEL_BETWEEN
 from snowshed.analysis.regression.rows import INPUTS, TARGETS
 from snowshed.base.arrays import Floats
-from snowshed.base.formatting import number
+from snowshed.base.formatting import number, percent_span
+from snowshed.snow.stack.trimming import DEFAULT_TRIMMING
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -36,7 +37,7 @@ COLUMNS = (SCHEME, DAMPING, CELLS, *PANEL, "seed", EVENT, "height_m", "length_m"
 RECORDED_WITH = {
     "dimension": "2",
     "events.between": MODEL_BETWEEN,
-    "trimming": "outermost_first",
+    "trimming": DEFAULT_TRIMMING,
 }
 #: Largest ratio between a model's cells and the recorded ones, in either direction.
 MAX_CELL_RATIO = 1.1
@@ -181,15 +182,11 @@ def _means(table: pd.DataFrame) -> dict[str, Floats]:
 def _span(logs: Mapping[str, Floats]) -> str:
     """Return the ratios of heights and lengths over the events as text."""
     words = {"height": ("higher", "lower"), "length": ("longer", "shorter")}
-    return " and ".join(_range_text(np.exp(logs[name]) - 1, *words[name]) for name in words)
-
-
-def _range_text(shares: Floats, more: str, less: str) -> str:
-    low, high = 100 * shares.min(), 100 * shares.max()
-    if low < 0 < high:
-        return f"{-low:.0f} % {less} to {high:.0f} % {more}"
-    near, far = (f"{share:.0f}" for share in sorted((abs(low), abs(high))))
-    return f"{near if near == far else f'{near} to {far}'} % {more if low >= 0 else less}"
+    spans = []
+    for name, (more, less) in words.items():
+        changes = 100 * (np.exp(logs[name]) - 1)
+        spans.append(percent_span(changes.min(), changes.max(), more, less))
+    return " and ".join(spans)
 
 
 def _cm(length: float) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
@@ -10,6 +9,7 @@ import click
 
 import snowshed._core as _core
 from snowshed.base.formatting import number
+from snowshed.base.paths import shell_words
 from snowshed.cli.output.terminal import plain_table, say, wide_console
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ def self_test(context: click.Context) -> int:
       snowshed self-test
     """  # noqa: D301 - click wants the control character
     if context.args:
-        suite = shlex.join(["python", "-m", "validation", *context.args])
+        suite = shell_words("python", "-m", "validation", *context.args)
         raise click.UsageError(
             "self-test takes no options; the validation, a larger suite of problems, comes with "
             f"the source of snowshed: run `{suite}` there"

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Iterator
 
 import click
 from click.core import ParameterSource
 
+from snowshed.base.paths import shell_words
 from snowshed.cli.options.no_effect import longest_name
 
 
@@ -18,13 +18,13 @@ def same_command(*more: str) -> str:
     """
     context = click.get_current_context(silent=True)
     if context is None:
-        return shlex.join(["snowshed", *more])
+        return shell_words("snowshed", *more)
     arguments = context.command_path.split()
     for parameter in context.command.params:
         source = context.get_parameter_source(str(parameter.name))
         if source is ParameterSource.COMMANDLINE:
             arguments += _argument_texts(parameter, context.params.get(str(parameter.name)))
-    return shlex.join([*arguments, *(word for word in more if word not in arguments)])
+    return shell_words(*arguments, *(word for word in more if word not in arguments))
 
 
 def _argument_texts(parameter: click.Parameter, value: object) -> Iterator[str]:

@@ -11,7 +11,7 @@ from typing import NamedTuple, Optional
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
 from snowshed.base.limits import KB, MAX_WEATHER_LINE_BYTES, MAX_WEATHER_LINES
-from snowshed.io.input_file import read_input
+from snowshed.io.input_file import is_utf16, read_input
 from snowshed.io.packed import unpacked
 from snowshed.io.weather import american, energy, ncei, smet, swiss
 from snowshed.io.weather.clock import on_one_clock
@@ -86,7 +86,7 @@ def read_station(path: Path) -> Optional[Station]:
 
 def _lines(content: bytes, path: Path) -> list[str]:
     """Return the lines of a text; raises InputError for binary or too long files."""
-    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+    if is_utf16(content):
         raise InputError(f"{path}: text in UTF-16; save it in UTF-8")
     if b"\0" in content:
         line = content[: content.index(b"\0")].count(b"\n") + 1
