@@ -50,9 +50,9 @@ struct FirstNode {
 FirstNode first_node_of(const geometry::HeightField& map, const Terrain& terrain) {
   constexpr double rounding = 1e-6;  // cells
   const double east = map.west / terrain.cell(), north = map.south / terrain.cell();
-  const double most = std::max({map.columns, map.rows, 1});
+  const double longest = std::max({map.columns, map.rows, 1});
   const auto is_whole = [](double x) { return std::abs(x - std::round(x)) <= rounding; };
-  if (std::abs(map.cell / terrain.cell() - 1) * most > rounding || !is_whole(east) ||
+  if (std::abs(map.cell / terrain.cell() - 1) * longest > rounding || !is_whole(east) ||
       !is_whole(north))
     throw InputError("/terrain/thickness_file",
                      "has cells of " + show_rounded(map.cell) + " m from (" +
@@ -64,29 +64,32 @@ FirstNode first_node_of(const geometry::HeightField& map, const Terrain& terrain
   return {int(std::lround(east)), int(std::lround(north))};
 }
 
-/// The thickness in a cell of a raster; NaN beyond it.
-double value_at(const geometry::HeightField& map, int column, int row) {
-  const bool inside = column >= 0 && row >= 0 && column < map.columns && row < map.rows;
-  return inside ? map.height(column, row) : std::nan("");
+/// Calls visit(column, row) for the nodes within an area.
+template <class Visit>
+void for_nodes_within(const Area& area, const Terrain& terrain, Reach reach, Visit visit) {
+  const geometry::Ring ring =
+      widened_as_avaframe(scaled(area.polygon.outline, terrain.cell()), radius_of(reach));
+  std::vector<geometry::Ring> holes;
+  for (const geometry::Ring& hole : area.polygon.holes)
+    holes.push_back(scaled(hole, terrain.cell()));
+  const geometry::Polygon polygon{ring, std::move(holes)};
+  const NodeRange columns = nodes_within(ring, 0, terrain.columns());
+  const NodeRange rows = nodes_within(ring, 1, terrain.rows());
+  for (int row = rows.begin; row < rows.end; ++row)
+    for (int column = columns.begin; column < columns.end; ++column)
+      if (geometry::contains(polygon, {double(column), double(row)})) visit(column, row);
 }
 
 /// Thickness at the nodes within areas that share a raster.
 std::vector<double> thickness_of_raster(const std::vector<Area>& areas, const Terrain& terrain) {
-  const geometry::HeightField& map = *areas.front().map;
-  const FirstNode first = first_node_of(map, terrain);
-  std::vector<double> values = thickness_at_nodes(areas, terrain, Reach::edge);
-  for (int row = 0; row < terrain.rows(); ++row)
-    for (int column = 0; column < terrain.columns(); ++column) {
-      const std::size_t node = terrain.index(column, row);
-      if (values[node] == 0) continue;
-      const int east = column - first.column, north = row - first.row;
-      const double h = value_at(map, east, north);
-      for (std::size_t i = 0; i < areas.size() && !(h > 0 && h <= areas[i].max_thickness); ++i)
-        if (thickness_at_nodes({areas[i]}, terrain, Reach::edge)[node] > 0)
-          thickness_in_cell(areas[i], terrain, east, north,
+  const FirstNode first = first_node_of(*areas.front().map, terrain);
+  std::vector<double> values(std::size_t(terrain.columns()) * std::size_t(terrain.rows()), 0.0);
+  for (std::size_t i = 0; i < areas.size(); ++i)
+    for_nodes_within(areas[i], terrain, Reach::edge, [&](int column, int row) {
+      values[terrain.index(column, row)] =
+          thickness_in_cell(areas[i], terrain, column - first.column, row - first.row,
                             "/terrain/release/" + std::to_string(i));
-      values[node] = h;
-    }
+    });
   return values;
 }
 
@@ -124,22 +127,11 @@ geometry::Ring widened_as_avaframe(const geometry::Ring& outline, double radius)
 std::vector<double> thickness_at_nodes(const std::vector<Area>& areas, const Terrain& terrain,
                                        Reach reach) {
   std::vector<double> thickness(std::size_t(terrain.columns()) * std::size_t(terrain.rows()), 0.0);
-  for (const Area& area : areas) {
-    const geometry::Ring ring =
-        widened_as_avaframe(scaled(area.polygon.outline, terrain.cell()), radius_of(reach));
-    std::vector<geometry::Ring> holes;
-    for (const geometry::Ring& hole : area.polygon.holes)
-      holes.push_back(scaled(hole, terrain.cell()));
-    const geometry::Polygon polygon{ring, std::move(holes)};
-    const NodeRange columns = nodes_within(ring, 0, terrain.columns());
-    const NodeRange rows = nodes_within(ring, 1, terrain.rows());
-    for (int row = rows.begin; row < rows.end; ++row)
-      for (int column = columns.begin; column < columns.end; ++column) {
-        if (!geometry::contains(polygon, {double(column), double(row)})) continue;
-        double& h = thickness[terrain.index(column, row)];
-        h = h > 0 ? (h + area.thickness) / 2 : area.thickness;
-      }
-  }
+  for (const Area& area : areas)
+    for_nodes_within(area, terrain, reach, [&](int column, int row) {
+      double& h = thickness[terrain.index(column, row)];
+      h = h > 0 ? (h + area.thickness) / 2 : area.thickness;
+    });
   return thickness;
 }
 
