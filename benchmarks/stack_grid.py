@@ -8,7 +8,8 @@ Usage: python -m benchmarks.stack_grid run FOLDER [--case lab2d] [--seeds 12]
 `run` makes the stacks of the record (hours on 0.25 cm cells) and appends them to
 benchmarks/results/stack-grid.csv. `time` runs each grid once, scheme after scheme on one thread,
 and keeps the times in stack-grid-times.csv; nothing else should run on the machine meanwhile.
-`draw` draws errors over run time into docs/images/stack-grid.png, and prints the deviations.
+`draw` draws errors over run time into docs/images/stack-grid.png, and prints the deviations. It
+also writes the table from which `snowshed clearance` takes the error of the grid.
 """
 
 from __future__ import annotations
@@ -24,6 +25,9 @@ import pandas as pd
 from benchmarks.keeping import RESULTS, append_rows
 from matplotlib.axes import Axes
 
+from snowshed.analysis.clearance.grid_error import COLUMNS as HEIGHT_COLUMNS
+from snowshed.analysis.clearance.grid_error import TABLE as HEIGHTS
+from snowshed.io.csv_table import write_csv
 from snowshed.plot import INK, blank_figure, save_figure
 from snowshed.scene.scene import Scene
 from snowshed.study import Study
@@ -134,10 +138,25 @@ def deviations() -> pd.DataFrame:
     return table.reset_index()
 
 
+def height_errors(table: pd.DataFrame) -> pd.DataFrame:
+    """Return the deviations of heights in 2D, on all grids but the finest, for `HEIGHTS`."""
+    planar = table[table["case"].map(lambda case: CASES[case].values.get("dimension") == 2)]
+    panel = [name for name in GROUP_COLUMNS if name != "event"]
+    finest = planar.groupby(panel)["dx"].transform("min")
+    has_finest = planar.groupby(list(GROUP_COLUMNS))["dx"].transform("min") == finest
+    coarse = planar[has_finest & (planar["dx"] > finest)]
+    thickness = coarse["case"].map(lambda case: scene_of("thesis", 0.01, case).slab.thickness)
+    coarse = coarse.assign(
+        cells=(thickness / coarse["dx"]).round(6), height_error=coarse["height_m_off"].round(6)
+    )
+    return coarse.rename(columns={"event": "slide_offs"})[list(HEIGHT_COLUMNS)]
+
+
 def draw() -> None:
-    """Draw the error of stacks over the time of a run."""
+    """Draw the error of stacks over the time of a run, and write the errors of heights."""
     table = deviations()
     print(table.round(4).to_string(index=False))
+    write_csv(height_errors(table), HEIGHTS)
     lab = table[(table["case"] == "lab2d") & (table["tilt"] == 50) & (table["friction"] == 0.3)]
     times = pd.read_csv(TIMES).groupby(["scheme", "dx"])["wall_s"].last()
     figure = blank_figure(9.0, 3.4)

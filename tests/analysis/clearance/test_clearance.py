@@ -192,20 +192,18 @@ def test_the_error_of_the_grid_follows_from_the_scheme(answer, winters):
     """A scheme without recorded runs is named, too."""
     result, _ = answer
     for base, text in (
-        ({}, "stacks of lab-50 in 2D, event 5, scheme thesis were"),
-        (
-            {"numerics.scheme": "objective"},
-            "stacks of lab-50 in 2D, event 5, scheme objective were",
-        ),
+        ({}, "(1 panel in 2D, scheme thesis, 2 to 4 cells in the slab) were"),
+        ({"numerics.scheme": "objective"}, "panels in 2D, scheme objective, 2 to "),
         (
             {"numerics.transfer": "affine_flip"},
-            "no runs are recorded for scheme thesis with affine",
+            "no stacks are recorded for scheme thesis with affine",
         ),
     ):
         cases = [replace(case, base=base) for case in result.cases]
         warning = answer_text.warnings([replace(result, cases=cases)])[0]
-        assert warning.startswith("the intervals contain the error of the grid, a factor of up to ")
-        assert f"on the height of shed snow: {text}" in warning
+        assert ": the intervals contain the error of the grid, a factor of up to " in warning
+        assert text in warning.split("on the height of shed snow: ")[1]
+        assert warning.endswith(f"have {result.slide_offs} slide-offs (median)")
 
 
 def test_disabled_relations_are_stated(answer):

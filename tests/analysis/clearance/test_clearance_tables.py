@@ -19,6 +19,7 @@ from snowshed.analysis.clearance import (
     split_winters,
 )
 from snowshed.analysis.clearance.answer import required_height
+from snowshed.analysis.clearance.answer_text import panel_name, warnings
 from snowshed.analysis.clearance.grid_error import choose_grid, recorded_grid_error
 from snowshed.analysis.clearance.panel_snow import mean_months
 from snowshed.analysis.clearance.report import write_report
@@ -133,6 +134,33 @@ def test_more_cells_in_the_slabs_have_a_smaller_recorded_error():
     scene = Scene.preset("lab-50").with_({"numerics.scheme": "objective"}).resolve().data
     errors = [recorded_grid_error(scene, cells).size for cells in (2.0, 4.0, 100.0)]
     assert errors[0] > errors[1] == errors[2] > 0.0
+
+
+@pytest.mark.parametrize("scheme", ["thesis", "objective"])
+def test_stacks_of_few_slide_offs_have_a_larger_recorded_error(scheme):
+    data = Scene.preset("lab-50").with_({"numerics.scheme": scheme}).resolve().data
+    errors = [recorded_grid_error(data, 2.0, slide_offs) for slide_offs in (1, 5, 30)]
+    assert errors[0].size > 1.5 * errors[1].size
+    assert errors[1] == errors[2]
+    assert "stacks of 5 or more slide-offs" in errors[1].source
+
+
+def test_the_error_of_the_grid_is_that_of_as_many_slide_offs_as_the_winters_have(result):
+    slides = [sum(day.event is not None for day in case.days) for case in result.cases]
+    assert min(slides) <= result.slide_offs <= max(slides)
+    data = result.cases[0].panel_scene(0.45).data
+    few = recorded_grid_error(data, result.cases[0].cells_across, result.slide_offs)
+    assert result.grid_error == few
+    assert few.size > recorded_grid_error(data, result.cases[0].cells_across, 5).size
+
+
+def test_the_error_of_the_grid_is_told_although_the_first_panel_sheds_no_snow(result, tmp_path):
+    fence = PanelDesign(0.6, 90.0)
+    first = required_clearance(fence, WINTERS, [0.45], tmp_path / "runs", ranges=KNOWN)
+    assert not first.is_simulated
+    told = [note for note in warnings([first, result]) if "error of the grid" in note]
+    assert len(told) == 1
+    assert told[0].startswith(f"{panel_name(result)}: ")
 
 
 def test_an_accuracy_chooses_scheme_and_cells_of_the_same_slabs(tmp_path, capsys):

@@ -201,26 +201,18 @@ def recorded_bias(dimension: int, events: int, mechanisms: Optional[Mechanisms] 
     )
 
 
-def resolved_biases(
-    dimension: int, events: int, mechanisms: Optional[Mechanisms] = None
-) -> dict[float, float]:
-    """Return the relative error of recorded heights by the cells across the slab.
-
-    The parameters are those of `recorded_bias`. Grids with too few cells are left out.
-
-    Examples
-    --------
-    >>> sorted(resolved_biases(2, 5))
-    [2.0, 4.0]
-    """
-    stacks = resolved_stacks(dimension, events, mechanisms)
-    return {cells: stack.biases[0] for cells, stack in stacks.items()}
-
-
 def resolved_stacks(
     dimension: int, events: int, mechanisms: Optional[Mechanisms] = None
 ) -> dict[float, RecordedStack]:
-    """Return recorded stacks by the cells across the slab; the parameters are the same."""
+    """Return recorded stacks by the cells across the slab; the parameters are `recorded_bias`'s.
+
+    Grids with too few cells are left out.
+
+    Examples
+    --------
+    >>> sorted(resolved_stacks(2, 5))
+    [2.0, 4.0]
+    """
     return _resolved(_nearest_stacks(dimension, events, mechanisms or Mechanisms()))
 
 

@@ -28,7 +28,7 @@ from snowshed.analysis.clearance.seasons import SeasonCase, SeasonOutcome, cases
 from snowshed.analysis.clearance.statistics import CauseShare, Level, RequiredHeights
 from snowshed.analysis.clearance.winters import Winter
 from snowshed.base.arguments import checked
-from snowshed.base.arrays import Floats
+from snowshed.base.arrays import Floats, Integers
 from snowshed.base.callers import argument
 from snowshed.base.formatting import plural
 from snowshed.base.json_values import JsonValue
@@ -109,10 +109,20 @@ class ClearanceResult:
     @property
     def shed_part(self) -> float:
         """Part of the required height that is shed snow, in the winters that need most."""
-        highest = np.flatnonzero(self.required >= np.median(self.required))
-        parts = [self.height_parts(int(index)) for index in highest]
-        heights = sum(self.required[highest])
+        parts = [self.height_parts(int(index)) for index in self._highest]
+        heights = sum(self.required[self._highest])
         return sum(part.pile for part in parts) / heights if heights > 0.0 else 1.0
+
+    @property
+    def slide_offs(self) -> int:
+        """Median number of slide-offs of a season that has any, in the winters that need most."""
+        counts = [self.cases[index].slide_offs for index in self._highest]
+        return int(np.median([count for count in counts if count] or [1]))
+
+    @property
+    def _highest(self) -> Integers:
+        """Numbers of the seasons that need at least the median height (m,)."""
+        return np.flatnonzero(self.required >= np.median(self.required))
 
     @property
     def is_simulated(self) -> bool:
@@ -126,9 +136,10 @@ class ClearanceResult:
 
     @cached_property
     def grid_error(self) -> GridError:
-        """The error of heights by the grid, from recorded runs."""
+        """The error of heights by the grid, from recorded runs of as many slide-offs."""
         case = self.cases[0]
-        return recorded_grid_error(case.panel_scene(self.heights[0]).data, case.cells_across)
+        scene = case.panel_scene(self.heights[0]).data
+        return recorded_grid_error(scene, case.cells_across, self.slide_offs)
 
     @cached_property
     def heights_by_probability(self) -> RequiredHeights:

@@ -162,7 +162,6 @@ def warnings(answers: Sequence[ClearanceResult]) -> list[str]:
             panels.setdefault(note, []).append(panel_name(answer))
     return [
         *_excluded_winters(answers[0]),
-        *([_grid_error(answers[0])] if answers[0].is_simulated else []),
         *(
             note if len(names) == len(answers) > 1 else f"{', '.join(names)}: {note}"
             for note, names in panels.items()
@@ -171,6 +170,11 @@ def warnings(answers: Sequence[ClearanceResult]) -> list[str]:
 
 
 def _warnings_of(answer: ClearanceResult) -> Iterator[str]:
+    if answer.is_simulated:
+        yield (
+            f"the intervals contain the error of the grid, {answer.grid_error.text}; the seasons "
+            f"that need most have {plural(answer.slide_offs, 'slide-off')} (median)"
+        )
     highest = f"{answer.heights[-1]:g} m"
     reached = sum(outcomes[-1].contact is not None for outcomes in answer.outcomes)
     if reached:
@@ -225,10 +229,6 @@ def _excluded_winters(answer: ClearanceResult) -> list[str]:
         f"the answer uses {record.counted_text}; the snow of {number} was observed on less than "
         f"{whole_percent(record.coverage)} of the days {record.season.text}: {record.excluded_text}"
     ]
-
-
-def _grid_error(answer: ClearanceResult) -> str:
-    return f"the intervals contain the error of the grid, {answer.grid_error.text}"
 
 
 def assumptions(answer: ClearanceResult) -> list[str]:

@@ -4,22 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-from snowshed.analysis.accuracy.mechanisms import Mechanisms
+from snowshed.analysis.accuracy.mechanisms import SCHEME, Mechanisms
 from snowshed.analysis.accuracy.recorded import load_recorded
 from snowshed.analysis.accuracy.recorded_stacks import recorded_stacks
 from snowshed.analysis.accuracy.solutions import quickest
-from snowshed.analysis.accuracy.stack_errors import (
-    recorded_bias,
-    resolved_biases,
-    resolved_stacks,
-)
+from snowshed.analysis.accuracy.stack_errors import resolved_stacks
+from snowshed.base.formatting import number_span, percent_span, plural
 
+if TYPE_CHECKING:
+    import pandas as pd
+
+#: Errors of mean heights relative to the finest recorded grid of their scheme, from
+#: ``benchmarks/stack_grid.py``: the laboratory's panels, and panels of the thesis's chapter 5.
+TABLE = Path(__file__).with_name("height-errors.csv")
+CELLS, SLIDE_OFFS, ERROR = "cells", "slide_offs", "height_error"
+PANEL = ("tilt", "panel_length", "friction")
+COLUMNS = (SCHEME, *PANEL, CELLS, SLIDE_OFFS, ERROR)
 #: Fewest cells across a slab.
 MIN_CELLS = 2.0
 ROUNDING = 1e-6
-#: Number of slide-offs in a typical winter, for which recorded runs give the error.
+#: Number of slide-offs in a typical winter, for which scheme and cells are chosen.
 TYPICAL_SLIDE_OFFS = 5
 
 
@@ -66,7 +74,8 @@ class GridChoice:
 def choose_grid(accuracy: float) -> GridChoice:
     """Return the quickest recorded grid whose height was as accurate as wanted.
 
-    If none was, the most accurate is returned.
+    The error is that of stacks of `TYPICAL_SLIDE_OFFS`. If no grid was as accurate, the most
+    accurate is returned.
 
     Parameters
     ----------
@@ -79,18 +88,21 @@ def choose_grid(accuracy: float) -> GridChoice:
     ('objective', 'thesis')
     """
     choices, costs = [], []
-    for scheme in _recorded_schemes():
+    for scheme in _timed_schemes():
         stacks = resolved_stacks(2, TYPICAL_SLIDE_OFFS, Mechanisms(scheme))
         choices += [GridChoice(scheme, cells, abs(stacks[cells].biases[0])) for cells in stacks]
         costs += [stack.wall_s for stack in stacks.values()]
     return choices[quickest(costs, [choice.error for choice in choices], accuracy)]
 
 
-def recorded_grid_error(scene: Mapping[str, Any], cells: float = MIN_CELLS) -> GridError:
+def recorded_grid_error(
+    scene: Mapping[str, Any], cells: float = MIN_CELLS, slide_offs: int = TYPICAL_SLIDE_OFFS
+) -> GridError:
     """Return the largest recorded error of the height with a scene's scheme.
 
-    Grids with fewer cells in the slab are left out, except the finest. If nothing was recorded for
-    the mechanisms of the scene, the error is the largest of all schemes.
+    Stacks of fewer slide-offs and grids with fewer cells in the slab are left out, except those of
+    the most slide-offs and the finest grid. If nothing was recorded for the mechanisms of the
+    scene, the error is the largest of all schemes.
 
     Parameters
     ----------
@@ -98,29 +110,51 @@ def recorded_grid_error(scene: Mapping[str, Any], cells: float = MIN_CELLS) -> G
         The complete scene.
     cells
         Number of cells across the thinnest slab.
+    slide_offs
+        Number of slide-offs of which the stack is made.
 
     Examples
     --------
     >>> from snowshed import Scene
-    >>> scene = Scene.preset("lab-50").with_({"numerics.scheme": "objective"})
-    >>> recorded_grid_error(scene.resolve().data).size < 0.2
+    >>> scene = Scene.preset("lab-50").with_({"numerics.scheme": "objective"}).resolve().data
+    >>> recorded_grid_error(scene).size < 0.2 < recorded_grid_error(scene, slide_offs=2).size
     True
     """
     mechanisms = Mechanisms.of_scene(scene) or Mechanisms()
-    known = _largest(mechanisms, cells)
-    source = recorded_bias(2, TYPICAL_SLIDE_OFFS, mechanisms)
-    if known > 0.0:
-        return GridError(known, source)
-    largest = max(_largest(Mechanisms(scheme), cells) for scheme in _recorded_schemes())
-    return GridError(largest, f"{source}, so it is the largest error of all schemes")
+    if mechanisms.scheme in _tables() and not mechanisms.overrides:
+        return _error(mechanisms, cells, slide_offs)
+    errors = [_error(Mechanisms(scheme), cells, slide_offs) for scheme in _tables()]
+    largest = max(errors, key=lambda error: error.size)
+    note = f"no stacks are recorded for {mechanisms.label}, so it is the largest of all schemes"
+    return GridError(largest.size, f"{note}: {largest.source}")
 
 
-def _recorded_schemes() -> list[str]:
+def _timed_schemes() -> list[str]:
     stacks = recorded_stacks(load_recorded())
     return sorted({Mechanisms.of_settings(stack.settings).scheme for stack in stacks})
 
 
-def _largest(mechanisms: Mechanisms, cells: float) -> float:
-    biases = resolved_biases(2, TYPICAL_SLIDE_OFFS, mechanisms)
-    fine = [abs(bias) for across, bias in biases.items() if across > cells - ROUNDING]
-    return max(fine or [abs(biases[across]) for across in sorted(biases)[-1:]], default=0.0)
+@cache
+def _tables() -> Mapping[str, pd.DataFrame]:
+    """Return the recorded errors of each scheme."""
+    import pandas as pd
+
+    return dict(tuple(pd.read_csv(TABLE).groupby(SCHEME)))
+
+
+def _error(mechanisms: Mechanisms, cells: float, slide_offs: int) -> GridError:
+    rows = _tables()[mechanisms.scheme]
+    slide_offs = min(slide_offs, int(rows[SLIDE_OFFS].max()))
+    rows = rows[rows[SLIDE_OFFS] >= slide_offs]
+    rows = rows[rows[CELLS] > min(cells, rows[CELLS].max()) - ROUNDING]
+    errors = 100 * rows[ERROR]
+    span = percent_span(errors.min(), errors.max(), "too high", "too low")
+    panels = plural(rows.groupby(list(PANEL)).ngroups, "panel")
+    across = number_span(rows[CELLS].min(), rows[CELLS].max())
+    clauses = [
+        f"recorded stacks of {slide_offs} or more slide-offs ({panels} in 2D, {mechanisms.label}, "
+        f"{across} cells in the slab) were {span}, relative to the finest recorded grid of this "
+        "scheme",
+        mechanisms.calibration_note,
+    ]
+    return GridError(float(rows[ERROR].abs().max()), "; ".join(filter(None, clauses)))

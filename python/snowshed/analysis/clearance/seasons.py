@@ -116,6 +116,11 @@ class SeasonCase:
         """True if any snow is released."""
         return any(day.released for day in self.days)
 
+    @property
+    def slide_offs(self) -> int:
+        """Number of slide-offs of the season."""
+        return sum(day.event is not None for day in self.days)
+
     def panel_scene(self, height: float) -> ResolvedScene:
         """Return the scene of the panel at a height, without slabs."""
         return panel_scene(self.design, height, self.values, self.seed, self.base)

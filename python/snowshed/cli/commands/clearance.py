@@ -233,7 +233,11 @@ def _grid(
     quiet: bool,
 ) -> tuple[dict[str, Any], SeasonSettings]:
     """Return cells and scheme, the same for all panels, and the settings that pool releases."""
-    from snowshed.analysis.clearance.grid_error import MIN_CELLS, choose_grid
+    from snowshed.analysis.clearance.grid_error import (
+        MIN_CELLS,
+        TYPICAL_SLIDE_OFFS,
+        choose_grid,
+    )
     from snowshed.season.settings import SeasonSettings
 
     usual = min(design.default_dx for design in designs)
@@ -248,7 +252,7 @@ def _grid(
         say(
             f"--accuracy {percent(accuracy)}: {best}scheme {choice.scheme} with {choice.cells:g} "
             f"cells in the thinnest slab, dx {size:.3g} m. Its heights were off by "
-            f"{percent(choice.error, 2)}"
+            f"{percent(choice.error, 2)} after {TYPICAL_SLIDE_OFFS} slide-offs"
         )
     grid = {"numerics.dx": size, SCHEME.path: choice.scheme}
     return grid, SeasonSettings(pool_below=MIN_CELLS * usual)
