@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "snowshed/core/parallel.hpp"
 #include "snowshed/geometry/bounds.hpp"
@@ -10,11 +11,6 @@
 
 namespace snowshed::methods::mpm {
 namespace {
-
-template <class T>
-bool is_before(const EventContact<T>* a, const EventContact<T>* b) {
-  return *a < *b;
-}
 
 template <class T, int D>
 bool share_a_node(const T* first, const T* second) {
@@ -27,10 +23,21 @@ bool share_a_node(const T* first, const T* second) {
 
 template <class T, int D>
 void EventContacts<T, D>::forget(const Model<T, D>& model, const State<T, D>& state, int threads) {
+  const BlockLayout<D>& layout = state.layout;
   measured_ = false;
-  travel_.clear();
+  pairs_.clear();
+  first_pair_.assign(1, 0);
   radius_.clear();
-  if (overlap_count(state.layout) == 0) return;
+  for (std::ptrdiff_t overlap = 0; overlap < overlap_count(layout); ++overlap) {
+    for (std::int32_t a = layout.overlap_first[overlap]; a < layout.overlap_first[overlap + 1]; ++a)
+      for (std::int32_t b = a + 1; b < layout.overlap_first[overlap + 1]; ++b)
+        pairs_.push_back({a, b});
+    first_pair_.push_back(std::int32_t(pairs_.size()));
+  }
+  travel_.assign(pairs_.size(), 0.0);
+  fastest_.resize(layout.overlap_blocks.size());
+  if (pairs_.empty()) return;
+  find_nodes_around(layout);
   radius_.resize(state.particles.size());
   const double dx = model.options.settings.dx;
   parallel_for_static(std::ptrdiff_t(radius_.size()), threads, [&](std::ptrdiff_t i) {
@@ -41,91 +48,109 @@ void EventContacts<T, D>::forget(const Model<T, D>& model, const State<T, D>& st
 template <class T, int D>
 void EventContacts<T, D>::update(const Model<T, D>& model, State<T, D>& state, Grid<T, D>& grid,
                                  int threads) {
-  const std::ptrdiff_t overlaps = overlap_count(state.layout);
-  find_due(model, state, grid);
+  find_due(state, grid, model.options.settings.dx);
   if (std::find(due_.begin(), due_.end(), 1) == due_.end()) return;
-  const std::vector<EventContact<T>>& before = state.event_contacts;
-  std::vector<const EventContact<T>*> by_key;
-  for (const EventContact<T>& c : before) by_key.push_back(&c);
-  // Contacts of the same layout are in order already, overlap by overlap.
-  if (!measured_) std::sort(by_key.begin(), by_key.end(), is_before<T>);
-  std::vector<std::vector<EventContact<T>>> by_overlap(overlaps);
+  Contacts sorted;
+  if (!measured_) {
+    sorted = state.event_contacts;
+    std::sort(sorted.begin(), sorted.end());
+  }
+  const Contacts& before = measured_ ? state.event_contacts : sorted;
+  const EventContact<T>* const earlier = before.data();
+  const std::ptrdiff_t overlaps = overlap_count(state.layout);
+  std::vector<Contacts> by_overlap(overlaps);
+  std::vector<std::int32_t> first(pairs_.size() + 1, 0);
   parallel_for_dynamic(overlaps, threads, 1, [&](std::ptrdiff_t overlap) {
-    const SortedContacts earlier =
-        measured_
-            ? SortedContacts{by_key.data() + first_[overlap], by_key.data() + first_[overlap + 1]}
-            : SortedContacts{by_key.data(), by_key.data() + by_key.size()};
-    if (due_[overlap]) {
-      measure(model, state, grid, earlier, overlap, by_overlap[overlap]);
-      travel_[overlap] = 0;
-    } else {
-      for (auto c = earlier.begin; c != earlier.end; ++c) by_overlap[overlap].push_back(**c);
+    Contacts& contacts = by_overlap[overlap];
+    const std::int32_t first_block = state.layout.overlap_first[overlap];
+    Masses masses(state.layout.overlap_first[overlap + 1] - first_block);
+    for (std::int32_t k = first_pair_[overlap]; k < first_pair_[overlap + 1]; ++k) {
+      const Pair& pair = pairs_[k];
+      const SortedContacts of_pair =
+          measured_ ? SortedContacts{earlier + first_[k], earlier + first_[k + 1]}
+                    : SortedContacts{earlier, earlier + before.size()};
+      const std::size_t number = contacts.size();
+      if (due_[k])
+        measure(model, state, grid, of_pair, pair, masses[pair.first - first_block],
+                masses[pair.second - first_block], contacts);
+      else
+        contacts.insert(contacts.end(), of_pair.begin, of_pair.end);
+      first[k + 1] = std::int32_t(contacts.size() - number);
     }
   });
-  std::vector<EventContact<T>> next;
-  std::vector<std::int32_t> first{0};
-  for (const auto& contacts : by_overlap) {
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  Contacts next;
+  next.reserve(first.back());
+  for (const Contacts& contacts : by_overlap)
     next.insert(next.end(), contacts.begin(), contacts.end());
-    first.push_back(std::int32_t(next.size()));
-  }
   state.event_contacts = std::move(next);
   first_ = std::move(first);
+  for (std::size_t k = 0; k < pairs_.size(); ++k)
+    if (due_[k]) travel_[k] = 0;
   measured_ = true;
 }
 
 template <class T, int D>
 const EventContact<T>* EventContacts<T, D>::SortedContacts::find(
     const EventContact<T>& contact) const {
-  const auto at = std::lower_bound(begin, end, &contact, is_before<T>);
-  return at != end && (*at)->key() == contact.key() ? *at : nullptr;
+  const EventContact<T>* const at = std::lower_bound(begin, end, contact);
+  return at != end && at->key() == contact.key() ? at : nullptr;
 }
 
-/// Finds the overlaps in which snow may have moved far enough to change the contacts.
+/// Finds the pairs whose snow may have moved far enough to change the contacts.
 template <class T, int D>
-void EventContacts<T, D>::find_due(const Model<T, D>& model, const State<T, D>& state,
-                                   const Grid<T, D>& grid) {
-  const double tolerance = contact_tolerance * model.options.settings.dx;
-  const std::ptrdiff_t overlaps = overlap_count(state.layout);
-  due_.assign(overlaps, std::uint8_t(!measured_));
-  travel_.resize(overlaps);
+void EventContacts<T, D>::find_due(const State<T, D>& state, const Grid<T, D>& grid, double dx) {
+  due_.assign(pairs_.size(), std::uint8_t(!measured_));
   if (!measured_) return;
-  for (std::ptrdiff_t overlap = 0; overlap < overlaps; ++overlap) {
-    travel_[overlap] += fastest_around(state, grid, overlap) * state.totals.dt;
-    due_[overlap] = travel_[overlap] >= tolerance;
+  for (std::size_t k = 0; k < fastest_.size(); ++k)
+    fastest_[k] = fastest_around(state, grid, state.layout.overlap_blocks[k]);
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    travel_[k] +=
+        std::max(fastest_[pairs_[k].first], fastest_[pairs_[k].second]) * state.totals.dt;
+    due_[k] = travel_[k] >= contact_tolerance * dx;
   }
 }
 
-/// The speed (m/s) of the fastest snow that can reach the nodes of an overlap.
+/// The speed (m/s) of the fastest snow that can reach the nodes of a block.
 template <class T, int D>
 double EventContacts<T, D>::fastest_around(const State<T, D>& state, const Grid<T, D>& grid,
-                                           std::ptrdiff_t overlap) const {
-  const BlockLayout<D>& layout = state.layout;
+                                           std::int32_t g) const {
   double squared = 0;
-  for (auto k = layout.overlap_first[overlap]; k < layout.overlap_first[overlap + 1]; ++k)
-    for (const std::int32_t b : layout.around_nodes[layout.overlap_blocks[k]])
-      if (b >= 0 && !state.sleep.states()[b].asleep)
-        squared = std::max(squared, grid.block_stats[b].max_speed_squared);
+  for (const std::int32_t b : state.layout.around_nodes[g])
+    if (b >= 0 && !state.sleep.states()[b].asleep)
+      squared = std::max(squared, grid.block_stats[b].max_speed_squared);
   return std::sqrt(squared);
 }
 
-/// The masses at the nodes of a block and of the margin around it.
 template <class T, int D>
-std::vector<T> EventContacts<T, D>::masses_of(const State<T, D>& state, Grid<T, D>& grid,
-                                              std::int32_t g) const {
+void EventContacts<T, D>::find_nodes_around(const BlockLayout<D>& layout) {
+  nodes_around_.clear();
+  for (const std::int32_t g : layout.overlap_blocks) {
+    const BlockKey key = layout.grid_blocks[g];
+    auto& around = nodes_around_.emplace_back();
+    int k = 0;
+    for_each_index(filled<D>(-1), filled<D>(2), [&](const std::array<int, D>& offset) {
+      BlockCoord<D> coord = block_coord<D>(key);
+      for (int d = 0; d < D; ++d) coord[d] += offset[d];
+      around[k++] = find_block(layout.grid_blocks, block_key<D>(coord, field_of(key)));
+    });
+  }
+}
+
+/// The masses at the nodes of a block of an overlap and of the margin around it.
+template <class T, int D>
+std::vector<T> EventContacts<T, D>::masses_of(Grid<T, D>& grid, std::int32_t overlap_block) const {
   constexpr int margin = normal_margin<D>;
   std::vector<T> masses(padded_nodes<D>, T(0));
-  const BlockKey key = state.layout.grid_blocks[g];
+  int k = 0;
   for_each_index(filled<D>(-1), filled<D>(2), [&](const std::array<int, D>& offset) {
-    BlockCoord<D> coord = block_coord<D>(key);
+    const std::int32_t block = nodes_around_[overlap_block][k++];
+    if (block < 0 || !grid.touched[block]) return;
     std::array<int, D> begin, end;
     for (int d = 0; d < D; ++d) {
-      coord[d] += offset[d];
       begin[d] = offset[d] < 0 ? B - margin : 0;
       end[d] = offset[d] > 0 ? margin : B;
     }
-    const std::int32_t block =
-        find_block(state.layout.grid_blocks, block_key<D>(coord, field_of(key)));
-    if (block < 0 || !grid.touched[block]) return;
     const T* const sums = grid.sum(block);
     for_each_index(begin, end, [&](const std::array<int, D>& node) {
       std::array<int, D> padded;
@@ -178,70 +203,56 @@ void EventContacts<T, D>::find_reach(const Model<T, D>& model, const State<T, D>
   }
 }
 
-/// Finds the contacts of an overlap, which keep their stored impulses. A node at which the snow has
+/// Finds the contacts of a pair, which keep their stored impulses. A node at which the snow has
 /// separated stays a contact until friction has used up its stored impulse.
 template <class T, int D>
 void EventContacts<T, D>::measure(const Model<T, D>& model, const State<T, D>& state,
-                                  Grid<T, D>& grid, const SortedContacts& before,
-                                  std::ptrdiff_t overlap,
-                                  std::vector<EventContact<T>>& contacts) const {
-  const auto begin = state.layout.overlap_blocks.begin() + state.layout.overlap_first[overlap];
-  const auto end = state.layout.overlap_blocks.begin() + state.layout.overlap_first[overlap + 1];
-  struct Field {
-    std::int32_t block;
-    std::vector<T> masses;  // once they are needed
-  };
-  std::vector<Field> fields;
-  for (auto g = begin; g != end; ++g)
-    if (grid.touched[*g]) fields.push_back({*g, {}});
-  for (std::size_t a = 0; a < fields.size(); ++a)
-    for (std::size_t b = a + 1; b < fields.size(); ++b) {
-      if (!share_a_node<T, D>(grid.sum(fields[a].block), grid.sum(fields[b].block))) continue;
-      for (Field* field : {&fields[a], &fields[b]})
-        if (field->masses.empty()) field->masses = masses_of(state, grid, field->block);
-      const SharedNodes<T, D> nodes = find_shared_nodes<T, D>(fields[a].masses, fields[b].masses);
-      ReachMap<T, D> first(nodes, T(1)), second(nodes, T(-1));  // towards each other
-      find_reach(model, state, grid, fields[a].block, nodes, first);
-      find_reach(model, state, grid, fields[b].block, nodes, second);
-      for_each_index(nodes.begin, nodes.end, [&](const std::array<int, D>& node) {
-        const int k = flat_index<D>(node, B);
-        if (!nodes.contains(k)) return;
-        EventContact<T> c{state.layout.grid_blocks[fields[a].block],
-                          state.layout.grid_blocks[fields[b].block],
-                          k,
-                          fields[a].block,
-                          fields[b].block,
-                          first.at(node) >= -second.at(node),
-                          {},
-                          0,
-                          0};
-        for (int d = 0; d < D; ++d) c.normal[d] = nodes.normal[k][d];
-        if (const EventContact<T>* old = before.find(c))
-          c.impulse = c.next_impulse = old->next_impulse;
-        if (c.touches || c.impulse > T(0)) contacts.push_back(c);
-      });
-    }
+                                  Grid<T, D>& grid, const SortedContacts& before, const Pair& pair,
+                                  std::vector<T>& first_masses, std::vector<T>& second_masses,
+                                  Contacts& contacts) const {
+  const std::int32_t a = state.layout.overlap_blocks[pair.first],
+                     b = state.layout.overlap_blocks[pair.second];
+  if (!grid.touched[a] || !grid.touched[b] || !share_a_node<T, D>(grid.sum(a), grid.sum(b))) return;
+  if (first_masses.empty()) first_masses = masses_of(grid, pair.first);
+  if (second_masses.empty()) second_masses = masses_of(grid, pair.second);
+  const SharedNodes<T, D> nodes = find_shared_nodes<T, D>(first_masses, second_masses);
+  ReachMap<T, D> first(nodes, T(1)), second(nodes, T(-1));  // towards each other
+  find_reach(model, state, grid, a, nodes, first);
+  find_reach(model, state, grid, b, nodes, second);
+  for_each_index(nodes.begin, nodes.end, [&](const std::array<int, D>& node) {
+    const int k = flat_index<D>(node, B);
+    if (!nodes.contains(k)) return;
+    EventContact<T> c{state.layout.grid_blocks[a],
+                      state.layout.grid_blocks[b],
+                      k,
+                      a,
+                      b,
+                      first.at(node) >= -second.at(node),
+                      {},
+                      0,
+                      0};
+    for (int d = 0; d < D; ++d) c.normal[d] = nodes.normal[k][d];
+    if (const EventContact<T>* old = before.find(c)) c.impulse = c.next_impulse = old->next_impulse;
+    if (c.touches || c.impulse > T(0)) contacts.push_back(c);
+  });
 }
 
 template <class T, int D>
-void EventContacts<T, D>::exchange(const StepParameters<T>& step, double friction,
+void EventContacts<T, D>::exchange(const Model<T, D>& model, const StepParameters<T>& step,
                                    State<T, D>& state, Grid<T, D>& grid,
                                    std::ptrdiff_t overlap) const {
-  EventContact<T>* const end = state.event_contacts.data() + first_[overlap + 1];
-  for (EventContact<T>* begin = state.event_contacts.data() + first_[overlap]; begin != end;) {
-    EventContact<T>* const next = std::find_if(begin, end, [&](const EventContact<T>& c) {
-      return c.first != begin->first || c.second != begin->second;
-    });
-    exchange(step, T(friction), grid, begin, next);
-    begin = next;
-  }
+  EventContact<T>* const contacts = state.event_contacts.data();
+  for (std::int32_t k = first_pair_[overlap]; k < first_pair_[overlap + 1]; ++k)
+    if (first_[k] < first_[k + 1])
+      exchange(model, step, grid, contacts + first_[k], contacts + first_[k + 1]);
 }
 
 /// Exchanges the impulses between two fields. A part of the stored friction may suffice to stop a
 /// node with little snow. The excess slows the nodes of the block that still slide.
 template <class T, int D>
-void EventContacts<T, D>::exchange(const StepParameters<T>& step, T friction, Grid<T, D>& grid,
-                                   EventContact<T>* begin, EventContact<T>* end) const {
+void EventContacts<T, D>::exchange(const Model<T, D>& model, const StepParameters<T>& step,
+                                   Grid<T, D>& grid, EventContact<T>* begin,
+                                   EventContact<T>* end) const {
   if (!grid.touched[begin->first] || !grid.touched[begin->second]) {
     for (EventContact<T>* c = begin; c != end; ++c) c->next_impulse = 0;
     return;
@@ -249,6 +260,7 @@ void EventContacts<T, D>::exchange(const StepParameters<T>& step, T friction, Gr
   const T* const sums[2] = {grid.sum(begin->first), grid.sum(begin->second)};
   T* const velocities[2] = {grid.velocity(begin->first), grid.velocity(begin->second)};
   EventImpulses<T, D> impulses[block_nodes<D>];
+  const T friction = T(model.event_friction());
   T excess = 0, capacity = 0;  // N s
   for (EventContact<T>* c = begin; c != end; ++c) {
     EventImpulses<T, D>& i = impulses[c - begin];
@@ -268,8 +280,9 @@ void EventContacts<T, D>::exchange(const StepParameters<T>& step, T friction, Gr
       const T per_mass = (field == 0 ? T(-1) : T(1)) / sum[0];
       for (int d = 0; d < D; ++d) {
         const T pushed = per_mass * i.push * c->normal[d], rubbed = per_mass * rubbing * i.slip[d];
-        add_exchange(double(sum[0]), double(sum[1 + d]), double(pushed), double(rubbed),
-                     double(node[d] + pushed + rubbed), energy);
+        if (model.options.energy)
+          add_exchange(double(sum[0]), double(sum[1 + d]), double(pushed), double(rubbed),
+                       double(node[d] + pushed + rubbed), energy);
         node[d] += pushed + rubbed;
         node[node_values / 2 + d] += pushed + rubbed;
       }

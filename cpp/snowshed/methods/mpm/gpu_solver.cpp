@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -193,11 +192,7 @@ void GpuSolver::update_touch() {
   State<float, 3>& state = host_->state_for_device();
   const std::vector<std::int32_t> due = touch_.due_blocks(model, state);
   if (due.empty()) return;
-  const std::vector<std::int32_t> touching = touch_.touching_blocks();
-  std::vector<std::int32_t> needed;
-  std::set_union(due.begin(), due.end(), touching.begin(), touching.end(),
-                 std::back_inserter(needed));
-  snow_.download_blocks(state, needed);
+  snow_.download_blocks(state, due);
   with_contacts([&] { touch_.measure(model, state, due, model.max_threads); });
 }
 

@@ -130,7 +130,7 @@ struct BlockStats {
 /// A kernel's report on one block of nodes.
 struct NodeStats {
   double low[3], high[3];               // bounds of the new velocities; low > high: no snow here
-  NodeEnergies energy{};                // contact between events; the rest with the balance only
+  NodeEnergies energy{};                // with the energy balance only
   double impulse[3] = {0.0, 0.0, 0.0};  // N s, by all contacts on the snow, if it is recorded
 };
 

@@ -197,8 +197,7 @@ void SolverImpl<T, D>::update_overlap(const StepParameters<T>& step, std::ptrdif
       clear_block(step, *g);
     }
   }
-  workspace_.event_contacts.exchange(step, model_.event_friction(), state_, workspace_.grid,
-                                     overlap);
+  workspace_.event_contacts.exchange(model_, step, state_, workspace_.grid, overlap);
   for (auto g = begin; g != end; ++g)
     if (workspace_.grid.touched[*g]) finish_block(step, *g);
 }

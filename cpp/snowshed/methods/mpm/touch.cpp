@@ -40,20 +40,22 @@ constexpr int min_majority = 10;
 /// Faces are merged if the cosine between their normals is larger than this.
 constexpr double cosine_of_one_face = 0.99;
 
-/// Flags of the blocks of nodes that the particles of some blocks reach.
+/// Flags of the blocks of nodes that the particles of the flagged blocks reach.
 template <int D>
 std::vector<std::uint8_t> reached_by(const BlockLayout<D>& layout,
-                                     const std::vector<std::int32_t>& particle_blocks) {
+                                     const std::vector<std::int32_t>& particle_blocks,
+                                     const std::vector<std::uint8_t>& flags) {
   std::vector<std::uint8_t> reached(layout.grid_blocks.size(), 0);
-  for (const std::int32_t b : particle_blocks)
-    for (const std::int32_t g : layout.around_particles[b]) reached[g] = 1;
+  for (std::size_t k = 0; k < flags.size(); ++k)
+    if (flags[k])
+      for (const std::int32_t g : layout.around_particles[particle_blocks[k]]) reached[g] = 1;
   return reached;
 }
 
-template <class T, int D, int size>
-T cosine(const T (&a)[D], const T (&b)[size]) {
+template <class T, std::size_t D, class Vector>
+T cosine(const std::array<T, D>& a, const Vector& b) {
   T sum = 0;
-  for (int d = 0; d < D; ++d) sum += a[d] * b[d];
+  for (std::size_t d = 0; d < D; ++d) sum += a[d] * b[d];
   return sum;
 }
 
@@ -65,6 +67,8 @@ void Touch<T, D>::forget(const Model<T, D>& model, const State<T, D>& state) {
   travel_ = 0;
   largest_radius_ = state.largest_contact_radius(model);
   blocks_.resize(state.layout.particle_blocks.size());
+  next_.assign(state.particles.size(), 0.0);
+  radius_.assign(state.particles.size(), -1.0);
 }
 
 template <class T, int D>
@@ -79,14 +83,6 @@ std::vector<std::int32_t> Touch<T, D>::due_blocks(const Model<T, D>& model,
 }
 
 template <class T, int D>
-std::vector<std::int32_t> Touch<T, D>::touching_blocks() const {
-  std::vector<std::int32_t> touching;
-  for (std::size_t b = 0; b < blocks_.size(); ++b)
-    if (!blocks_[b].touching_particles.empty()) touching.push_back(std::int32_t(b));
-  return touching;
-}
-
-template <class T, int D>
 double Touch<T, D>::reserve(const State<T, D>& state) const {
   double next = geometry::infinity;
   for (const std::int32_t b : state.sleep.awake())
@@ -98,53 +94,85 @@ template <class T, int D>
 void Touch<T, D>::measure(const Model<T, D>& model, State<T, D>& state,
                           const std::vector<std::int32_t>& blocks, int threads) {
   if (blocks.empty()) return;
-  const std::vector<std::uint8_t> reached = reached_by(state.layout, blocks);
+  const bool all = !measured_ || model.boundary.any_motion();
   measured_ = false;  // stays false if this throws
-  parallel_for_dynamic(std::ptrdiff_t(blocks.size()), threads, 4,
-                       [&](std::ptrdiff_t i) { measure(model, state, blocks[std::size_t(i)]); });
+  std::vector<std::uint8_t> changed(blocks.size());
+  parallel_for_dynamic(std::ptrdiff_t(blocks.size()), threads, 4, [&](std::ptrdiff_t i) {
+    changed[std::size_t(i)] = measure(model, state, blocks[std::size_t(i)]) || all;
+  });
+  const std::vector<std::uint8_t> reached = reached_by(state.layout, blocks, changed);
   parallel_for_dynamic(std::ptrdiff_t(reached.size()), threads, 16, [&](std::ptrdiff_t g) {
     if (reached[std::size_t(g)]) mark(model, state, std::int32_t(g));
   });
   measured_ = true;
 }
 
+/// The particles of a block that may touch an obstacle.
 template <class T, int D>
-void Touch<T, D>::measure(const Model<T, D>& model, const State<T, D>& state, std::int32_t b) {
+std::vector<std::int32_t> Touch<T, D>::due_particles(const Model<T, D>& model,
+                                                     const State<T, D>& state,
+                                                     std::int32_t b) const {
+  const bool all = model.boundary.any_motion();
+  std::vector<std::int32_t> due;
+  for (std::int32_t i = state.layout.first[b]; i < state.layout.first[b + 1]; ++i)
+    if (all || next_[std::size_t(i)] <= travel_) due.push_back(i);
+  return due;
+}
+
+template <class T, int D>
+double Touch<T, D>::radius(const Model<T, D>& model, const State<T, D>& state, std::int32_t i) {
+  double& radius = radius_[std::size_t(i)];
+  if (radius < 0) radius = state.contact_radius(model, std::size_t(i));
+  return radius;
+}
+
+/// Finds the particles of a block that touch an obstacle. Returns whether they are others than
+/// before, or touch elsewhere.
+template <class T, int D>
+bool Touch<T, D>::measure(const Model<T, D>& model, const State<T, D>& state, std::int32_t b) {
   const Settings& n = model.options.settings;
   const BlockKey key = state.layout.particle_blocks[b];
-  Block& block = blocks_[b];
-  block.touching_particles.clear();
   // Reach around the block's centre, including the cell by which particles may stray.
   const double reach = (0.5 * block_edge<D> + 1) * std::sqrt(double(D)) * n.dx;
   VecD<D> center;
   for (int d = 0; d < D; ++d)
     center[d] = ((block_coord<D>(key)[d] + 0.5) * block_edge<D> + base_offset(n.basis)) * n.dx;
-  double nearest = geometry::infinity;  // smallest gap that is still open
+  const std::vector<std::int32_t> due = due_particles(model, state, b);
+  for (const std::int32_t i : due) next_[std::size_t(i)] = geometry::infinity;
+  std::vector<TouchingParticle> touching;
   for (std::int32_t o = 0; o < std::int32_t(model.boundary.size()); ++o) {
     const auto surface = model.boundary.surface(o, state.totals.time);
     const double around = surface.distance(embed(center)) - reach - largest_radius_;
-    if (around > 0) {
-      nearest = std::min(nearest, around);
-      continue;
-    }
-    for (std::int32_t i = state.layout.first[b]; i < state.layout.first[b + 1]; ++i) {
-      const VecD<D> x = position_of(state.particles, std::size_t(i), key, n.dx, n.basis);
-      const double distance = surface.distance(embed(x));
-      double gap = distance - largest_radius_;
-      if (gap <= 0) gap = distance - state.contact_radius(model, std::size_t(i));
-      if (gap > 0) {
-        nearest = std::min(nearest, gap);
-        continue;
+    for (const std::int32_t i : due) {
+      double gap = around;
+      if (around <= 0) {
+        const VecD<D> x = position_of(state.particles, std::size_t(i), key, n.dx, n.basis);
+        const double distance = surface.distance(embed(x));
+        gap = distance - largest_radius_;
+        if (gap <= 0) gap = distance - radius(model, state, i);
+        if (gap <= 0) {
+          TouchingParticle particle{i, o, {}, {}};
+          const VecD<D> normal = surface.normal(embed(x));
+          for (int d = 0; d < D; ++d) {
+            particle.lowest[d] = int(std::floor(state.particles.cell[d][i]));
+            particle.normal[d] = T(normal[d]);
+          }
+          touching.push_back(particle);
+          gap = 0;
+        }
       }
-      TouchingParticle toucher{i, o, {}};
-      const VecD<D> normal = surface.normal(embed(x));
-      for (int d = 0; d < D; ++d) toucher.normal[d] = T(normal[d]);
-      block.touching_particles.push_back(toucher);
+      next_[std::size_t(i)] = std::min(next_[std::size_t(i)], travel_ + gap);
     }
   }
+  Block& block = blocks_[b];
+  block.next = geometry::infinity;
+  for (std::int32_t i = state.layout.first[b]; i < state.layout.first[b + 1]; ++i)
+    block.next = std::min(block.next, next_[std::size_t(i)]);
   // A particle may cease to touch before the next measurement. The short delay does not matter.
-  block.next = travel_ + std::max(nearest, contact_tolerance * n.dx);
-  if (!block.touching_particles.empty()) block.next = travel_ + contact_tolerance * n.dx;
+  block.next = std::max(block.next, travel_ + contact_tolerance * n.dx);
+  const bool changed = touching != block.touching_particles;
+  block.touching_particles = std::move(touching);
+  return changed;
 }
 
 template <class T, int D>
@@ -157,7 +185,7 @@ void Touch<T, D>::mark(const Model<T, D>& model, State<T, D>& state, std::int32_
     Contact<T>& c = contacts[k];
     if (c.obstacle != obstacle) {  // contacts are in the order of obstacles
       obstacle = c.obstacle;
-      touched = faces(state, g, obstacle);
+      touched = faces(state.layout, g, obstacle);
     }
     VecD<D> near = VecD<D>::Zero(), far = VecD<D>::Zero();  // sums of normals over particles
     std::int32_t at_near = 0, at_far = 0;
@@ -178,28 +206,27 @@ void Touch<T, D>::mark(const Model<T, D>& model, State<T, D>& state, std::int32_
 }
 
 template <class T, int D>
-std::vector<typename Touch<T, D>::Face> Touch<T, D>::faces(const State<T, D>& state, std::int32_t g,
+std::vector<typename Touch<T, D>::Face> Touch<T, D>::faces(const BlockLayout<D>& layout,
+                                                           std::int32_t g,
                                                            std::int32_t obstacle) const {
-  const BlockCoord<D> block = block_coord<D>(state.layout.grid_blocks[g]);
+  const BlockCoord<D> block = block_coord<D>(layout.grid_blocks[g]);
   std::vector<Face> touched;
-  for (const std::int32_t b : state.layout.around_nodes[g]) {
+  for (const std::int32_t b : layout.around_nodes[g]) {
     if (b < 0) continue;
-    const BlockCoord<D> from = block_coord<D>(state.layout.particle_blocks[b]);
+    const BlockCoord<D> from = block_coord<D>(layout.particle_blocks[b]);
     for (const TouchingParticle& t : blocks_[b].touching_particles) {
       if (t.obstacle != obstacle) continue;
       int begin[D];
       for (int d = 0; d < D; ++d)
-        begin[d] = int(std::floor(state.particles.cell[d][t.particle])) +
-                   (from[d] - block[d]) * block_edge<D>;
+        begin[d] = t.lowest[d] + (from[d] - block[d]) * block_edge<D>;
       const std::uint64_t nodes = nodes_in_box<D>(begin, support_);
       if (nodes == 0) continue;
       auto face = std::find_if(touched.begin(), touched.end(), [&](const Face& f) {
         return cosine(f.normal, t.normal) > T(cosine_of_one_face);
       });
       if (face == touched.end()) {
-        touched.push_back({});
+        touched.push_back({t.normal, 0, 0});
         face = touched.end() - 1;
-        std::copy_n(t.normal, D, face->normal);
       }
       face->nodes |= nodes;
       ++face->particles;

@@ -6,10 +6,12 @@
 // slide.
 //
 // The distances are measured again when particles may have moved far enough for another one to
-// touch.
+// touch. The radii stay those of the last sort of the particles.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 #include "snowshed/methods/mpm/state.hpp"
@@ -37,10 +39,8 @@ class Touch {
   void travel(double moved) { travel_ += moved; }
   /// The blocks whose distances must be measured.
   std::vector<std::int32_t> due_blocks(const Model<T, D>& model, const State<T, D>& state) const;
-  /// Blocks with particles that touch an obstacle.
-  std::vector<std::int32_t> touching_blocks() const;
   /// Measures the listed blocks, and decides for each contact at their nodes whether it acts. Looks
-  /// at the particles of these blocks and of the touching ones.
+  /// at the particles of these blocks only.
   void measure(const Model<T, D>& model, State<T, D>& state,
                const std::vector<std::int32_t>& blocks, int threads);
   /// The distance (m) by which the fastest snow may move before a block must be measured.
@@ -50,10 +50,15 @@ class Touch {
   /// A particle that touches an obstacle.
   struct TouchingParticle {
     std::int32_t particle, obstacle;
-    T normal[D];  // normal of the obstacle where it touches
+    std::array<int, D> lowest;  // its lowest node, counted from the first node of its block
+    std::array<T, D> normal;    // normal of the obstacle where it touches
+    bool operator==(const TouchingParticle& other) const {
+      return std::tie(particle, obstacle, lowest, normal) ==
+             std::tie(other.particle, other.obstacle, other.lowest, other.normal);
+    }
   };
   struct Face {  // face of an obstacle that some particles touch
-    T normal[D];
+    std::array<T, D> normal;
     std::uint64_t nodes;  // a bit for each node where these particles have weight
     std::int32_t particles;
   };
@@ -62,14 +67,19 @@ class Touch {
     double next = 0;  // travel (m) at which distances are measured again
   };
 
-  void measure(const Model<T, D>& model, const State<T, D>& state, std::int32_t block);
+  bool measure(const Model<T, D>& model, const State<T, D>& state, std::int32_t block);
+  std::vector<std::int32_t> due_particles(const Model<T, D>& model, const State<T, D>& state,
+                                          std::int32_t block) const;
+  double radius(const Model<T, D>& model, const State<T, D>& state, std::int32_t particle);
   void mark(const Model<T, D>& model, State<T, D>& state, std::int32_t grid_block) const;
   /// The faces of an obstacle that are touched by particles with weight in a block of nodes.
-  std::vector<Face> faces(const State<T, D>& state, std::int32_t grid_block,
+  std::vector<Face> faces(const BlockLayout<D>& layout, std::int32_t grid_block,
                           std::int32_t obstacle) const;
 
   int support_;
-  std::vector<Block> blocks_;  // one per block of particles
+  std::vector<Block> blocks_;   // one per block of particles
+  std::vector<double> next_;    // travel (m) at which each particle may touch an obstacle
+  std::vector<double> radius_;  // radius of each particle, m; negative: not computed yet
   double largest_radius_ = 0;  // m, bound for all particles
   double travel_ = 0;          // distance (m) that the fastest snow has moved since `forget`
   bool measured_ = false;

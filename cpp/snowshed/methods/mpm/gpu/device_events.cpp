@@ -72,7 +72,7 @@ void DeviceEvents::connect(const HostState& state) {
   for (std::size_t o = 0; o + 1 < layout.overlap_first.size(); ++o) {
     for (std::int32_t a = layout.overlap_first[o]; a < layout.overlap_first[o + 1]; ++a)
       for (std::int32_t b = a + 1; b < layout.overlap_first[o + 1]; ++b)
-        host_pairs_.push_back({a, b, std::int32_t(o)});
+        host_pairs_.push_back({a, b});
     first_pair.push_back(std::int32_t(host_pairs_.size()));
   }
   pairs_.upload(host_pairs_);

@@ -166,14 +166,15 @@ __device__ inline void search_pair(const EventArrays& events, const ParticleLaun
 /// were sought: in the last step, and before.
 __device__ inline bool is_search_due(const EventArrays& events, const ParticleLaunch& l, int pair,
                                      double dt, double tolerance, SearchMemory& m) {
-  const int t = int(threadIdx.x), overlap = events.pairs[pair].overlap;
+  const int t = int(threadIdx.x);
   if (t == 0) m.fastest = 0;
   __syncthreads();
   float fastest = 0;
-  const int end = events.first_block[overlap + 1] * neighbours;
-  for (int i = events.first_block[overlap] * neighbours + t; i < end; i += int(blockDim.x)) {
-    const std::int32_t b = events.particles_around[i];
-    if (b >= 0) fastest = ::fmaxf(fastest, l.fastest[b]);
+  if (t < 2 * neighbours) {
+    const std::int32_t block =
+        t < neighbours ? events.pairs[pair].first : events.pairs[pair].second;
+    const std::int32_t b = events.particles_around[block * neighbours + t % neighbours];
+    if (b >= 0) fastest = l.fastest[b];
   }
   raise(&m.fastest, fastest);
   __syncthreads();

@@ -98,9 +98,9 @@ struct AverageArrays {
 };
 
 /// Two of the blocks of nodes that several events have at the same position, as indices into
-/// EventArrays::blocks, and the index of that position.
+/// EventArrays::blocks.
 struct EventPair {
-  std::int32_t first, second, overlap;
+  std::int32_t first, second;
 };
 
 /// A node of a pair. It is a contact if the snow touches, or has separated and friction is still
