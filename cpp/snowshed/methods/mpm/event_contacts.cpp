@@ -105,8 +105,7 @@ void EventContacts<T, D>::find_due(const State<T, D>& state, const Grid<T, D>& g
   for (std::size_t k = 0; k < fastest_.size(); ++k)
     fastest_[k] = fastest_around(state, grid, state.layout.overlap_blocks[k]);
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
-    travel_[k] +=
-        std::max(fastest_[pairs_[k].first], fastest_[pairs_[k].second]) * state.totals.dt;
+    travel_[k] += std::max(fastest_[pairs_[k].first], fastest_[pairs_[k].second]) * state.totals.dt;
     due_[k] = travel_[k] >= contact_tolerance * dx;
   }
 }

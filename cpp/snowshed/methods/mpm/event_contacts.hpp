@@ -77,7 +77,7 @@ class EventContacts {
                                   EventContact<T>& contact) const;
 
   int support_;
-  std::vector<T> radius_;                    // radius of each particle, cells
+  std::vector<T> radius_;  // radius of each particle, cells
   /// For each block of an overlap, the blocks of its field's nodes around it, or -1.
   std::vector<typename BlockLayout<D>::Neighbours> nodes_around_;
   std::vector<Pair> pairs_;                  // overlap by overlap

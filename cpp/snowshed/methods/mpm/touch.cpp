@@ -74,7 +74,7 @@ void Touch<T, D>::forget(const Model<T, D>& model, const State<T, D>& state) {
 template <class T, int D>
 std::vector<std::int32_t> Touch<T, D>::due_blocks(const Model<T, D>& model,
                                                   const State<T, D>& state) const {
-  const bool all = !measured_ || model.boundary.any_motion();
+  const bool all = all_due(model);
   std::vector<std::int32_t> due;
   for (std::size_t b = 0; b < blocks_.size(); ++b)
     if (all || (travel_ >= blocks_[b].next && !state.sleep.states()[b].asleep))
@@ -94,7 +94,7 @@ template <class T, int D>
 void Touch<T, D>::measure(const Model<T, D>& model, State<T, D>& state,
                           const std::vector<std::int32_t>& blocks, int threads) {
   if (blocks.empty()) return;
-  const bool all = !measured_ || model.boundary.any_motion();
+  const bool all = all_due(model);
   measured_ = false;  // stays false if this throws
   std::vector<std::uint8_t> changed(blocks.size());
   parallel_for_dynamic(std::ptrdiff_t(blocks.size()), threads, 4, [&](std::ptrdiff_t i) {
@@ -217,8 +217,7 @@ std::vector<typename Touch<T, D>::Face> Touch<T, D>::faces(const BlockLayout<D>&
     for (const TouchingParticle& t : blocks_[b].touching_particles) {
       if (t.obstacle != obstacle) continue;
       int begin[D];
-      for (int d = 0; d < D; ++d)
-        begin[d] = t.lowest[d] + (from[d] - block[d]) * block_edge<D>;
+      for (int d = 0; d < D; ++d) begin[d] = t.lowest[d] + (from[d] - block[d]) * block_edge<D>;
       const std::uint64_t nodes = nodes_in_box<D>(begin, support_);
       if (nodes == 0) continue;
       auto face = std::find_if(touched.begin(), touched.end(), [&](const Face& f) {

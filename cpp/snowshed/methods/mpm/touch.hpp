@@ -67,6 +67,7 @@ class Touch {
     double next = 0;  // travel (m) at which distances are measured again
   };
 
+  bool all_due(const Model<T, D>& model) const { return !measured_ || model.boundary.any_motion(); }
   bool measure(const Model<T, D>& model, const State<T, D>& state, std::int32_t block);
   std::vector<std::int32_t> due_particles(const Model<T, D>& model, const State<T, D>& state,
                                           std::int32_t block) const;
@@ -80,8 +81,8 @@ class Touch {
   std::vector<Block> blocks_;   // one per block of particles
   std::vector<double> next_;    // travel (m) at which each particle may touch an obstacle
   std::vector<double> radius_;  // radius of each particle, m; negative: not computed yet
-  double largest_radius_ = 0;  // m, bound for all particles
-  double travel_ = 0;          // distance (m) that the fastest snow has moved since `forget`
+  double largest_radius_ = 0;   // m, bound for all particles
+  double travel_ = 0;           // distance (m) that the fastest snow has moved since `forget`
   bool measured_ = false;
 };
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "io/temporary_folder.hpp"
 #include "methods/mpm/solver_testing.hpp"
 
@@ -183,6 +185,79 @@ TEST(Touch, AMovingObstaclePushesOnceItTouches) {
   EXPECT_EQ(mean_velocity(*solver).norm(), 0.0);
   run_until(*solver, 0.08);
   EXPECT_GT(mean_velocity(*solver).x(), 0.45);
+}
+
+/// A particle at rest, and the contacts that it makes act.
+class TouchOfAParticle {
+ public:
+  TouchOfAParticle(const Obstacle& obstacle, const Vec3& position)
+      : model_(with_obstacle(obstacle)), state_(model_), touch_(Basis::quadratic) {
+    ParticleBatch particle;
+    particle.positions = {position};
+    particle.mass = model_.options.snows[0].density * 0.004 * 0.004;
+    std::vector<BlockKey> blocks;
+    state_.append(model_, particle, blocks);
+    state_.arrange(model_, blocks);
+    touch_.forget(model_, state_);
+    update(0.0);
+  }
+
+  void move_by_cells(double along_x) {
+    state_.particles.cell[0][0] += along_x;
+    update(along_x * dx);
+  }
+  void wait_until(double time) {
+    state_.totals.time = time;
+    state_.follow_obstacles(model_, 1);
+    update(0.0);
+  }
+
+  /// The x (cells) of the nodes that act, in ascending order, each once.
+  std::set<double> acting_nodes() {
+    std::set<double> nodes;
+    for (std::size_t g = 0; g < state_.layout.grid_blocks.size(); ++g)
+      for (int c = 0; c < state_.contacts.count(g); ++c) {
+        const Contact<double>& contact = state_.contacts.of_block(g)[c];
+        const auto block = block_coord<2>(state_.layout.grid_blocks[g]);
+        if (contact.acts) nodes.insert(std::round(node_position<2>(block, contact.node, 1.0)[0]));
+      }
+    return nodes;
+  }
+
+ private:
+  static constexpr double dx = 0.01;
+  static Options with_obstacle(const Obstacle& obstacle) {
+    Options o = touching_options({2, Precision::float64}, dx);
+    o.obstacles = {obstacle};
+    return o;
+  }
+  void update(double moved) { touch_.update(model_, state_, moved, 1); }
+
+  Model<double, 2> model_;
+  State<double, 2> state_;
+  Touch<double, 2> touch_;
+};
+
+TEST(Touch, TheNodesFollowTheSnow) {
+  TouchOfAParticle snow(fixed(geometry::make_plane(Vec3::Zero(), Vec3::UnitZ()), Condition::slip),
+                        Vec3(0.022, 0, 0.001));
+  EXPECT_EQ(snow.acting_nodes(), (std::set<double>{1, 2, 3}));
+  snow.move_by_cells(1.0);
+  EXPECT_EQ(snow.acting_nodes(), (std::set<double>{2, 3, 4}));
+}
+
+TEST(Touch, AnObstacleComesToSnowAtRest) {
+  Obstacle wall =
+      fixed(geometry::make_box(Vec3(-0.05, 0, 0), Vec3(0.1, 1, 1)), Condition::separate);
+  geometry::MotionSpec motion;
+  motion.velocity = Vec3(0.5, 0, 0);
+  wall.motion.emplace(motion);
+  TouchOfAParticle snow(wall, Vec3(0.022, 0, 0.1));
+  EXPECT_TRUE(snow.acting_nodes().empty());
+  snow.wait_until(0.03);
+  EXPECT_TRUE(snow.acting_nodes().empty());
+  snow.wait_until(0.042);
+  EXPECT_FALSE(snow.acting_nodes().empty());
 }
 
 template <int D>
