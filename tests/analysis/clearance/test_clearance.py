@@ -382,7 +382,7 @@ def test_the_answer_states_how_many_winters_count(tmp_path, capsys):
     assert main([*command, *ranges, "--heights", "0.5,2", "-o", str(out)]) == 0
     shown = " ".join(capsys.readouterr().out.split())
     assert "a scenario, not a statistic, because only 1 of 3 winters counts. In it, the" in shown
-    assert "the intervals contain the error of the grid, a factor of up to 1.35 on the" in shown
+    assert "the intervals contain the error of the grid, a factor of up to 1.62 on the" in shown
     assert "left out are the winters" in shown and "2001/02 to 2002/03 (0 %)" in shown
     assert "Where the snow comes from" in shown and "new snow" in shown
     summary = json.loads((out / "clearance.json").read_text())

@@ -18,12 +18,11 @@ from snowshed.analysis.clearance import (
     required_clearance,
     split_winters,
 )
-from snowshed.analysis.clearance.answer import required_height
 from snowshed.analysis.clearance.answer_text import panel_name, warnings
 from snowshed.analysis.clearance.grid_error import choose_grid, recorded_grid_error
 from snowshed.analysis.clearance.panel_snow import mean_months
 from snowshed.analysis.clearance.report import write_report
-from snowshed.analysis.clearance.seasons import SeasonOutcome, cases_of
+from snowshed.analysis.clearance.seasons import SeasonOutcome, cases_of, required_height
 from snowshed.analysis.clearance.tables import write_tables
 from snowshed.analysis.clearance.trend import trend_of
 from snowshed.base.notes import SnowshedNote
@@ -158,9 +157,9 @@ def test_the_error_of_the_grid_is_told_although_the_first_panel_sheds_no_snow(re
     fence = PanelDesign(0.6, 90.0)
     first = required_clearance(fence, WINTERS, [0.45], tmp_path / "runs", ranges=KNOWN)
     assert not first.is_simulated
-    told = [note for note in warnings([first, result]) if "error of the grid" in note]
-    assert len(told) == 1
-    assert told[0].startswith(f"{panel_name(result)}: ")
+    notes = [note for note in warnings([first, result]) if "error of the grid" in note]
+    assert len(notes) == 1
+    assert notes[0].startswith(f"{panel_name(result)}: ")
 
 
 def test_an_accuracy_chooses_scheme_and_cells_of_the_same_slabs(tmp_path, capsys):

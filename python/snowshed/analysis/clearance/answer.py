@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from operator import attrgetter
 from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
@@ -24,7 +23,13 @@ from snowshed.analysis.clearance.panel_design import (
     check_base,
 )
 from snowshed.analysis.clearance.panel_snow import PanelSnow, mean_months
-from snowshed.analysis.clearance.seasons import SeasonCase, SeasonOutcome, cases_of
+from snowshed.analysis.clearance.seasons import (
+    SeasonCase,
+    SeasonOutcome,
+    cases_of,
+    height_key,
+    required_height,
+)
 from snowshed.analysis.clearance.statistics import CauseShare, Level, RequiredHeights
 from snowshed.analysis.clearance.winters import Winter
 from snowshed.base.arguments import checked
@@ -48,8 +53,6 @@ if TYPE_CHECKING:
 STUDY = "clearance"
 #: Snow up to this depth counts as none, m.
 FLAT = 0.01
-
-height_key = attrgetter("height")
 
 
 @dataclass(frozen=True)
@@ -265,37 +268,6 @@ class ClearanceResult:
                     }
                 )
         return pd.DataFrame(rows)
-
-
-def required_height(outcomes: Sequence[SeasonOutcome]) -> float:
-    """Return the lowest height of the lower edge that the snow does not reach, m.
-
-    The height is interpolated between the highest edge that the snow reaches and the next one. It
-    is the middle between them if the snow touches the panel although its crest is lower than the
-    edge. Beyond the simulated heights, it follows from the margin at the nearest of them.
-
-    Examples
-    --------
-    >>> from snowshed.season.panel_contact import PanelContact
-    >>> touched = PanelContact("2024-12-24", 1, "crest")
-    >>> required_height([SeasonOutcome(1.0, -0.1, touched), SeasonOutcome(2.0, 0.9, None)])
-    1.1
-    >>> lying = PanelContact("2024-12-24", 1, "slab")
-    >>> required_height([SeasonOutcome(1.0, 0.0, lying), SeasonOutcome(2.0, 0.9, None)])
-    1.5
-    """
-    reached = [outcome for outcome in outcomes if outcome.contact is not None]
-    clear = [outcome for outcome in outcomes if outcome.contact is None]
-    if not clear:
-        return max(reached, key=height_key).height - reached[-1].margin
-    above = min(clear, key=height_key)
-    if not reached:
-        return max(above.height - above.margin, 0.0)
-    below = max(reached, key=height_key)
-    if below.is_censored:
-        return 0.5 * (below.height + above.height)
-    part = -below.margin / (above.margin - below.margin)
-    return below.height + part * (above.height - below.height)
 
 
 @checked
