@@ -139,7 +139,7 @@ def _tables() -> Mapping[str, pd.DataFrame]:
     """Return the recorded errors of each scheme."""
     import pandas as pd
 
-    return dict(tuple(pd.read_csv(TABLE).groupby(SCHEME)))
+    return {str(scheme): rows for scheme, rows in pd.read_csv(TABLE).groupby(SCHEME)}
 
 
 def _error(mechanisms: Mechanisms, cells: float, slide_offs: int) -> GridError:
