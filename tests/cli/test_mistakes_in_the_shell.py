@@ -72,6 +72,9 @@ COMMANDS = {
         (*CLEARANCE, "--range", "friction=0.3:0.5", "--range", "friction=0.4", *DRY),
         "--range: the name friction is given twice",
     ),
+    "heights in cm": (
+        (*CLEARANCE, "--heights", "100,150", *DRY), "needed: at least one from 0 to 100 m"
+    ),
     "a tilt twice": ((*CLEARANCE, "--tilt", "50,50", *DRY), "equal numbers count once"),
     "a condition twice": (
         ("regress", "t.csv", "--where", "seed=1", "--where", "seed=2", *NEW),
@@ -139,6 +142,8 @@ COMMANDS = {
     "maps of a stack": (("maps", "run"), 'the method "mpm" has no maps'),
     "loads that were not recorded": (("loads", "run"), "output.forces"),
     "further slides": (("extend", "slide", "--events", 1, *NEW), "single event"),
+    "folder for a record": (("repeat", "run", *NEW), "a folder; give run/run.json"),
+    "folder without a record": (("repeat", ".", *NEW), "a folder; give the record of a result"),
     "record that is none": (("repeat", "upper.json", *NEW), "no record of a run"),
     "script that is not there": (("lua", "missing.lua", *NEW), "missing.lua"),
     "required script that is not there": (

@@ -319,19 +319,12 @@ def required_clearance(
     StudyError, StudyInterrupted
         As from `Study.compute`; the same call resumes.
     """
-    candidates = sorted(set(heights))
-    if not candidates or not 0.0 < candidates[0] <= candidates[-1] <= 100.0:
-        raise InputError(f"heights: {candidates}; needed: at least one from 0 to 100 m")
     ranges = ranges or SnowRanges()
-    check_base(scene or {})
+    search = _search(design, winters, heights, ranges, settings, scene)
     own = settings is not None and settings.friction != SeasonSettings().friction
     if own and "friction" in ranges.spans:
         drawn = f"because {argument('ranges', option='range')} draw it"
         issue_note(f"`settings=`: its friction is not used, {drawn}")
-    values = ranges.draw(len(winters))
-    cases = cases_of(design, winters, values, settings or SeasonSettings(), scene or {})
-    check_rows(design.rows, cases[0].panel_scene(candidates[0]).data)
-    search = _Search(cases, candidates)
     while search.undecided():
         runs = search.runs()
         compute_runs(
@@ -344,12 +337,12 @@ def required_clearance(
         raise InputError(f"{folder}: all runs failed; see its table")
     return ClearanceResult(
         design,
-        candidates,
-        [cases[number] for number in complete],
+        search.heights,
+        [search.cases[number] for number in complete],
         [sorted(search.outcomes[number], key=height_key) for number in complete],
         ranges,
-        len(cases) - len(complete),
-        list(dict.fromkeys(cases[number].winter.name for number in complete)),
+        len(search.cases) - len(complete),
+        list(dict.fromkeys(search.cases[number].winter.name for number in complete)),
         winter_list,
     )
 
@@ -366,14 +359,37 @@ def expected_duration(
 ) -> tuple[float, int]:
     """Return the expected time of an answer, s, and its number of seasons.
 
-    The parameters are those of `required_clearance`.
+    The parameters and the errors are those of `required_clearance`.
     """
-    values = (ranges or SnowRanges()).draw(len(winters))
-    cases = cases_of(design, winters, values, settings or SeasonSettings(), scene or {})
-    search = _Search(cases, sorted(set(heights)))
+    search = _search(design, winters, heights, ranges or SnowRanges(), settings, scene)
     scenes = [run.scene for run in search.runs().values()]
     seconds = duration_of_runs(scenes, jobs=jobs)[0] if scenes else 0.0
     return seconds * search.rounds, round(len(scenes) * search.rounds)
+
+
+def _search(
+    design: PanelDesign,
+    winters: Sequence[Winter],
+    heights: Sequence[float],
+    ranges: SnowRanges,
+    settings: Optional[SeasonSettings],
+    scene: Optional[Mapping[str, JsonValue]],
+) -> _Search:
+    """Return the search of an answer, before any run.
+
+    Raises
+    ------
+    InputError
+        If a height is outside the allowed range, or the scene or the rows are wrong.
+    """
+    candidates = sorted(set(heights))
+    if not candidates or not 0.0 < candidates[0] <= candidates[-1] <= 100.0:
+        raise InputError(f"heights: {candidates}; needed: at least one from 0 to 100 m")
+    check_base(scene or {})
+    values = ranges.draw(len(winters))
+    cases = cases_of(design, winters, values, settings or SeasonSettings(), scene or {})
+    check_rows(design.rows, cases[0].panel_scene(candidates[0]).data)
+    return _Search(cases, candidates)
 
 
 class _Search:

@@ -19,6 +19,9 @@ from snowshed.cli.options.common import (
 from snowshed.io.input_file import read_input
 from snowshed.results.computed_record import CLEARANCE, SEASON, record_kind
 
+#: Names of records; that of a study has the study's name.
+RECORDS = ("clearance.json", "season.json", "run.json")
+
 
 @click.command()
 @click.argument("record", type=PATH)
@@ -46,6 +49,7 @@ def repeat(
       snowshed repeat results/run.json -o again
       snowshed repeat study/cohesion-and-slope.json -o again
     """  # noqa: D301 - click wants the control character
+    _check_is_file(record)
     kind = record_kind(read_input(record))
     if kind is None:
         _repeat_run(record, folder, resume=resume, dry_run=dry_run, quiet=quiet)
@@ -62,6 +66,15 @@ def repeat(
             print_study_cost(study, jobs)
         else:
             compute_study(study, folder, quiet=quiet, jobs=jobs)
+
+
+def _check_is_file(record: Path) -> None:
+    """Raise an InputError for a folder, which names the records in it."""
+    if not record.is_dir():
+        return
+    records = [name for name in RECORDS if (record / name).is_file()]
+    advice = f"give {record / records[0]}" if records else "give the record of a result"
+    raise InputError(f"{record}: a folder; {advice}")
 
 
 def _repeat_run(record: Path, folder: Path, *, resume: bool, dry_run: bool, quiet: bool) -> None:
