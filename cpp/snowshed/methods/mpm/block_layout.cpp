@@ -47,6 +47,15 @@ BlockLayout<D> BlockLayout<D>::rearranged(std::vector<BlockKey> blocks,
 }
 
 template <int D>
+typename BlockLayout<D>::Neighbours BlockLayout<D>::nodes_around(std::int32_t grid_block) const {
+  Neighbours around;
+  for_each_neighbour<D>(grid_blocks[std::size_t(grid_block)], [&](int n, BlockKey key) {
+    around[std::size_t(n)] = find_block(grid_blocks, key);
+  });
+  return around;
+}
+
+template <int D>
 void BlockLayout<D>::connect(int threads) {
   grid_blocks.reserve(particle_blocks.size() * 4);
   for (BlockKey key : particle_blocks)

@@ -84,6 +84,10 @@ struct BlockLayout {
   BlockLayout rearranged(std::vector<BlockKey> blocks, std::vector<std::int32_t> starts,
                          int threads) const;
 
+  /// The blocks of nodes around one of them, of the same field, in lexicographic order; -1 if there
+  /// is none.
+  Neighbours nodes_around(std::int32_t grid_block) const;
+
  private:
   void connect(int threads);
   void find_overlaps();

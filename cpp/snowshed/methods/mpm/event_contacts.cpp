@@ -37,7 +37,9 @@ void EventContacts<T, D>::forget(const Model<T, D>& model, const State<T, D>& st
   travel_.assign(pairs_.size(), 0.0);
   fastest_.resize(layout.overlap_blocks.size());
   if (pairs_.empty()) return;
-  find_nodes_around(layout);
+  nodes_around_.clear();
+  for (const std::int32_t g : layout.overlap_blocks)
+    nodes_around_.push_back(layout.nodes_around(g));
   radius_.resize(state.particles.size());
   const double dx = model.options.settings.dx;
   parallel_for_static(std::ptrdiff_t(radius_.size()), threads, [&](std::ptrdiff_t i) {
@@ -119,21 +121,6 @@ double EventContacts<T, D>::fastest_around(const State<T, D>& state, const Grid<
     if (b >= 0 && !state.sleep.states()[b].asleep)
       squared = std::max(squared, grid.block_stats[b].max_speed_squared);
   return std::sqrt(squared);
-}
-
-template <class T, int D>
-void EventContacts<T, D>::find_nodes_around(const BlockLayout<D>& layout) {
-  nodes_around_.clear();
-  for (const std::int32_t g : layout.overlap_blocks) {
-    const BlockKey key = layout.grid_blocks[g];
-    auto& around = nodes_around_.emplace_back();
-    int k = 0;
-    for_each_index(filled<D>(-1), filled<D>(2), [&](const std::array<int, D>& offset) {
-      BlockCoord<D> coord = block_coord<D>(key);
-      for (int d = 0; d < D; ++d) coord[d] += offset[d];
-      around[k++] = find_block(layout.grid_blocks, block_key<D>(coord, field_of(key)));
-    });
-  }
 }
 
 /// The masses at the nodes of a block of an overlap and of the margin around it.

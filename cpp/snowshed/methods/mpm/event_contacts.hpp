@@ -63,7 +63,6 @@ class EventContacts {
   void find_due(const State<T, D>& state, const Grid<T, D>& grid, double dx);
   double fastest_around(const State<T, D>& state, const Grid<T, D>& grid,
                         std::int32_t grid_block) const;
-  void find_nodes_around(const BlockLayout<D>& layout);
   std::vector<T> masses_of(Grid<T, D>& grid, std::int32_t block) const;
   void find_reach(const Model<T, D>& model, const State<T, D>& state, Grid<T, D>& grid,
                   std::int32_t block, const SharedNodes<T, D>& nodes, ReachMap<T, D>& reach) const;

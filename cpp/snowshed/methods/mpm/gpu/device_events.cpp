@@ -9,20 +9,6 @@ namespace {
 using Layout = BlockLayout<3>;
 using Around = Layout::Neighbours;
 
-/// The 27 blocks of nodes around a block, in lexicographic order, or -1.
-Around nodes_around(const Layout& layout, std::int32_t block) {
-  const BlockKey key = layout.grid_blocks[std::size_t(block)];
-  Around around;
-  for (int k = 0; k < neighbours; ++k) {
-    BlockCoord<3> c = block_coord<3>(key);
-    c[0] += k / 9 - 1;
-    c[1] += k / 3 % 3 - 1;
-    c[2] += k % 3 - 1;
-    around[std::size_t(k)] = find_block(layout.grid_blocks, block_key<3>(c, field_of(key)));
-  }
-  return around;
-}
-
 /// Calls f(contact, node of the device) for each node of a pair. The contact names the node.
 template <class F>
 void for_each_node(const Layout& layout, const std::vector<EventPair>& pairs,
@@ -82,7 +68,7 @@ void DeviceEvents::connect(const HostState& state) {
   first_pair_.upload(first_pair);
   std::vector<std::int32_t> nodes, particles, all(host_pairs_.size());
   for (const std::int32_t g : layout.overlap_blocks) {
-    const Around of_nodes = nodes_around(layout, g),
+    const Around of_nodes = layout.nodes_around(g),
                  &of_particles = layout.around_nodes[std::size_t(g)];
     nodes.insert(nodes.end(), of_nodes.begin(), of_nodes.end());
     particles.insert(particles.end(), of_particles.begin(), of_particles.end());
