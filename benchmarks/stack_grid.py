@@ -2,14 +2,14 @@
 
 Usage: python -m benchmarks.stack_grid run FOLDER [--case lab2d] [--seeds 12]
        [--cells 0.02 0.01 0.005]
-       python -m benchmarks.stack_grid time [--cells 0.02 0.01 0.005 0.0025]
+       python -m benchmarks.stack_grid time [--case lab2d] [--seeds 3] [--cells 0.02 0.01 0.005]
        python -m benchmarks.stack_grid draw
 
 `run` makes the stacks of the record (hours on 0.25 cm cells) and appends them to
-benchmarks/results/stack-grid.csv. `time` runs each grid once, scheme after scheme on one thread,
-and keeps the times in stack-grid-times.csv; nothing else should run on the machine meanwhile.
-`draw` draws errors over run time into docs/images/stack-grid.png, and prints the deviations. It
-also writes the table from which `snowshed clearance` takes the error of the grid.
+benchmarks/results/stack-grid.csv. `time` runs each seed on each grid, scheme after scheme on one
+thread, and appends the times to stack-grid-times.csv; nothing else should run on the machine
+meanwhile. `draw` draws errors over run time into docs/images/stack-grid.png, and prints the
+deviations. It also writes the table from which `snowshed clearance` takes the error of the grid.
 """
 
 from __future__ import annotations
@@ -44,8 +44,8 @@ QUANTITIES = {
     "length_m": "length",
     "centre_height_m": "height of the centre of mass",
 }
-#: Distance of a label from its point, points.
-LABEL_ABOVE = {"thesis": 7, "objective": -15}
+#: Cases of the picture, a row each, with the title of the row.
+ROWS = {"lab2d": "2D, five slide-offs", "lab3d": "3D, two slide-offs"}
 #: Columns of the record, with the fields of a panel.
 PANEL = {"tilt": "tilt", "panel_length": "length", "friction": "friction"}
 COLUMNS = (
@@ -73,8 +73,6 @@ CASES = {
 }
 #: Columns that identify a stack, for any size of cells.
 GROUP_COLUMNS = ("case", "scheme", "tilt", "panel_length", "friction", "event")
-#: Size of cells whose mean stacks count as exact, m.
-REFERENCE_CELLS = 0.0025
 
 
 def scene_of(scheme: str, cells: float, case: str = "lab2d") -> Scene:
@@ -104,19 +102,22 @@ def run(folder: Path, case: str, seeds: int, all_cells: Sequence[float]) -> None
             append_rows(rows[list(COLUMNS)], STACKS)
 
 
-def measure_times(all_cells: Sequence[float]) -> None:
-    """Run each grid with each scheme in turn, and write the times to a file."""
-    rows = []
+def measure_times(case: str, seeds: int, all_cells: Sequence[float]) -> None:
+    """Run each seed on each grid with each scheme in turn, and append the times to a file."""
     for cells in all_cells:
-        for scheme in SCHEMES:
-            with tempfile.TemporaryDirectory() as folder:
-                Study.product(scene_of(scheme, cells), {"panel.tilt": [50.0]}).run(
-                    folder, threads=1
-                )
-                wall = float(read_table(folder, timing=True)["run_wall_s"].max())
-            print(f"{scheme} {cells} m: {wall:.2f} s", flush=True)
-            rows.append({"scheme": scheme, "dx": cells, "wall_s": wall})
-    append_rows(pd.DataFrame(rows), TIMES)
+        for seed in range(1, seeds + 1):
+            for scheme in SCHEMES:
+                wall = _wall_time(scene_of(scheme, cells, case), seed)
+                print(f"{case} {scheme} {cells} m, seed {seed}: {wall:.2f} s", flush=True)
+                row = {"case": case, "scheme": scheme, "dx": cells, "seed": seed, "wall_s": wall}
+                append_rows(pd.DataFrame([row]), TIMES)
+
+
+def _wall_time(scene: Scene, seed: int) -> float:
+    """Return the time of a run on the panel of 50 degrees, s."""
+    with tempfile.TemporaryDirectory() as folder:
+        Study.product(scene, {"panel.tilt": [50.0]}, seeds=[seed]).run(folder, threads=1)
+        return float(read_table(folder, timing=True)["run_wall_s"].max())
 
 
 def deviations() -> pd.DataFrame:
@@ -152,49 +153,82 @@ def height_errors(table: pd.DataFrame) -> pd.DataFrame:
     return coarse.rename(columns={"event": "slide_offs"})[list(HEIGHT_COLUMNS)]
 
 
+def work_precision(table: pd.DataFrame) -> pd.DataFrame:
+    """Return the errors of stacks below the panel of 50 degrees and friction 0.3, with run times.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Deviations, as `deviations` returns them.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row for each case, scheme and size of cells but the finest. Columns are the mean run time
+        `wall_s` and, for each quantity, the root mean square of its deviations over the events.
+    """
+    lab = table[(table["tilt"] == 50) & (table["friction"] == 0.3)]
+    grid = ["case", "scheme", "dx"]
+    coarse = lab[lab["dx"] > lab.groupby(grid[:2])["dx"].transform("min")]
+    deviation = coarse.set_index(grid)[[f"{name}_off" for name in QUANTITIES]]
+    errors = (deviation**2).groupby(grid).mean() ** 0.5
+    errors.columns = pd.Index(QUANTITIES)
+    times = pd.read_csv(TIMES).groupby(grid)["wall_s"].mean()
+    return errors.join(times, how="inner").reset_index()
+
+
+def pareto_front(time: pd.Series, error: pd.Series) -> pd.Index:
+    """Return the rows that no other row beats in both time and error, from short times to long."""
+    by_time = error[time.sort_values().index]
+    return by_time.index[by_time < by_time.cummin().shift(fill_value=float("inf"))]
+
+
 def draw() -> None:
     """Draw the error of stacks over the time of a run, and write the errors of heights."""
     table = deviations()
     print(table.round(4).to_string(index=False))
     write_csv(height_errors(table), HEIGHTS)
-    lab = table[(table["case"] == "lab2d") & (table["tilt"] == 50) & (table["friction"] == 0.3)]
-    times = pd.read_csv(TIMES).groupby(["scheme", "dx"])["wall_s"].last()
-    figure = blank_figure(9.0, 3.4)
-    for k, (name, label) in enumerate(QUANTITIES.items()):
-        _draw_errors(figure.add_subplot(1, 3, k + 1), lab, times, name, label)
+    precision = work_precision(table)
+    print(precision.round(4).to_string(index=False))
+    figure = blank_figure(9.0, 6.2)
+    for row, (case, title) in enumerate(ROWS.items()):
+        points = precision[precision["case"] == case]
+        for column, (name, label) in enumerate(QUANTITIES.items()):
+            axes = figure.add_subplot(2, 3, 3 * row + column + 1)
+            _draw_errors(axes, points, name)
+            axes.set_title(f"{title}: {label}", fontsize=9)
     save_figure(figure, PICTURE)
 
 
-def _draw_errors(axes: Axes, lab: pd.DataFrame, times: pd.Series, name: str, label: str) -> None:
-    coarse = lab[lab["dx"] > REFERENCE_CELLS]
-    errors = coarse.assign(square=coarse[f"{name}_off"] ** 2).groupby(["scheme", "dx"])["square"]
-    error = 100 * errors.mean() ** 0.5
+def _draw_errors(axes: Axes, points: pd.DataFrame, name: str) -> None:
+    percent = 100 * points[name]
+    front = pareto_front(points["wall_s"], percent)
+    axes.loglog(
+        points["wall_s"][front], percent[front], color="0.8", linewidth=6, label="Pareto front"
+    )
     for scheme in SCHEMES:
-        errors_of_scheme = error[scheme]
+        of_scheme = points["scheme"] == scheme
         axes.loglog(
-            times[scheme][errors_of_scheme.index],
-            errors_of_scheme,
+            points["wall_s"][of_scheme],
+            percent[of_scheme],
             "o-",
             color=COLOURS[scheme],
             label=scheme,
         )
-        for cells, value in errors_of_scheme.items():
-            axes.annotate(
-                f"{100 * cells:g} cm",
-                (times[scheme][cells], value),
-                textcoords="offset points",
-                xytext=(0, LABEL_ABOVE[scheme]),
-                ha="center",
-                fontsize=8,
-            )
-    axes.set_xlabel("time of five slide-offs, s")
-    axes.set_ylabel("deviation, %")
-    axes.set_title(label, fontsize=10)
-    axes.set_xticks([1, 2, 5, 10, 20, 50], ["1", "2", "5", "10", "20", "50"])
-    axes.set_yticks([2, 5, 10, 20, 50, 100], ["2", "5", "10", "20", "50", "100"])
-    axes.set_xlim(0.8, 60)
-    axes.set_ylim(2, 200)
+    for row in points.index:
+        axes.annotate(
+            f"{100 * points['dx'][row]:g} cm",
+            (points["wall_s"][row], percent[row]),
+            textcoords="offset points",
+            xytext=(7, 3),
+            fontsize=8,
+        )
+    axes.set_xlabel("run time, s")
+    axes.set_ylabel("deviation from the finest grid, %")
+    axes.set_yticks([1, 2, 5, 10, 20, 50, 100], ["1", "2", "5", "10", "20", "50", "100"])
+    axes.set_ylim(1, 200)
     axes.minorticks_off()
+    axes.margins(x=0.2)
     axes.legend(fontsize=8, frameon=False)
 
 
@@ -208,15 +242,15 @@ def main() -> None:
     running.add_argument("--seeds", type=int, default=12)
     running.add_argument("--cells", type=float, nargs="+", default=[0.02, 0.01, 0.005])
     timing = commands.add_parser("time")
-    timing.add_argument(
-        "--cells", type=float, nargs="+", default=[0.02, 0.01, 0.005, REFERENCE_CELLS]
-    )
+    timing.add_argument("--case", choices=CASES, default="lab2d")
+    timing.add_argument("--seeds", type=int, default=3)
+    timing.add_argument("--cells", type=float, nargs="+", default=[0.02, 0.01, 0.005])
     commands.add_parser("draw")
     chosen = parser.parse_args()
     if chosen.command == "run":
         run(chosen.folder, chosen.case, chosen.seeds, chosen.cells)
     elif chosen.command == "time":
-        measure_times(chosen.cells)
+        measure_times(chosen.case, chosen.seeds, chosen.cells)
     else:
         draw()
 

@@ -10,8 +10,13 @@ import pytest
 from conftest import tiny_scene
 from helpers.interrupted_runs import interrupt_at
 
-from snowshed import run_events
+from snowshed import Results, read_events, run_events
+from snowshed.analysis.loads.report import write_loads
+from snowshed.base.notes import ResultNote
 from snowshed.cli.main import main
+from snowshed.io.run_files import unfinished_note
+from snowshed.results.grid_export import export_grids
+from snowshed.results.video import write_video
 from snowshed.study.errors import resume_study_command
 
 
@@ -129,6 +134,20 @@ def test_other_uses_of_an_unfinished_run_are_noted(unfinished, tmp_path, capsys)
     (tmp_path / "copy/run.json").unlink()
     assert snowshed("loads", tmp_path / "copy", "-o", tmp_path / "loads") == 0
     assert "without run.json, so its run may not be finished" in capsys.readouterr().err
+
+
+def test_python_notes_that_a_run_is_not_finished(unfinished, tmp_path):
+    uses = (
+        Results,
+        read_events,
+        lambda folder: export_grids(folder, tmp_path / "grids"),
+        lambda folder: write_video(folder, tmp_path / "film.gif", seconds=0.2),
+        lambda folder: write_loads([Results(folder)], tmp_path),
+    )
+    for use in uses:
+        with pytest.warns(ResultNote, match="not finished") as notes:
+            use(unfinished)
+        assert [str(note.message) for note in notes].count(unfinished_note(unfinished)) == 1
 
 
 def test_commands_in_messages_quote_the_names_of_folders(tmp_path, capsys):

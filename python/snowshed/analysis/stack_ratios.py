@@ -10,7 +10,6 @@ from snowshed.base.arguments import checked
 from snowshed.base.formatting import plural
 from snowshed.base.notes import ResultNote, issue_note
 from snowshed.base.paths import PathLike
-from snowshed.io.run_files import issue_unfinished_note
 from snowshed.results.folder import read_events
 from snowshed.scene.scene import ResolvedScene
 
@@ -53,7 +52,7 @@ def compare_folders(first: PathLike, second: PathLike) -> pd.DataFrame:
     InputError
         If they are not a 3D and a 2D run, or hold no results.
     """
-    tables = {_dimension(folder): _events(folder) for folder in (first, second)}
+    tables = {_dimension(folder): read_events(folder) for folder in (first, second)}
     if len(tables) < 2:
         raise InputError(f"{first}, {second}: both {next(iter(tables))}D; give a 3D and a 2D run")
     return dimension_ratio(tables[3], tables[2])
@@ -77,14 +76,7 @@ def height_ratio(first: PathLike, second: PathLike) -> pd.DataFrame:
     InputError
         If a folder holds no results.
     """
-    return _ratio(_events(first), _events(second), "height_1_m", "height_2_m")
-
-
-def _events(folder: PathLike) -> pd.DataFrame:
-    """Return the events of a results folder, with a note if its run is not finished."""
-    events = read_events(folder)
-    issue_unfinished_note(Path(folder))
-    return events
+    return _ratio(read_events(first), read_events(second), "height_1_m", "height_2_m")
 
 
 def _ratio(

@@ -48,7 +48,12 @@ from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import Table, read_csv
 from snowshed.io.input_file import read_input
 from snowshed.io.json_file import read_object
-from snowshed.io.run_files import check_run_file, origin_of_record, read_run_record
+from snowshed.io.run_files import (
+    check_run_file,
+    issue_unfinished_note,
+    origin_of_record,
+    read_run_record,
+)
 from snowshed.scene.resolved import ResolvedScene
 from snowshed.snow.stack.measure import StackMeasure
 from snowshed.snow.stack.quantities import MEASURES, QUANTITIES
@@ -271,7 +276,7 @@ def read_events(folder: PathLike) -> pd.DataFrame:
     """Read the table of events from a results folder.
 
     Its `attrs` have the scene, the version and the build of snowshed that made it, if known, and
-    the units of its columns.
+    the units of its columns. A note says if the run is not finished.
 
     Raises
     ------
@@ -280,6 +285,7 @@ def read_events(folder: PathLike) -> pd.DataFrame:
         wrote, or scene.json is not the scene of the run.
     """
     table = event_table(Path(folder))
+    issue_unfinished_note(Path(folder))
     record = read_run_record(Path(folder))
     if (Path(folder) / SCENE).is_file():
         table.attrs["scene"] = read_scene(folder).json

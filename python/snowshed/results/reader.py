@@ -18,7 +18,7 @@ from snowshed.base.units import unit_of_column
 from snowshed.io.csv_table import read_csv
 from snowshed.io.film import FILM, Film
 from snowshed.io.json_file import read_object
-from snowshed.io.run_files import check_run_file, read_run_record
+from snowshed.io.run_files import check_run_file, issue_unfinished_note, read_run_record
 from snowshed.io.vtk.pvd import read_series
 from snowshed.io.vtk.vtp import read_particles
 from snowshed.methods.registry import method_of
@@ -51,9 +51,9 @@ class Results(MethodResults):
     `forces`. An attribute that the method of the scene does not have, or that the run did not
     write, raises an InputError that is also an AttributeError: `hasattr` returns False.
 
-    Files are read on access. Every table has a dict of units by column in ``attrs["units"]``, every
-    variable of a Dataset its ``units`` and ``long_name`` in `attrs`. A damaged file raises
-    InputError.
+    A note says if the run is not finished. Files are read on access. Every table has a dict of
+    units by column in ``attrs["units"]``, every variable of a Dataset its ``units`` and
+    ``long_name`` in `attrs`. A damaged file raises InputError.
 
     Parameters
     ----------
@@ -82,12 +82,13 @@ class Results(MethodResults):
         self.folder = Path(folder)
         if not (self.folder / "scene.json").is_file():
             raise InputError(f"{folder}: no results; it holds no scene.json")
+        issue_unfinished_note(self.folder)
 
     @classmethod
     def of_run(cls, folder: PathLike, scene: ResolvedScene) -> Results:
         """Return the results of a run of this process, whose scene is in memory."""
-        results = cls(folder)
-        vars(results)["scene"] = scene
+        results = cls.__new__(cls)
+        vars(results).update(folder=Path(folder), scene=scene)
         return results
 
     @cached_property

@@ -18,7 +18,6 @@ from snowshed.base.paths import PathLike
 from snowshed.base.progress import Progress, Reporter
 from snowshed.io.atomic import replacing
 from snowshed.io.film import Film, FilmFrame
-from snowshed.io.run_files import issue_unfinished_note
 from snowshed.plot.film_picture import FilmPainter
 from snowshed.plot.film_summary import Colouring, FilmSummary, summarise_film
 from snowshed.results.view import shown_results, view_content
@@ -80,7 +79,6 @@ def write_video(
     encoder = require("imageio_ffmpeg", "video", "an MP4 video") if kind == ".mp4" else None
     run = shown_results(results)
     film = run.film
-    issue_unfinished_note(run.folder)
     summary = summarise_film(film)
     colouring = _colouring(summary, colour)
     content = view_content(run, film)

@@ -15,7 +15,7 @@ from snowshed.base.arguments import checked
 from snowshed.base.paths import PathLike
 from snowshed.io.film import Film
 from snowshed.io.json_file import read_object
-from snowshed.io.run_files import issue_unfinished_note, read_run_record
+from snowshed.io.run_files import read_run_record
 from snowshed.methods.registry import method_of
 from snowshed.plot.caption import scene_caption
 from snowshed.plot.film_page import MeasureLine, ViewContent, write_view_page
@@ -68,7 +68,6 @@ def write_view(results: PathLike, page: Optional[PathLike] = None) -> Path:
     run = shown_results(results)
     file = Path(page) if page is not None else Path(results) / PAGE
     film = run.film
-    issue_unfinished_note(run.folder)
     content = view_content(run, film)
     notes = list(dict.fromkeys([*_season_notes(results), *content.notes]))
     write_view_page(file, film, replace(content, notes=notes))
@@ -131,7 +130,7 @@ def view_content(results: Results, film: Film) -> ViewContent:
     terrain = slide_terrain(scene) if data.get("terrain") else None
     solids, focus = scene_solids(scene, bounds, terrain)
     table = _events(results)
-    lines = [] if table is None else _measures(data, table, results.folder, float(bounds.low[1]))
+    lines = [] if table is None else _measures(results, table, float(bounds.low[1]))
     pressures = _pressures(results.folder, solids, focus)
     return ViewContent(
         title=data.get("title") or method_of(data).title,
@@ -202,12 +201,11 @@ def _notes(results: Results, film: Film) -> list[str]:
     return notes
 
 
-def _measures(
-    data: Mapping[str, Any], table: pd.DataFrame, folder: Path, front: float
-) -> list[MeasureLine]:
+def _measures(results: Results, table: pd.DataFrame, front: float) -> list[MeasureLine]:
     """Return height, length and clearance after each event, if they are measured."""
+    data = results.scene.data
     tilt = ground_tilt(data)
-    profiles = _profiles(folder)
+    profiles = _profiles(results)
     lines = []
     for row in table.to_dict("records"):
         event = int(row["event"])
@@ -247,11 +245,10 @@ def _clearance(
     return MeasureLine(event, (x, 0.0, top), (x, 0.0, edge), label)
 
 
-def _profiles(folder: Path) -> dict[int, np.ndarray]:
-    path = folder / "outline.csv"
-    if not path.is_file():
+def _profiles(results: Results) -> dict[int, np.ndarray]:
+    if not (results.folder / "outline.csv").is_file():
         return {}
-    table = Results(folder).outline
+    table = results.outline
     return {int(str(event)): rows[["x", "z"]].to_numpy() for event, rows in table.groupby("event")}
 
 

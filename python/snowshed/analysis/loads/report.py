@@ -19,7 +19,7 @@ from snowshed.base.arguments import checked
 from snowshed.base.formatting import percent
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
-from snowshed.io.run_files import issue_unfinished_note, unfinished_note
+from snowshed.io.run_files import unfinished_note
 from snowshed.plot.html_page import HtmlTable, Picture, template
 from snowshed.scene.panel_edge import ground_tilt, panel_edge
 
@@ -65,8 +65,6 @@ def write_loads(
     """
     import pandas as pd
 
-    for run in results:
-        issue_unfinished_note(run.folder)
     designs = [Design(run, name) for run, name in zip(results, _names(results))]
     several = len(designs) > 1
     table = pd.concat(
