@@ -27,6 +27,9 @@ IN_3D = {
     "0.016 m.",
     "ξ lowers the stack when there is much snow.": "The effect is half as large again as with "
     "`thesis`, and exceeds the noise.",
+    "The mean rescaled RMSE finds the snow (on synthetic stacks).": "The true snow ranks 13th by "
+    "height and 39th by length. With another seeding, its own lengths deviate by 0.037 m from the "
+    "synthetic stacks; those of all 48 snows deviate by 0.019 to 0.049 m.",
 }
 IN_2D = {
     "The length grows mainly by the head.": "The difference keeps its sign, but the two seedings "
