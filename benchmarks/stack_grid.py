@@ -44,6 +44,8 @@ QUANTITIES = {
     "length_m": "length",
     "centre_height_m": "height of the centre of mass",
 }
+#: Distance of a label from its point, points.
+LABEL_ABOVE = {"thesis": 7, "objective": -15}
 #: Cases of the picture, a row each, with the title of the row.
 ROWS = {"lab2d": "2D, five slide-offs", "lab3d": "3D, two slide-offs"}
 #: Columns of the record, with the fields of a panel.
@@ -191,45 +193,43 @@ def draw() -> None:
     precision = work_precision(table)
     print(precision.round(4).to_string(index=False))
     figure = blank_figure(9.0, 6.2)
-    for row, (case, title) in enumerate(ROWS.items()):
+    axes = figure.subplots(2, 3, sharex="row", sharey=True)
+    for row, (case, title) in zip(axes, ROWS.items()):
         points = precision[precision["case"] == case]
-        for column, (name, label) in enumerate(QUANTITIES.items()):
-            axes = figure.add_subplot(2, 3, 3 * row + column + 1)
-            _draw_errors(axes, points, name)
-            axes.set_title(f"{title}: {label}", fontsize=9)
+        for panel, (name, label) in zip(row, QUANTITIES.items()):
+            _draw_errors(panel, points, name)
+            panel.set_title(label, fontsize=10)
+            panel.set_xlabel("run time, s")
+        row[0].set_ylabel(f"{title}:\ndeviation from the finest grid, %")
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
     save_figure(figure, PICTURE)
 
 
 def _draw_errors(axes: Axes, points: pd.DataFrame, name: str) -> None:
-    percent = 100 * points[name]
-    front = pareto_front(points["wall_s"], percent)
-    axes.loglog(
-        points["wall_s"][front], percent[front], color="0.8", linewidth=6, label="Pareto front"
-    )
+    time, percent = points["wall_s"], 100 * points[name]
     for scheme in SCHEMES:
         of_scheme = points["scheme"] == scheme
         axes.loglog(
-            points["wall_s"][of_scheme],
-            percent[of_scheme],
-            "o-",
-            color=COLOURS[scheme],
-            label=scheme,
+            time[of_scheme], percent[of_scheme], "o-", color=COLOURS[scheme], label=scheme
         )
+    front = pareto_front(time, percent)
+    axes.loglog(
+        time[front], percent[front], color="0.85", linewidth=7, zorder=1, label="Pareto front"
+    )
     for row in points.index:
         axes.annotate(
             f"{100 * points['dx'][row]:g} cm",
-            (points["wall_s"][row], percent[row]),
+            (time[row], percent[row]),
             textcoords="offset points",
-            xytext=(7, 3),
+            xytext=(0, LABEL_ABOVE[points["scheme"][row]]),
+            ha="center",
             fontsize=8,
         )
-    axes.set_xlabel("run time, s")
-    axes.set_ylabel("deviation from the finest grid, %")
-    axes.set_yticks([1, 2, 5, 10, 20, 50, 100], ["1", "2", "5", "10", "20", "50", "100"])
-    axes.set_ylim(1, 200)
+    for axis, ticks in ((axes.xaxis, (0.5, 1, 2, 5, 10, 20)), (axes.yaxis, (2, 5, 10, 20, 50, 100))):
+        axis.set_ticks(ticks, [f"{tick:g}" for tick in ticks])
+    axes.set_xlim(0.4, 20)
+    axes.set_ylim(2, 200)
     axes.minorticks_off()
-    axes.margins(x=0.2)
-    axes.legend(fontsize=8, frameon=False)
 
 
 def main() -> None:
