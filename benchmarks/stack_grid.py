@@ -9,7 +9,7 @@ Usage: python -m benchmarks.stack_grid run FOLDER [--case lab2d] [--seeds 12]
 benchmarks/results/stack-grid.csv. `time` runs each seed on each grid, scheme after scheme on one
 thread, and appends the times to stack-grid-times.csv; nothing else should run on the machine
 meanwhile. `draw` draws errors over run time into docs/images/stack-grid.png, and prints the
-deviations. It also writes the table from which `snowshed clearance` takes the error of the grid.
+deviations. It also writes the table from which commands take the error of the grid.
 """
 
 from __future__ import annotations
@@ -25,8 +25,9 @@ import pandas as pd
 from benchmarks.keeping import RESULTS, append_rows
 from matplotlib.axes import Axes
 
-from snowshed.analysis.clearance.grid_error import COLUMNS as HEIGHT_COLUMNS
-from snowshed.analysis.clearance.grid_error import TABLE as HEIGHTS
+from snowshed.analysis.accuracy.panel_errors import COLUMNS as ERROR_COLUMNS
+from snowshed.analysis.accuracy.panel_errors import ERRORS
+from snowshed.analysis.accuracy.panel_errors import TABLE as ERROR_TABLE
 from snowshed.io.csv_table import write_csv
 from snowshed.plot import INK, blank_figure, save_figure
 from snowshed.scene.scene import Scene
@@ -46,6 +47,8 @@ QUANTITIES = {
 }
 #: Distance of a label from its point, points.
 LABEL_ABOVE = {"thesis": 7, "objective": -15}
+TIME_TICKS = (0.5, 1, 2, 5, 10, 20)  # s
+ERROR_TICKS = (2, 5, 10, 20, 50, 100)  # percent
 #: Cases of the picture, a row each, with the title of the row.
 ROWS = {"lab2d": "2D, five slide-offs", "lab3d": "3D, two slide-offs"}
 #: Columns of the record, with the fields of a panel.
@@ -141,18 +144,25 @@ def deviations() -> pd.DataFrame:
     return table.reset_index()
 
 
-def height_errors(table: pd.DataFrame) -> pd.DataFrame:
-    """Return the deviations of heights in 2D, on all grids but the finest, for `HEIGHTS`."""
-    planar = table[table["case"].map(lambda case: CASES[case].values.get("dimension") == 2)]
+def panel_errors(table: pd.DataFrame) -> pd.DataFrame:
+    """Return the deviations of heights and lengths on all grids but the finest, for `ERROR_TABLE`.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Deviations, as `deviations` returns them.
+    """
     panel = [name for name in GROUP_COLUMNS if name != "event"]
-    finest = planar.groupby(panel)["dx"].transform("min")
-    has_finest = planar.groupby(list(GROUP_COLUMNS))["dx"].transform("min") == finest
-    coarse = planar[has_finest & (planar["dx"] > finest)]
+    finest = table.groupby(panel)["dx"].transform("min")
+    has_finest = table.groupby(list(GROUP_COLUMNS))["dx"].transform("min") == finest
+    coarse = table[has_finest & (table["dx"] > finest)]
     thickness = coarse["case"].map(lambda case: scene_of("thesis", 0.01, case).slab.thickness)
     coarse = coarse.assign(
-        cells=(thickness / coarse["dx"]).round(6), height_error=coarse["height_m_off"].round(6)
+        dimension=coarse["case"].map(lambda case: scene_of("thesis", 0.01, case).dimension),
+        cells=(thickness / coarse["dx"]).round(6),
+        **{column: coarse[f"{name}_m_off"].round(6) for name, column in ERRORS.items()},
     )
-    return coarse.rename(columns={"event": "slide_offs"})[list(HEIGHT_COLUMNS)]
+    return coarse.rename(columns={"event": "slide_offs"})[list(ERROR_COLUMNS)]
 
 
 def work_precision(table: pd.DataFrame) -> pd.DataFrame:
@@ -186,10 +196,10 @@ def pareto_front(time: pd.Series, error: pd.Series) -> pd.Index:
 
 
 def draw() -> None:
-    """Draw the error of stacks over the time of a run, and write the errors of heights."""
+    """Draw the error of stacks over the time of a run, and write the errors of all panels."""
     table = deviations()
     print(table.round(4).to_string(index=False))
-    write_csv(height_errors(table), HEIGHTS)
+    write_csv(panel_errors(table), ERROR_TABLE)
     precision = work_precision(table)
     print(precision.round(4).to_string(index=False))
     figure = blank_figure(9.0, 6.2)
@@ -209,9 +219,7 @@ def _draw_errors(axes: Axes, points: pd.DataFrame, name: str) -> None:
     time, percent = points["wall_s"], 100 * points[name]
     for scheme in SCHEMES:
         of_scheme = points["scheme"] == scheme
-        axes.loglog(
-            time[of_scheme], percent[of_scheme], "o-", color=COLOURS[scheme], label=scheme
-        )
+        axes.loglog(time[of_scheme], percent[of_scheme], "o-", color=COLOURS[scheme], label=scheme)
     front = pareto_front(time, percent)
     axes.loglog(
         time[front], percent[front], color="0.85", linewidth=7, zorder=1, label="Pareto front"
@@ -225,7 +233,7 @@ def _draw_errors(axes: Axes, points: pd.DataFrame, name: str) -> None:
             ha="center",
             fontsize=8,
         )
-    for axis, ticks in ((axes.xaxis, (0.5, 1, 2, 5, 10, 20)), (axes.yaxis, (2, 5, 10, 20, 50, 100))):
+    for axis, ticks in ((axes.xaxis, TIME_TICKS), (axes.yaxis, ERROR_TICKS)):
         axis.set_ticks(ticks, [f"{tick:g}" for tick in ticks])
     axes.set_xlim(0.4, 20)
     axes.set_ylim(2, 200)

@@ -1,8 +1,10 @@
+import pandas as pd
 import pytest
 
 from snowshed import Scene
 from snowshed.analysis.accuracy.measurements import Measured, MeasuredSolution
 from snowshed.analysis.accuracy.mechanisms import Mechanisms
+from snowshed.analysis.accuracy.panel_errors import TABLE, panel_errors
 from snowshed.analysis.accuracy.recorded import load_recorded
 from snowshed.analysis.accuracy.recorded_stacks import CASE, PRESET, PRESET_THICKNESS
 from snowshed.analysis.accuracy.stack_errors import error_sentence, recorded_bias, stack_error
@@ -114,12 +116,44 @@ def test_the_recorded_bias_covers_all_resolved_grids():
     end = " cells in the slab, relative to the finest recorded grid of this scheme"
     thesis = recorded_bias(2, 5)
     assert thesis.startswith("stacks of lab-50 in 2D, event 5, scheme thesis were ")
-    assert thesis.endswith(f"% too high with 2 to 4{end}")
+    assert f"% too high with 2 to 4{end}; all recorded panels (" in thesis
     objective = recorded_bias(2, 5, Mechanisms("objective"))
     assert objective.startswith("stacks of lab-50 in 2D, event 5, scheme objective were ")
     assert f"with 2 to 4{end}" in objective
     assert objective.endswith("; " + Mechanisms("objective").calibration_note)
     assert "event 2, scheme objective" in recorded_bias(3, 5, Mechanisms("objective"))
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_the_sentence_has_the_errors_of_all_recorded_panels(dimension):
+    values = {"dimension": dimension, "numerics.scheme": "objective", "events.count": 2}
+    error = stack_error(scene(**values))
+    low, high = error.panels.spans["height"]
+    assert low < error.bias["height"] < high and low < -0.15 and high > 0.25
+    sentence = error_sentence(scene(**values).resolve())
+    assert f"height from {-100 * low:.0f} % too small to {100 * high:.0f} % too large" in sentence
+
+
+@pytest.mark.parametrize("cells, slide_offs", [(2.0, 1), (2.0, 3), (4.0, 2)])
+def test_stacks_of_fewer_slide_offs_and_coarser_grids_do_not_count(cells, slide_offs):
+    table = pd.read_csv(TABLE)
+    table = table[(table.cells >= cells) & (table.slide_offs >= slide_offs)]
+    lengths = table[table.scheme == "objective"].length_error
+    errors = panel_errors(Mechanisms("objective"), cells, slide_offs)
+    assert errors.spans["length"] == (lengths.min(), lengths.max())
+    assert errors.slide_offs == slide_offs and errors.cells[0] >= cells
+
+
+def test_the_most_slide_offs_and_the_finest_grid_count_for_more_of_either():
+    errors = panel_errors(Mechanisms("objective"), 100.0, 30)
+    assert errors == panel_errors(Mechanisms("objective"), 4.0, 5)
+
+
+def test_planar_errors_leave_out_stacks_in_3d():
+    everything = panel_errors(Mechanisms("thesis"), 2.0, 2)
+    planar = panel_errors(Mechanisms("thesis"), 2.0, 2, planar=True)
+    assert everything.panels == "1 panel in 2D and 1 panel in 3D"
+    assert planar.panels == "1 panel in 2D"
 
 
 def test_the_recorded_slab_is_as_thick_as_that_of_the_preset():

@@ -2,8 +2,8 @@
 
 Height and length of a stack depend on the grid more than on the seed. Every stack is shown with the
 error of recorded runs of the laboratory experiment. The name of the recorded scene and scheme
-stands beside it, because the error of another size or another snow may be larger or smaller. Each
-scheme has runs and a finest grid of its own.
+stands beside it, because the error of another size or another snow may be larger or smaller, and so
+do the errors of all recorded panels. Each scheme has runs and a finest grid of its own.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from typing import Optional, Union
 
 from snowshed.analysis.accuracy.measurements import CaseSettings, MeasuredSolution
 from snowshed.analysis.accuracy.mechanisms import SCHEME, SCHEME_SETTINGS, Mechanisms
+from snowshed.analysis.accuracy.panel_errors import PanelErrors, panel_errors
 from snowshed.analysis.accuracy.recorded import load_recorded
 from snowshed.analysis.accuracy.recorded_stacks import (
     ORDER_IN,
@@ -55,6 +56,8 @@ class StackError:
         Settings of the recorded runs.
     thickness
         Thickness of the scene's slab, m.
+    panels
+        Errors of all recorded panels; None if they are not recorded for the scheme.
 
     Examples
     --------
@@ -71,6 +74,7 @@ class StackError:
     recorded_cells: float
     settings: CaseSettings
     thickness: float = PRESET_THICKNESS
+    panels: Optional[PanelErrors] = None
 
     @property
     def sentence(self) -> str:
@@ -88,6 +92,7 @@ class StackError:
             f"error of the stack in recorded runs ({_scene_label(self.settings)}, {cells} in the "
             f"slab{own_cells}): {bias}, relative to the finest recorded grid of this scheme, "
             "which is itself not converged",
+            "" if self.panels is None else self.panels.sentence,
             f"single runs scatter by {scatter}" if scatter else "",
             mechanisms.calibration_note,
             mechanisms.lengths_note(PRESET_THICKNESS, self.thickness),
@@ -106,7 +111,8 @@ def stack_error(
     scene
         The scene.
     measurements
-        Recorded measurements; by default those of the package.
+        Recorded measurements; by default those of the package. With others, the errors of all
+        recorded panels are left out.
 
     Returns
     -------
@@ -138,6 +144,11 @@ def stack_error(
         recorded_cells=round(PRESET_THICKNESS / float(stack.settings[ORDER_IN]), 3),
         settings=stack.settings,
         thickness=thickness,
+        panels=(
+            panel_errors(mechanisms, cells, data["events"]["count"])
+            if measurements is None
+            else None
+        ),
     )
 
 
@@ -179,7 +190,8 @@ def recorded_bias(dimension: int, events: int, mechanisms: Optional[Mechanisms] 
     -------
     str
         A clause, such as ``stacks of lab-50 in 2D, event 5, scheme thesis were 12 to 42 % too high
-        with 2 to 4 cells in the slab``, or that nothing was recorded.
+        with 2 to 4 cells in the slab``, with the errors of all recorded panels, or that nothing was
+        recorded.
 
     Examples
     --------
@@ -193,10 +205,12 @@ def recorded_bias(dimension: int, events: int, mechanisms: Optional[Mechanisms] 
         return _no_runs_text(mechanisms)
     biases = [stack.biases[0] for stack in resolved.values()]
     span = percent_span(100 * min(biases), 100 * max(biases), "too high", "too low")
+    panels = panel_errors(mechanisms, MIN_CELLS_ACROSS, events)
     return _clauses(
         f"stacks of {_scene_label(stacks[0].settings)} were {span} with "
         f"{number_span(min(resolved), max(resolved))} cells in the slab, relative to the finest "
         "recorded grid of this scheme",
+        "" if panels is None else panels.sentence,
         mechanisms.calibration_note,
     )
 

@@ -4,29 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from snowshed.analysis.accuracy.mechanisms import SCHEME, Mechanisms
+from snowshed.analysis.accuracy.mechanisms import Mechanisms
+from snowshed.analysis.accuracy.panel_errors import PanelErrors, panel_errors, recorded_schemes
 from snowshed.analysis.accuracy.recorded import load_recorded
 from snowshed.analysis.accuracy.recorded_stacks import recorded_stacks
 from snowshed.analysis.accuracy.solutions import quickest
 from snowshed.analysis.accuracy.stack_errors import resolved_stacks
-from snowshed.base.formatting import number_span, percent_span, plural
 
-if TYPE_CHECKING:
-    import pandas as pd
-
-#: Errors of mean heights relative to the finest recorded grid of their scheme, from
-#: ``benchmarks/stack_grid.py``: the laboratory's panels, and panels of the thesis's chapter 5.
-TABLE = Path(__file__).with_name("height-errors.csv")
-CELLS, SLIDE_OFFS, ERROR = "cells", "slide_offs", "height_error"
-PANEL = ("tilt", "panel_length", "friction")
-COLUMNS = (SCHEME, *PANEL, CELLS, SLIDE_OFFS, ERROR)
 #: Fewest cells across a slab.
 MIN_CELLS = 2.0
-ROUNDING = 1e-6
 #: Number of slide-offs in a typical winter, for which scheme and cells are chosen.
 TYPICAL_SLIDE_OFFS = 5
 
@@ -121,10 +109,16 @@ def recorded_grid_error(
     True
     """
     mechanisms = Mechanisms.of_scene(scene) or Mechanisms()
-    if mechanisms.scheme in _tables() and not mechanisms.overrides:
-        return _error(mechanisms, cells, slide_offs)
-    errors = [_error(Mechanisms(scheme), cells, slide_offs) for scheme in _tables()]
-    largest = max(errors, key=lambda error: error.size)
+    errors = panel_errors(mechanisms, cells, slide_offs, planar=True)
+    if errors is not None:
+        return _height_error(mechanisms, errors)
+    recorded = [Mechanisms(scheme) for scheme in recorded_schemes()]
+    of_schemes = [
+        _height_error(plain, errors)
+        for plain in recorded
+        if (errors := panel_errors(plain, cells, slide_offs, planar=True))
+    ]
+    largest = max(of_schemes, key=lambda error: error.size)
     note = f"no stacks are recorded for {mechanisms.label}, so it is the largest of all schemes"
     return GridError(largest.size, f"{note}: {largest.source}")
 
@@ -134,27 +128,12 @@ def _timed_schemes() -> list[str]:
     return sorted({Mechanisms.of_settings(stack.settings).scheme for stack in stacks})
 
 
-@cache
-def _tables() -> Mapping[str, pd.DataFrame]:
-    """Return the recorded errors of each scheme."""
-    import pandas as pd
-
-    return {str(scheme): rows for scheme, rows in pd.read_csv(TABLE).groupby(SCHEME)}
-
-
-def _error(mechanisms: Mechanisms, cells: float, slide_offs: int) -> GridError:
-    rows = _tables()[mechanisms.scheme]
-    slide_offs = min(slide_offs, int(rows[SLIDE_OFFS].max()))
-    rows = rows[rows[SLIDE_OFFS] >= slide_offs]
-    rows = rows[rows[CELLS] > min(cells, rows[CELLS].max()) - ROUNDING]
-    errors = 100 * rows[ERROR]
-    span = percent_span(errors.min(), errors.max(), "too high", "too low")
-    panels = plural(rows.groupby(list(PANEL)).ngroups, "panel")
-    across = number_span(rows[CELLS].min(), rows[CELLS].max())
+def _height_error(mechanisms: Mechanisms, errors: PanelErrors) -> GridError:
     clauses = [
-        f"recorded stacks of {slide_offs} or more slide-offs ({panels} in 2D, {mechanisms.label}, "
-        f"{across} cells in the slab) were {span}, relative to the finest recorded grid of this "
-        "scheme",
+        f"recorded stacks of {errors.slide_offs} or more slide-offs ({errors.panels}, "
+        f"{mechanisms.label}, {errors.cells_text}) were "
+        f"{errors.span('height', 'too high', 'too low')}, relative to the finest recorded grid of "
+        "this scheme",
         mechanisms.calibration_note,
     ]
-    return GridError(float(rows[ERROR].abs().max()), "; ".join(filter(None, clauses)))
+    return GridError(errors.largest("height"), "; ".join(filter(None, clauses)))

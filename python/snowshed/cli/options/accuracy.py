@@ -136,6 +136,7 @@ def choose(
     what = f"{name} {size:g} m ({share:.3g} of the slab's thickness) with {scheme}"
     reasons = [
         f"--accuracy {percent(wanted)}: {_outcome(stack, wanted, what)}",
+        *([] if measurements is not None else _all_panels(stack, 1.0 / share, data)),
         *_scatter(stack),
         *_other_schemes(stack, stacks, everything, wanted, name),
         *_differences(stack, data, thickness),
@@ -204,6 +205,16 @@ def _outcome(stack: RecordedStack, wanted: float, what: str) -> str:
     return f"no recorded run of {PRESET} was that accurate. The best is {what}: {errors_text}" + (
         f" --accuracy {share}% chooses this grid." if share < 100 else ""
     )
+
+
+def _all_panels(stack: RecordedStack, cells: float, data: Mapping[str, Any]) -> list[str]:
+    """Return a sentence on the errors of all recorded panels, which may be larger than wanted."""
+    from snowshed.analysis.accuracy.mechanisms import Mechanisms
+    from snowshed.analysis.accuracy.panel_errors import panel_errors
+
+    mechanisms = Mechanisms.of_settings(stack.settings)
+    errors = panel_errors(mechanisms, cells, int(data["events"]["count"]))
+    return [] if errors is None else [f"Errors of {errors.sentence}."]
 
 
 def _scatter(stack: RecordedStack) -> list[str]:
