@@ -25,12 +25,12 @@ import pandas as pd
 from benchmarks.keeping import RESULTS, append_rows
 from matplotlib.axes import Axes
 
-from snowshed.analysis.accuracy.panel_errors import COLUMNS as ERROR_COLUMNS
-from snowshed.analysis.accuracy.panel_errors import ERRORS
-from snowshed.analysis.accuracy.panel_errors import TABLE as ERROR_TABLE
 from snowshed.io.csv_table import write_csv
 from snowshed.plot import INK, blank_figure, save_figure
 from snowshed.scene.scene import Scene
+from snowshed.snow.accuracy.panel_errors import COLUMNS as ERROR_COLUMNS
+from snowshed.snow.accuracy.panel_errors import ERRORS
+from snowshed.snow.accuracy.panel_errors import TABLE as ERROR_TABLE
 from snowshed.study import Study
 from snowshed.study.table import read_table
 

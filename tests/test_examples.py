@@ -24,11 +24,11 @@ ARGUMENTS = {
 }
 #: Scripts that take most of a minute.
 LONG = {"image_to_stack.py"}
-#: The notes on thin slabs, which coarse grids cause, on laws, and on slides of a second, and the
-#: lines that caused them.
+#: The notes on thin slabs, which coarse grids cause, on the error of stacks, on laws, and on slides
+#: of a second, and the lines that caused them.
 NOTE = re.compile(
     r".*: (?:Resolution|Result|Snowshed)Note: (the slab is .* thick, less than|laws of the user|"
-    r"Secondary release .* never started|Dam .*: no snow|The slide was still moving).*\n.*\n"
+    r"error of the stack|Secondary release .* never started|Dam .*: no snow|The slide was still moving).*\n.*\n"
 )
 
 

@@ -174,7 +174,5 @@ def test_any_is_detected_within_other_types():
 
 
 def test_rooms_are_imported_on_access():
-    code = (
-        "import snowshed; print(snowshed.plot.scene_figure, snowshed.analysis.accuracy.stack_error)"
-    )
+    code = "import snowshed; print(snowshed.plot.scene_figure, snowshed.snow.stack_error)"
     subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)

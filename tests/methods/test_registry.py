@@ -41,6 +41,7 @@ NAME_METHODS = {
     "plot/loading_figure.py": "draws curves, which only loading tests have",
     "plot/force_chains.py": "draws contacts of grains",
     "results/avaframe.py": "writes the files of another program for slides",
+    "snow/accuracy/": "stacks of one method were recorded",
     "analysis/": "an analysis may ask about the results of one method",
 }
 NAME_ALL = {"methods/registry.py", "cli/main.py"}

@@ -61,6 +61,6 @@ def test_the_command_takes_a_scheme(tmp_path, capsys):
     coarse = ["--dim", "2", "--dx", "0.02", "--events", "1"]
     command = ["panel", "--preset", "lab-50", *coarse, "--scheme", "objective"]
     assert main([*command, "-o", str(tmp_path / "out")]) == 0
-    output = " ".join(capsys.readouterr().out.split())
-    assert "damping 380 1/s over 0.01 m" in output
-    assert "lab-50 in 2D, event 1, scheme objective" in output
+    shown = capsys.readouterr()
+    assert "damping 380 1/s over 0.01 m" in " ".join(shown.out.split())
+    assert "lab-50 in 2D, event 1, scheme objective" in shown.err

@@ -8,8 +8,8 @@ import time
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.command import validate
 
-from snowshed.analysis.accuracy.measurements import Measured
 from snowshed.cli.main import main
+from snowshed.snow.accuracy.measurements import Measured
 
 MEGABYTES = 150
 

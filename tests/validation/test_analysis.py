@@ -13,8 +13,8 @@ from validation.framework.criteria import compare
 from validation.framework.schemes import varying
 from validation.framework.sections import settings_text
 
-from snowshed.analysis.accuracy.measurements import Measured, MeasuredSolution, to_table
-from snowshed.analysis.accuracy.solutions import (
+from snowshed.snow.accuracy.measurements import Measured, MeasuredSolution, to_table
+from snowshed.snow.accuracy.solutions import (
     Solution,
     assured_errors,
     quickest,

@@ -12,7 +12,7 @@ from validation.laboratory.lab_records import REFERENCES, Grid, record, recorded
 from validation.laboratory.lab_stack import COMPARED, lab_scene, run_lab
 
 from snowshed import Scene
-from snowshed.analysis.accuracy.mechanisms import scheme_of
+from snowshed.snow.accuracy.mechanisms import scheme_of
 
 QUICK = {"dimension": 2, "dx": 0.02, "events": 1}
 

@@ -11,8 +11,8 @@ from validation.framework import cases as listing
 from validation.framework.folder import ValidationFolder
 
 from snowshed import InputError
-from snowshed.analysis.accuracy.measurements import Measured, MeasuredSolution
-from snowshed.analysis.accuracy.recorded import load_recorded
+from snowshed.snow.accuracy.measurements import Measured, MeasuredSolution
+from snowshed.snow.accuracy.recorded import load_recorded
 
 COMPLETE = MeasuredSolution("bar", {"dx": 0.1, "apic": True}, [Measured("height", 1.0, 2.0, -0.5)])
 

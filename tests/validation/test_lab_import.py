@@ -12,10 +12,10 @@ from validation.laboratory.lab_stack import COMPARED, Cost, lab_scene
 from validation.laboratory.recorded_measurements import SCHEME, measurements_of, renew
 
 from snowshed import InputError
-from snowshed.analysis.accuracy.measurements import MeasuredSolution
-from snowshed.analysis.accuracy.mechanisms import scheme_of
-from snowshed.analysis.accuracy.recorded import load_recorded, record
 from snowshed.cli.main import main
+from snowshed.snow.accuracy.measurements import MeasuredSolution
+from snowshed.snow.accuracy.mechanisms import scheme_of
+from snowshed.snow.accuracy.recorded import load_recorded, record
 
 GRID = Grid(2, 0.02, 1, events=2)
 

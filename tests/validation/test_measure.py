@@ -18,7 +18,7 @@ from validation.framework.measure import Estimate, measure_cases, tasks_of
 from validation.framework.measurement_file import MeasurementFile
 
 from snowshed._core import InputError
-from snowshed.analysis.accuracy.measurements import (
+from snowshed.snow.accuracy.measurements import (
     Measured,
     MeasuredSolution,
     setting_names,

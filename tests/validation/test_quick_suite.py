@@ -7,7 +7,7 @@ from validation.framework.measure import measure_cases
 from validation.framework.measurement_file import MeasurementFile
 from validation.framework.report import Validation, problems
 
-from snowshed.analysis.accuracy.measurements import to_table
+from snowshed.snow.accuracy.measurements import to_table
 
 MODULES = case_modules()
 #: The slowest modules. Faster tests, here in `test_case_*.py` or in C++, cover the same code.

@@ -16,8 +16,8 @@ from validation.framework.measurement_file import MeasurementFile
 from validation.framework.report import Stress, Validation, write_report
 from validation.stress import SummaryTable
 
-from snowshed.analysis.accuracy.measurements import to_table
 from snowshed.base import formatting
+from snowshed.snow.accuracy.measurements import to_table
 
 PNG = b"\x89PNG\r\n\x1a\n"
 

@@ -11,8 +11,8 @@ from validation.framework import cases as listing
 from validation.framework import measure
 from validation.framework.case import Quantity
 
-from snowshed.analysis.accuracy.recorded import load_recorded
 from snowshed.base.progress import Progress
+from snowshed.snow.accuracy.recorded import load_recorded
 
 HOLDING = (
     Quantity("height", "height, m", limit=0.2, limit_for={"transfer": "apic"}, order_in="dx"),

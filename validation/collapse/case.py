@@ -10,10 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from snowshed import _core
-from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.scene.components import Body, Events, Ground, Snow
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
+from snowshed.snow.accuracy.measurements import CaseSettings, Measured
 from snowshed.snow.stack.connected_components import largest_body
 from validation.collapse.granular_column import (
     critical_state_slope,

@@ -6,11 +6,11 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import CaseSettings
 from snowshed.base.arrays import Floats
 from snowshed.scene.components import Body, Obstacle
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
+from snowshed.snow.accuracy.measurements import CaseSettings
 from validation.framework.drive import apply_settings
 
 #: The transfers that cases compare; flip_ratio 0 is PIC.

@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.arrays import Floats
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
+from snowshed.snow.accuracy.measurements import CaseSettings, Measured
 from validation.elastic.bodies import TRANSFERS, elastic_scene, from_plane, in_plane
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import TimedEventDriver, relative

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.arrays import Floats
 from snowshed.scene.components import Obstacle
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
+from snowshed.snow.accuracy.measurements import CaseSettings, Measured
 from validation.elastic.bodies import TRANSFERS, elastic_scene, from_plane, in_plane
 from validation.elastic.cantilever import Cantilever
 from validation.elastic.smoothing import Smoothing

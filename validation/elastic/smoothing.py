@@ -23,7 +23,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from snowshed.analysis.accuracy.measurements import CaseSettings
+from snowshed.snow.accuracy.measurements import CaseSettings
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.scene.components import Body, Obstacle
 from snowshed.scene.shape import Shape
+from snowshed.snow.accuracy.measurements import CaseSettings, Measured
 from validation.forces.impulses import impulse_on, mean_force
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import TimedEventDriver, relative

@@ -10,8 +10,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Optional, Union
 
-from snowshed.analysis.accuracy.measurements import CaseSettings, Measured, Value
 from snowshed.base.formatting import number, percent
+from snowshed.snow.accuracy.measurements import CaseSettings, Measured, Value
 
 #: Values that settings must have, by name; None: must not be given; a tuple: any of its values.
 SettingsFilter = Mapping[str, Union[Value, tuple[Optional[Value], ...], None]]

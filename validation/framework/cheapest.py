@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import CaseSettings
-from snowshed.analysis.accuracy.solutions import (
+from snowshed.base.arrays import Booleans
+from snowshed.snow.accuracy.measurements import CaseSettings
+from snowshed.snow.accuracy.solutions import (
     Solution,
     assured_errors,
     quickest,
@@ -17,7 +18,6 @@ from snowshed.analysis.accuracy.solutions import (
     settings_key,
     solutions,
 )
-from snowshed.base.arrays import Booleans
 from validation.framework.case import Case, Quantity
 from validation.framework.schemes import problem_of
 

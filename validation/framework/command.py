@@ -12,7 +12,7 @@ import click
 from snowshed.cli.exit_codes import Stopped
 
 if TYPE_CHECKING:
-    from snowshed.analysis.accuracy.measurements import MeasuredSolution
+    from snowshed.snow.accuracy.measurements import MeasuredSolution
     from validation.framework.case import Case
     from validation.framework.folder import ValidationFolder
     from validation.framework.report import Stress
@@ -60,7 +60,7 @@ def validate(
     Example:
       python -m validation --quick -o validation
     """  # noqa: D301 - click wants the control character
-    from snowshed.analysis.accuracy.recorded import load_recorded, record
+    from snowshed.snow.accuracy.recorded import load_recorded, record
     from validation.framework.cases import load_cases
     from validation.framework.folder import ValidationFolder
     from validation.framework.report import Validation, problems, write_report
@@ -95,7 +95,7 @@ def validate(
 def _measure(
     cases: Sequence[Case], results: ValidationFolder, *, full: bool, quiet: bool
 ) -> list[MeasuredSolution]:
-    from snowshed.analysis.accuracy.recorded import load_recorded
+    from snowshed.snow.accuracy.recorded import load_recorded
     from validation.framework.display import validation_bar
     from validation.framework.measure import measure_cases
 

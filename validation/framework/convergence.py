@@ -8,9 +8,9 @@ from math import nan
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import CaseSettings
-from snowshed.analysis.accuracy.solutions import Solution, convergence_series
 from snowshed.base.arrays import Floats
+from snowshed.snow.accuracy.measurements import CaseSettings
+from snowshed.snow.accuracy.solutions import Solution, convergence_series
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from math import inf, isnan, nan
 from typing import TYPE_CHECKING, Optional
 
-from snowshed.analysis.accuracy.measurements import CaseSettings
-from snowshed.analysis.accuracy.solutions import records, rows_of, solutions
+from snowshed.snow.accuracy.measurements import CaseSettings
+from snowshed.snow.accuracy.solutions import records, rows_of, solutions
 from validation.framework.case import Case, Quantity, SettingsFilter, alternatives
 from validation.framework.convergence import convergences
 

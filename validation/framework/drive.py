@@ -6,12 +6,12 @@ import time
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 
-from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.record import Record
 from snowshed.methods.mpm.settings import MpmSettings
 from snowshed.running.event_driver import EventDriver
 from snowshed.scene.components import Seeding, Snow
 from snowshed.scene.scene import Scene
+from snowshed.snow.accuracy.measurements import CaseSettings, Measured
 from validation.framework.case import Outcome
 
 #: Sections of a scene that hold settings; all other settings are at the top of the scene.

@@ -15,11 +15,11 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from snowshed.analysis.accuracy import setting_labels
-from snowshed.analysis.accuracy.measurements import CaseSettings, Value
-from snowshed.analysis.accuracy.solutions import Solution, settings_key
 from snowshed.base import formatting
 from snowshed.plot.figure_style import BODY, COLOURS, FAINT, INK, STYLE, blank_figure
+from snowshed.snow.accuracy import setting_labels
+from snowshed.snow.accuracy.measurements import CaseSettings, Value
+from snowshed.snow.accuracy.solutions import Solution, settings_key
 from validation.framework.case import Quantity
 from validation.framework.cheapest import pareto_front
 from validation.framework.convergence import Convergence

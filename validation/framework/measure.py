@@ -13,15 +13,15 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple, Optional
 
 from snowshed import _core
-from snowshed.analysis.accuracy import setting_labels
-from snowshed.analysis.accuracy.measurements import (
+from snowshed.base.machine import cpu_name
+from snowshed.base.progress import Progress, Reporter
+from snowshed.snow.accuracy import setting_labels
+from snowshed.snow.accuracy.measurements import (
     CaseSettings,
     Measured,
     MeasuredSolution,
     measurement_key,
 )
-from snowshed.base.machine import cpu_name
-from snowshed.base.progress import Progress, Reporter
 from validation.framework.case import Case, Outcome
 from validation.framework.measurement_file import MeasurementFile
 from validation.framework.process import Answer, measure_once, measuring_pool

@@ -9,9 +9,9 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from snowshed.analysis.accuracy.measurements import MeasuredSolution
 from snowshed.io.input_file import read_regular
 from snowshed.io.json_file import parse_object
+from snowshed.snow.accuracy.measurements import MeasuredSolution
 
 
 class MeasurementFile:
@@ -25,7 +25,7 @@ class MeasurementFile:
     Examples
     --------
     >>> from tempfile import TemporaryDirectory
-    >>> from snowshed.analysis.accuracy.measurements import Measured
+    >>> from snowshed.snow.accuracy.measurements import Measured
     >>> with TemporaryDirectory() as folder:
     ...     file = MeasurementFile(Path(folder) / "m.jsonl")
     ...     file.append(MeasuredSolution("bar", {"dx": 0.1}, [Measured("height", 0.9, 1.0, -0.1)]))

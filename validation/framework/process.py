@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import NamedTuple, Optional
 
 from snowshed._core import SimulationError
-from snowshed.analysis.accuracy.measurements import CaseSettings
 from snowshed.base.machine import peak_memory_mb
 from snowshed.base.pool.pool import Isolation, Pool
+from snowshed.snow.accuracy.measurements import CaseSettings
 from validation.framework.case import Outcome
 
 Measure = Callable[[CaseSettings], Outcome]

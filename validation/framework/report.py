@@ -19,13 +19,13 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
 
-from snowshed.analysis.accuracy import setting_labels
-from snowshed.analysis.accuracy.measurements import MeasuredSolution, to_table
-from snowshed.analysis.accuracy.solutions import rows_of, solutions
 from snowshed.base import formatting
 from snowshed.io.atomic import write_text
 from snowshed.io.csv_table import write_csv
 from snowshed.plot.html_page import template, write_pictures
+from snowshed.snow.accuracy import setting_labels
+from snowshed.snow.accuracy.measurements import MeasuredSolution, to_table
+from snowshed.snow.accuracy.solutions import rows_of, solutions
 from validation.framework import sections
 from validation.framework.case import Case
 from validation.framework.cheapest import QuickestSettings, cheapest

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from snowshed.analysis.accuracy.measurements import CaseSettings
-from snowshed.analysis.accuracy.solutions import SEEDING_SETTINGS
 from snowshed.scene.accuracy_settings import ACCURACY
+from snowshed.snow.accuracy.measurements import CaseSettings
+from snowshed.snow.accuracy.solutions import SEEDING_SETTINGS
 from validation.framework.case import Case
 
 

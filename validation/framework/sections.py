@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 
-from snowshed.analysis.accuracy import setting_labels
-from snowshed.analysis.accuracy.measurements import CaseSettings, MeasuredSolution
-from snowshed.analysis.accuracy.solutions import Solution, rows_of, settings_key, solutions
 from snowshed.base import formatting
 from snowshed.plot.html_page import HtmlTable, Picture
+from snowshed.snow.accuracy import setting_labels
+from snowshed.snow.accuracy.measurements import CaseSettings, MeasuredSolution
+from snowshed.snow.accuracy.solutions import Solution, rows_of, settings_key, solutions
 from validation.framework import figures
 from validation.framework.case import Case, Quantity, alternatives
 from validation.framework.cheapest import QuickestSettings, by_problem

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.scene.loading import LoadingStage
+from snowshed.snow.accuracy.measurements import CaseSettings, Measured
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import relative
 from validation.grains.loading import grains_drive, load_all, residual

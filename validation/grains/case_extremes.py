@@ -8,9 +8,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from snowshed._core import SimulationError
-from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.arrays import Integers
 from snowshed.scene.loading import LoadingStage
+from snowshed.snow.accuracy.measurements import CaseSettings, Measured
 from validation.framework.case import Case, Outcome, Quantity
 from validation.grains.loading import GRAIN, grains_drive, snow_labels
 

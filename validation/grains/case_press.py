@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.scene.loading import LoadingStage
+from snowshed.snow.accuracy.measurements import CaseSettings, Measured
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import relative
 from validation.grains.loading import (

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.analysis.tomography.segmentation import SegmentationSettings, segment
 from snowshed.base.arrays import Floats
 from snowshed.methods.grains.phases import find_phases
 from snowshed.scene.loading import LoadingStage
+from snowshed.snow.accuracy.measurements import CaseSettings, Measured
 from validation.framework.case import Case, Outcome, Quantity
 from validation.grains.loading import grains_drive, load_all
 from validation.grains.turned_body import DIAMETER, HEIGHT, MARGIN, TurnedBody

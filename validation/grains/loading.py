@@ -8,13 +8,13 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import CaseSettings
 from snowshed.base.arrays import Integers
 from snowshed.methods.grains import phases
 from snowshed.methods.grains.curve import LoadingCurve
 from snowshed.methods.grains.settings import GrainsSettings
 from snowshed.scene import grains_scene
 from snowshed.scene.loading import Cone, LoadingStage
+from snowshed.snow.accuracy.measurements import CaseSettings
 from validation.framework.drive import TimedEventDriver
 
 GRAIN = 3e-4  # m, edge of the cells that cut the ice into grains

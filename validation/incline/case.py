@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 from typing import cast
 
 from snowshed.analysis.accuracy.incline import GRAVITY, Incline
-from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.scene.components import Condition
 from snowshed.scene.scene import Scene
+from snowshed.snow.accuracy.measurements import CaseSettings, Measured
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import TimedEventDriver, absolute, apply_settings, relative
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
+from snowshed.snow.accuracy.measurements import CaseSettings, Measured
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import absolute, relative
 from validation.laboratory.lab_records import NO_SLEEP, noise, recorded

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
-from snowshed.analysis.accuracy.mechanisms import scheme_of
+from snowshed.snow.accuracy.measurements import CaseSettings, Measured
+from snowshed.snow.accuracy.mechanisms import scheme_of
 from validation.framework.case import Case, Outcome, Quantity, SettingsFilter
 from validation.framework.drive import relative
 from validation.laboratory.lab_records import noise, recorded

@@ -17,10 +17,10 @@ from typing import Any
 import click
 
 from snowshed._core import InputError
-from snowshed.analysis.accuracy.measurements import CaseSettings
 from snowshed.results.event_particles import EventParticles, read_event_particles
 from snowshed.results.folder import RunFolder
 from snowshed.scene.scene import ResolvedScene
+from snowshed.snow.accuracy.measurements import CaseSettings
 from snowshed.snow.stack.measure import StackMeasure
 from snowshed.study.scene_hash import RunKey
 from validation.laboratory.lab_records import (

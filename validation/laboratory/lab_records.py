@@ -19,11 +19,11 @@ from typing import Any, Optional
 import numpy as np
 
 from snowshed import _core
-from snowshed.analysis.accuracy.measurements import CaseSettings, Measured, Value
-from snowshed.analysis.accuracy.mechanisms import FIRST_SCHEME, scheme_of
 from snowshed.base.arrays import Floats
 from snowshed.base.machine import cpu_name
 from snowshed.io.atomic import write_text
+from snowshed.snow.accuracy.measurements import CaseSettings, Measured, Value
+from snowshed.snow.accuracy.mechanisms import FIRST_SCHEME, scheme_of
 from validation.framework.drive import absolute
 from validation.laboratory.lab_stack import COMPARED, Cost, StackRun, run_lab
 

@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from snowshed import _core
-from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.arrays import Booleans, Floats
 from snowshed.results.folder import measured_columns
 from snowshed.running.conversion import outline_difference
 from snowshed.scene.scene import Scene
+from snowshed.snow.accuracy.measurements import CaseSettings, Measured
 from snowshed.snow.stack.measure import StackMeasure, measure_stack
 from snowshed.snow.stack.quantities import MEASURES
 from validation.framework.case import Outcome

@@ -13,9 +13,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from snowshed._core import InputError
-from snowshed.analysis.accuracy.measurements import CaseSettings, MeasuredSolution
-from snowshed.analysis.accuracy.mechanisms import scheme_of
-from snowshed.analysis.accuracy.recorded import PACKAGED_FILE, load_recorded, record
+from snowshed.snow.accuracy.measurements import CaseSettings, MeasuredSolution
+from snowshed.snow.accuracy.mechanisms import scheme_of
+from snowshed.snow.accuracy.recorded import PACKAGED_FILE, load_recorded, record
 from validation.laboratory.case_stack_convergence import CASE, compared, matrix
 from validation.laboratory.lab_records import RecordedRun, recorded_runs
 

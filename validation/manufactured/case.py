@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.arrays import Floats
+from snowshed.snow.accuracy.measurements import CaseSettings, Measured
 from validation.elastic.bodies import TRANSFERS
 from validation.framework.case import Case, Outcome, Quantity
 from validation.manufactured.forced_body import ForcedBody, root_mean_square

@@ -7,9 +7,9 @@ from typing import Optional
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import CaseSettings
 from snowshed.base.arrays import Floats
 from snowshed.scene.shape import Shape
+from snowshed.snow.accuracy.measurements import CaseSettings
 from validation.elastic.bodies import elastic_scene, from_plane, in_plane
 from validation.framework.drive import TimedEventDriver
 from validation.manufactured.motions import DENSITY, YOUNGS_MODULUS, ManufacturedMotion

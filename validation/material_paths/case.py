@@ -11,8 +11,8 @@ import numpy as np
 
 from snowshed import _core
 from snowshed.analysis.accuracy.calibrated_snow import calibrated_snow
-from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.arrays import Floats
+from snowshed.snow.accuracy.measurements import CaseSettings, Measured
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import relative
 from validation.material_paths.rate_equations import RateEquations, evenly

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from typing import Optional
 
-from snowshed.analysis.accuracy.measurements import CaseSettings
 from snowshed.base.json_values import JsonValue
 from snowshed.methods.mps.settings import MpsSettings
 from snowshed.scene.components import Body, Events, Obstacle
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
+from snowshed.snow.accuracy.measurements import CaseSettings
 from validation.framework.drive import TimedEventDriver
 
 GRAVITY = 9.81  # m/s2

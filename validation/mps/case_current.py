@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from snowshed.analysis.accuracy.measurements import CaseSettings
 from snowshed.methods.mps.settings import MpsSettings
+from snowshed.snow.accuracy.measurements import CaseSettings
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import absolute, relative
 from validation.mps.bodies import GRAVITY, block, floor_and_sides, mps_driver

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.methods.mps.settings import MpsSettings
+from snowshed.snow.accuracy.measurements import CaseSettings, Measured
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import absolute
 from validation.mps.bodies import GRAVITY, block, floor_and_sides, mps_driver

@@ -7,10 +7,10 @@ import math
 import numpy as np
 
 from snowshed._core import SimulationError
-from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.methods.mps.settings import MpsSettings
 from snowshed.scene.components import Body, Obstacle
 from snowshed.scene.shape import Shape
+from snowshed.snow.accuracy.measurements import CaseSettings, Measured
 from validation.framework.case import Case, Outcome, Quantity
 from validation.mps.bodies import mps_driver
 

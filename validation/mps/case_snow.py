@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import CaseSettings
 from snowshed.base.arrays import Floats
 from snowshed.methods.mps.settings import MpsSettings
 from snowshed.scene.components import Body, Obstacle
 from snowshed.scene.shape import Shape
+from snowshed.snow.accuracy.measurements import CaseSettings
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import absolute, relative
 from validation.mps.bodies import GRAVITY, block, floor_and_sides, mps_driver

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
+from snowshed.snow.accuracy.measurements import CaseSettings, Measured
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import TimedEventDriver, absolute, relative
 from validation.mps.bodies import GRAVITY, VARIANTS, WATER, block, floor_and_sides, mps_driver

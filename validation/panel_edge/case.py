@@ -7,10 +7,10 @@ from typing import NamedTuple, cast
 import numpy as np
 
 from snowshed._core import SimulationError
-from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.arrays import Floats
 from snowshed.scene.components import Condition, Panel, Slab
 from snowshed.scene.scene import Scene
+from snowshed.snow.accuracy.measurements import CaseSettings, Measured
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import TimedEventDriver, apply_settings, relative
 from validation.panel_edge.rigid_slab import RigidSlab

@@ -9,11 +9,11 @@ from typing import Union
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.arrays import Floats
 from snowshed.scene.components import Body, Condition, Obstacle
 from snowshed.scene.scene import Scene
 from snowshed.scene.shape import Shape
+from snowshed.snow.accuracy.measurements import CaseSettings, Measured
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import TimedEventDriver, apply_settings, relative
 from validation.material_paths.rate_equations import RateEquations

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import CaseSettings
+from snowshed.snow.accuracy.measurements import CaseSettings
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import absolute, relative
 from validation.slide.site import GRAVITY, Plane, Site, rectangle, slide_drive

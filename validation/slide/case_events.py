@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import CaseSettings
 from snowshed.base.arrays import Floats
 from snowshed.scene.terrain_components import Dam, DamCorner, Inflow, Pulse, ResistanceArea
+from snowshed.snow.accuracy.measurements import CaseSettings
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import TimedEventDriver, relative
 from validation.slide.site import GRAVITY, Plane, Site, rectangle, slide_drive

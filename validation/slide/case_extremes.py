@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
+from snowshed.snow.accuracy.measurements import CaseSettings, Measured
 from validation.framework.case import Case, Outcome, Quantity
 from validation.slide.site import Height, Site, rectangle, slide_drive
 

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import CaseSettings
 from snowshed.base.arrays import Floats
+from snowshed.snow.accuracy.measurements import CaseSettings
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import TimedEventDriver, relative
 from validation.slide.site import Site, maps_of, node_axes, rectangle, slide_drive

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.arrays import Floats
 from snowshed.scene.terrain_components import Area, Hole
+from snowshed.snow.accuracy.measurements import CaseSettings, Measured
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import TimedEventDriver, relative
 from validation.slide.site import Plane, Site, maps_of, node_axes, rectangle, slide_drive

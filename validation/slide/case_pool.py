@@ -7,9 +7,9 @@ from typing import cast
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import CaseSettings
 from snowshed.base.arrays import Floats
 from snowshed.scene.terrain_components import Area
+from snowshed.snow.accuracy.measurements import CaseSettings
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import relative
 from validation.slide.site import Height, Site, rectangle, slide_drive

@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import CaseSettings, Measured
 from snowshed.base.arrays import Floats
 from snowshed.io.raster.raster import Raster
 from snowshed.methods.slide.maps import SlideMaps
 from snowshed.scene.terrain_components import Area
+from snowshed.snow.accuracy.measurements import CaseSettings, Measured
 from validation.framework.case import Case, Outcome, Quantity
 from validation.framework.drive import TimedEventDriver
 from validation.slide.site import Site, maps_of, node_axes, slide_drive

@@ -10,7 +10,6 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import CaseSettings
 from snowshed.base.arrays import Floats
 from snowshed.io.raster.raster import Raster, write_ascii_grid
 from snowshed.methods.slide.maps import SlideMaps, slide_maps
@@ -18,6 +17,7 @@ from snowshed.methods.slide.settings import SlideSettings
 from snowshed.scene.components import Events
 from snowshed.scene.scene import Scene
 from snowshed.scene.terrain_components import Area, Terrain
+from snowshed.snow.accuracy.measurements import CaseSettings
 from validation.framework.drive import TimedEventDriver
 
 GRAVITY = 9.81  # m/s2

@@ -1,4 +1,3 @@
-from . import accuracy as accuracy
 from . import calibration as calibration
 from . import clearance as clearance
 from . import grains as grains

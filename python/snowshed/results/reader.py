@@ -82,6 +82,7 @@ class Results(MethodResults):
         self.folder = Path(folder)
         if not (self.folder / "scene.json").is_file():
             raise InputError(f"{folder}: no results; it holds no scene.json")
+        read_scene(self.folder)  # a damaged scene is refused before any note
         issue_unfinished_note(self.folder)
 
     @classmethod

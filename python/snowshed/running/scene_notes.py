@@ -9,6 +9,7 @@ import snowshed._core as _core
 from snowshed._core import InputError
 from snowshed.base.formatting import plural
 from snowshed.methods.registry import method_of, resolution_of
+from snowshed.scene.accuracy_settings import MIN_CELLS_ACROSS
 from snowshed.scene.components import Snow
 from snowshed.snow.relations.strength import TENSILE_STRENGTH
 
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
 
     from snowshed.scene.scene import ResolvedScene
 
-MIN_CELLS_ACROSS = 2.0  # with fewer cells across the slab its stack is coarse
 NEARLY_ALL = 0.98  # share of the snow
 #: The relation by which strength follows from density.
 LAW = "sigrist-2006"

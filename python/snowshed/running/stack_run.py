@@ -36,6 +36,7 @@ from snowshed.running.conversion import conversion_row
 from snowshed.running.method_run import Cell, MethodRun
 from snowshed.running.scene_notes import notes_after
 from snowshed.running.sequence import record_note, seal_files
+from snowshed.snow.accuracy.stack_errors import error_sentence
 from snowshed.snow.stack.measure import StackMeasure
 from snowshed.snow.stack.particles import measure_particles
 
@@ -122,6 +123,8 @@ class StackRun(MethodRun):
         if facts["event"] == self.simulation.event_count:
             for note in notes_after(parse_events(self.results.events.path), self.scene.data):
                 record_note(self.sequence, note, ResultNote)
+            if self.stack.height > 0 and (error := error_sentence(self.scene)):
+                record_note(self.sequence, error, ResultNote)
 
     def _note_residual(self, facts: Mapping[str, Any]) -> None:
         """Note that the time integration gained or lost too much energy."""

@@ -8,6 +8,9 @@ from snowshed.base.json_values import JsonValue
 from snowshed.methods.registry import DEFAULT, METHODS, NAME_KEY, SETTINGS_KEY
 from snowshed.scene.schema import Parameter, scene_parameters
 
+#: Cells across the slab; with fewer its stack is coarse.
+MIN_CELLS_ACROSS = 2.0
+
 
 def _is_in_other_section(parameter: Parameter) -> bool:
     return not parameter.path.startswith(f"{SETTINGS_KEY}.")

@@ -1,4 +1,4 @@
-"""Snow: relations between its properties, and the measurement of a stack."""
+"""Snow: relations between its properties, the measurement of a stack, and its recorded errors."""
 
 import lazy_loader as _lazy
 

@@ -1,3 +1,5 @@
+from .accuracy.stack_errors import StackError as StackError
+from .accuracy.stack_errors import stack_error as stack_error
 from .point import follow_path as follow_path
 from .relations.new_snow import NEW_SNOW_DENSITY as NEW_SNOW_DENSITY
 from .relations.relation import Relation as Relation

@@ -4,15 +4,15 @@ from dataclasses import replace
 import pytest
 
 from snowshed import InputError, Scene
-from snowshed.analysis.accuracy import recorded
-from snowshed.analysis.accuracy.measurements import Measured, MeasuredSolution
-from snowshed.analysis.accuracy.recorded import load_recorded, record
-from snowshed.analysis.accuracy.recorded_stacks import CASE, QUANTITIES
 from snowshed.cli.main import main
 from snowshed.cli.options.accuracy import choose
 from snowshed.cli.options.scene import option_name
 from snowshed.scene.accuracy_settings import ACCURACY
 from snowshed.scene.schema import scene_parameters
+from snowshed.snow.accuracy import recorded
+from snowshed.snow.accuracy.measurements import Measured, MeasuredSolution
+from snowshed.snow.accuracy.recorded import load_recorded, record
+from snowshed.snow.accuracy.recorded_stacks import CASE, QUANTITIES
 
 THICKNESS = 0.02  # of the laboratory's slab, m
 

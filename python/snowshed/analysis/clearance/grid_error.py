@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from snowshed.analysis.accuracy.mechanisms import Mechanisms
-from snowshed.analysis.accuracy.panel_errors import PanelErrors, panel_errors, recorded_schemes
-from snowshed.analysis.accuracy.recorded import load_recorded
-from snowshed.analysis.accuracy.recorded_stacks import recorded_stacks
-from snowshed.analysis.accuracy.solutions import quickest
-from snowshed.analysis.accuracy.stack_errors import resolved_stacks
+from snowshed.snow.accuracy.mechanisms import Mechanisms
+from snowshed.snow.accuracy.panel_errors import PanelErrors, panel_errors, recorded_schemes
+from snowshed.snow.accuracy.recorded import load_recorded
+from snowshed.snow.accuracy.recorded_stacks import recorded_stacks
+from snowshed.snow.accuracy.solutions import quickest
+from snowshed.snow.accuracy.stack_errors import resolved_stacks
 
 #: Fewest cells across a slab.
 MIN_CELLS = 2.0

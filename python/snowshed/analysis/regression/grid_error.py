@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING, Optional
 
 import numpy as np
 
-from snowshed.analysis.accuracy.mechanisms import SCHEME, Mechanisms
 from snowshed.analysis.regression.dataset import FOLDER, MODEL_BETWEEN
 from snowshed.analysis.regression.rows import INPUTS, TARGETS
 from snowshed.base.arrays import Floats
 from snowshed.base.formatting import number, percent_span
+from snowshed.snow.accuracy.mechanisms import SCHEME, Mechanisms
 from snowshed.snow.stack.trimming import DEFAULT_TRIMMING
 
 if TYPE_CHECKING:

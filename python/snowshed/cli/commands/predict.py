@@ -113,8 +113,8 @@ def print_prediction(prediction: Prediction, title: str) -> None:
 
 def _interval_text(prediction: Prediction) -> str:
     """Return what the intervals contain of scatter and of the error of the grid."""
-    from snowshed.analysis.accuracy.mechanisms import Mechanisms
-    from snowshed.analysis.accuracy.stack_errors import recorded_bias
+    from snowshed.snow.accuracy.mechanisms import Mechanisms
+    from snowshed.snow.accuracy.stack_errors import recorded_bias
 
     if prediction.grid_error:
         return (

@@ -323,9 +323,9 @@ def print_plan_cost(plan: SeasonPlan, *, quiet: bool) -> None:
 
 def print_season(result: SeasonResult, folder: Path, scene: ResolvedScene) -> None:
     """Print the table, the event that buries the panel, and notes on the limits of the results."""
-    from snowshed.analysis.accuracy.mechanisms import Mechanisms
-    from snowshed.analysis.accuracy.stack_errors import recorded_bias
     from snowshed.season.driver import verdict
+    from snowshed.snow.accuracy.mechanisms import Mechanisms
+    from snowshed.snow.accuracy.stack_errors import recorded_bias
 
     console = wide_console(120)
     columns = dict(SEASON_TABLE)

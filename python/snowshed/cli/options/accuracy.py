@@ -23,8 +23,8 @@ from snowshed.scene.scene import Scene
 from snowshed.scene.schema import current_path
 
 if TYPE_CHECKING:
-    from snowshed.analysis.accuracy.measurements import MeasuredSolution, Value
-    from snowshed.analysis.accuracy.recorded_stacks import RecordedStack
+    from snowshed.snow.accuracy.measurements import MeasuredSolution, Value
+    from snowshed.snow.accuracy.recorded_stacks import RecordedStack
 
 
 def parse_fraction(text: str) -> float:
@@ -101,8 +101,8 @@ def choose(
     >>> choice.values["numerics.dx"] > 0
     True
     """
-    from snowshed.analysis.accuracy.recorded import load_recorded
-    from snowshed.analysis.accuracy.recorded_stacks import (
+    from snowshed.snow.accuracy.recorded import load_recorded
+    from snowshed.snow.accuracy.recorded_stacks import (
         CASE,
         PRESET_THICKNESS,
         circumstances,
@@ -166,7 +166,7 @@ def check_alone(options: Mapping[str, Any]) -> None:
 
 def best_of(stacks: Sequence[RecordedStack], wanted: float) -> RecordedStack:
     """Return the quickest recorded stack that is accurate enough, or else the most accurate."""
-    from snowshed.analysis.accuracy.solutions import quickest
+    from snowshed.snow.accuracy.solutions import quickest
 
     costs, errors = [stack.wall_s for stack in stacks], [stack.error for stack in stacks]
     return stacks[quickest(costs, errors, wanted)]
@@ -174,22 +174,22 @@ def best_of(stacks: Sequence[RecordedStack], wanted: float) -> RecordedStack:
 
 def _settings_text(stack: RecordedStack, name: str) -> str:
     """Return the scheme of a recorded stack, and its further settings except `name`."""
-    from snowshed.analysis.accuracy.mechanisms import SCHEME
-    from snowshed.analysis.accuracy.setting_labels import settings_label
+    from snowshed.snow.accuracy.mechanisms import SCHEME
+    from snowshed.snow.accuracy.setting_labels import settings_label
 
     further = {k: v for k, v in stack.settings.items() if k in ACCURACY and k not in (name, SCHEME)}
     return ", ".join(filter(None, [f"scheme {_scheme(stack)}", settings_label(further)]))
 
 
 def _scheme(stack: RecordedStack) -> str:
-    from snowshed.analysis.accuracy.mechanisms import scheme_of
+    from snowshed.snow.accuracy.mechanisms import scheme_of
 
     return scheme_of(stack.settings)
 
 
 def _outcome(stack: RecordedStack, wanted: float, what: str) -> str:
     """Return sentences with the chosen settings and their errors."""
-    from snowshed.analysis.accuracy.recorded_stacks import PRESET
+    from snowshed.snow.accuracy.recorded_stacks import PRESET
 
     height, length = (percent(error, 2) for error in stack.errors)
     errors_text = (
@@ -209,8 +209,8 @@ def _outcome(stack: RecordedStack, wanted: float, what: str) -> str:
 
 def _all_panels(stack: RecordedStack, cells: float, data: Mapping[str, Any]) -> list[str]:
     """Return a sentence on the errors of all recorded panels, which may be larger than wanted."""
-    from snowshed.analysis.accuracy.mechanisms import Mechanisms
-    from snowshed.analysis.accuracy.panel_errors import panel_errors
+    from snowshed.snow.accuracy.mechanisms import Mechanisms
+    from snowshed.snow.accuracy.panel_errors import panel_errors
 
     mechanisms = Mechanisms.of_settings(stack.settings)
     errors = panel_errors(mechanisms, cells, int(data["events"]["count"]))
@@ -218,7 +218,7 @@ def _all_panels(stack: RecordedStack, cells: float, data: Mapping[str, Any]) -> 
 
 
 def _scatter(stack: RecordedStack) -> list[str]:
-    from snowshed.analysis.accuracy.recorded_stacks import QUANTITIES
+    from snowshed.snow.accuracy.recorded_stacks import QUANTITIES
 
     if len(stack.spreads) != len(QUANTITIES):
         return []
@@ -263,9 +263,9 @@ def _other_scheme(
 
 def _differences(stack: RecordedStack, data: Mapping[str, Any], thickness: float) -> list[str]:
     """Return sentences on the differences of the scene from the recorded one."""
-    from snowshed.analysis.accuracy.mechanisms import Mechanisms
-    from snowshed.analysis.accuracy.recorded_stacks import PRESET_THICKNESS, circumstances
-    from snowshed.analysis.accuracy.setting_labels import settings_label
+    from snowshed.snow.accuracy.mechanisms import Mechanisms
+    from snowshed.snow.accuracy.recorded_stacks import PRESET_THICKNESS, circumstances
+    from snowshed.snow.accuracy.setting_labels import settings_label
 
     scene_circumstances = circumstances(data)
     other = {

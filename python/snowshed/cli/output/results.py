@@ -8,7 +8,6 @@ from typing import Any, Optional
 
 from rich.table import Table
 
-from snowshed.analysis.accuracy.stack_errors import error_sentence
 from snowshed.base.paths import shell_words
 from snowshed.cli.output.terminal import PlainConsole, plain_table, wide_console
 from snowshed.io.json_file import read_object
@@ -42,8 +41,6 @@ def print_events(results: Results) -> None:
         events.add_row(*(form.format(row[name]) for name, form in EVENT_TABLE.values()))
     wide_console(120).print(events)
     console = PlainConsole()
-    if error := error_sentence(results.scene):
-        console.print(error)
     console.print(contacts_and_damping(results.scene.data, mean_damping_rate(table)))
     residual = energy_residual(folder)
     if residual is not None:

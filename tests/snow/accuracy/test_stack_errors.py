@@ -2,13 +2,13 @@ import pandas as pd
 import pytest
 
 from snowshed import Scene
-from snowshed.analysis.accuracy.measurements import Measured, MeasuredSolution
-from snowshed.analysis.accuracy.mechanisms import Mechanisms
-from snowshed.analysis.accuracy.panel_errors import TABLE, panel_errors
-from snowshed.analysis.accuracy.recorded import load_recorded
-from snowshed.analysis.accuracy.recorded_stacks import CASE, PRESET, PRESET_THICKNESS
-from snowshed.analysis.accuracy.stack_errors import error_sentence, recorded_bias, stack_error
 from snowshed.scene import example_slide
+from snowshed.snow.accuracy.measurements import Measured, MeasuredSolution
+from snowshed.snow.accuracy.mechanisms import Mechanisms
+from snowshed.snow.accuracy.panel_errors import TABLE, panel_errors
+from snowshed.snow.accuracy.recorded import load_recorded
+from snowshed.snow.accuracy.recorded_stacks import CASE, PRESET, PRESET_THICKNESS
+from snowshed.snow.accuracy.stack_errors import error_sentence, recorded_bias, stack_error
 
 
 def stack(dx, height, length, **settings):

@@ -12,8 +12,8 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Optional
 
-from snowshed.analysis.accuracy.mechanisms import SCHEME, Mechanisms
 from snowshed.base.formatting import number_span, percent_span, plural
+from snowshed.snow.accuracy.mechanisms import SCHEME, Mechanisms
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -10,13 +10,13 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any, Optional
 
-from snowshed.analysis.accuracy.measurements import CaseSettings, Value
-from snowshed.analysis.accuracy.recorded_stacks import PRESET
-from snowshed.analysis.accuracy.setting_labels import settings_label
 from snowshed.base.formatting import percent
 from snowshed.methods.mpm.settings import MpmSettings
 from snowshed.methods.registry import SETTINGS_KEY, settings_of
 from snowshed.scene.scene import Scene
+from snowshed.snow.accuracy.measurements import CaseSettings, Value
+from snowshed.snow.accuracy.recorded_stacks import PRESET
+from snowshed.snow.accuracy.setting_labels import settings_label
 
 SCHEME = "scheme"
 #: The scheme of recorded runs that do not name it.

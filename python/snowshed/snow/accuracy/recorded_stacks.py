@@ -10,15 +10,15 @@ from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Optional
 
-from snowshed.analysis.accuracy.measurements import CaseSettings, MeasuredSolution, Value, to_table
-from snowshed.analysis.accuracy.solutions import (
+from snowshed.methods.mpm.settings import MpmSettings
+from snowshed.snow.accuracy.measurements import CaseSettings, MeasuredSolution, Value, to_table
+from snowshed.snow.accuracy.solutions import (
     SEEDING_SETTINGS,
     assured_errors,
     rows_of,
     settings_key,
     solutions,
 )
-from snowshed.methods.mpm.settings import MpmSettings
 
 CASE = "stack_convergence"
 QUANTITIES = ("height", "length")

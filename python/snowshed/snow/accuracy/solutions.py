@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple, Optional
 
 import numpy as np
 
-from snowshed.analysis.accuracy.measurements import CaseSettings, setting_names
+from snowshed.snow.accuracy.measurements import CaseSettings, setting_names
 
 if TYPE_CHECKING:
     import pandas as pd

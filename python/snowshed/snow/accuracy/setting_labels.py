@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Optional
 
-from snowshed.analysis.accuracy.measurements import Value
 from snowshed.base.formatting import MISSING, number
 from snowshed.scene.accuracy_settings import ACCURACY
+from snowshed.snow.accuracy.measurements import Value
 
 
 def setting_label(name: str, value: Optional[Value]) -> str:

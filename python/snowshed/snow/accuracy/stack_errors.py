@@ -12,11 +12,15 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Optional, Union
 
-from snowshed.analysis.accuracy.measurements import CaseSettings, MeasuredSolution
-from snowshed.analysis.accuracy.mechanisms import SCHEME, SCHEME_SETTINGS, Mechanisms
-from snowshed.analysis.accuracy.panel_errors import PanelErrors, panel_errors
-from snowshed.analysis.accuracy.recorded import load_recorded
-from snowshed.analysis.accuracy.recorded_stacks import (
+from snowshed.base.arguments import checked
+from snowshed.base.formatting import number, number_span, percent_span
+from snowshed.scene.accuracy_settings import MIN_CELLS_ACROSS
+from snowshed.scene.scene import ResolvedScene, Scene
+from snowshed.snow.accuracy.measurements import CaseSettings, MeasuredSolution
+from snowshed.snow.accuracy.mechanisms import SCHEME, SCHEME_SETTINGS, Mechanisms
+from snowshed.snow.accuracy.panel_errors import PanelErrors, panel_errors
+from snowshed.snow.accuracy.recorded import load_recorded
+from snowshed.snow.accuracy.recorded_stacks import (
     ORDER_IN,
     PRESET,
     PRESET_THICKNESS,
@@ -27,10 +31,6 @@ from snowshed.analysis.accuracy.recorded_stacks import (
     recorded_stacks,
     slab_thickness,
 )
-from snowshed.base.arguments import checked
-from snowshed.base.formatting import number, number_span, percent_span
-from snowshed.running.scene_notes import MIN_CELLS_ACROSS
-from snowshed.scene.scene import ResolvedScene, Scene
 
 #: The only settings in which a plain recorded run may differ from the defaults.
 _PLAIN = {"dimension", "between", "events", ORDER_IN, SCHEME, *SCHEME_SETTINGS}

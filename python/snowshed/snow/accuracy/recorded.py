@@ -2,7 +2,7 @@
 
 They were made by the full suite of the folder ``validation`` in the source of snowshed::
 
-    python -m validation --full --record python/snowshed/analysis/accuracy/recorded.json -o out
+    python -m validation --full --record python/snowshed/snow/accuracy/recorded.json -o out
 
 Their durations also say how long a suite will take.
 """
@@ -14,9 +14,9 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Optional
 
-from snowshed.analysis.accuracy.measurements import MeasuredSolution
 from snowshed.io.atomic import write_text
 from snowshed.io.json_file import check_values, read_object
+from snowshed.snow.accuracy.measurements import MeasuredSolution
 
 PACKAGED_FILE = Path(__file__).with_name("recorded.json")
 
