@@ -28,7 +28,8 @@ LONG = {"image_to_stack.py"}
 #: of a second, and the lines that caused them.
 NOTE = re.compile(
     r".*: (?:Resolution|Result|Snowshed)Note: (the slab is .* thick, less than|laws of the user|"
-    r"error of the stack|Secondary release .* never started|Dam .*: no snow|The slide was still moving).*\n.*\n"
+    r"error of the stack|Secondary release .* never started|Dam .*: no snow|"
+    r"The slide was still moving).*\n.*\n"
 )
 
 
