@@ -1,5 +1,6 @@
 """Notes of runs: as warnings, on the command line and in run.json, from every interface."""
 
+import html
 import json
 import warnings
 
@@ -9,12 +10,14 @@ from conftest import tiny_mps, tiny_scene
 from helpers.grain_files import VOXEL, write_labels
 from helpers.slide_files import plane
 
-from snowshed import InputError, ResultNote, Scene, Simulation, SnowshedNote, run_events
+from snowshed import InputError, ResultNote, Results, Scene, Simulation, SnowshedNote, run_events
 from snowshed.base.notes import record_notes
 from snowshed.cli.main import main
 from snowshed.io.raster.raster import write_ascii_grid
+from snowshed.results.view import write_view
 from snowshed.running.run import run
 from snowshed.running.scene_notes import notes_after, notes_before, notes_of_beginning
+from snowshed.snow.accuracy.stack_errors import error_sentence
 
 
 def ball_in_ground(**values: object) -> Scene:
@@ -37,6 +40,16 @@ def test_run_events_warns_and_records_notes(tmp_path):
         "the slab is 20 mm thick, less than two cells of 20 mm",
         "nothing slid",
     ]
+
+
+def test_a_run_notes_the_error_of_its_stack(tmp_path):
+    scene = tiny_scene()
+    with pytest.warns(ResultNote, match="error of the stack in recorded runs"):
+        run_events(scene, tmp_path / "run", pictures=False)
+    sentence = error_sentence(scene.resolve())
+    assert notes_of(tmp_path / "run").count(sentence) == 1
+    page = html.unescape(write_view(tmp_path / "run").read_text())
+    assert sentence in page and sentence in html.unescape(Results(tmp_path / "run")._repr_html_())
 
 
 def test_every_interface_notes_or_refuses_misplaced_snow(tmp_path, capsys):
