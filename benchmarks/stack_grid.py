@@ -156,9 +156,10 @@ def panel_errors(table: pd.DataFrame) -> pd.DataFrame:
     finest = table.groupby(panel)["dx"].transform("min")
     has_finest = table.groupby(list(GROUP_COLUMNS))["dx"].transform("min") == finest
     coarse = table[has_finest & (table["dx"] > finest)]
-    thickness = coarse["case"].map(lambda case: scene_of("thesis", 0.01, case).slab.thickness)
+    scenes = {case: scene_of("thesis", 0.01, case) for case in CASES}
+    thickness = coarse["case"].map({case: scene.slab.thickness for case, scene in scenes.items()})
     coarse = coarse.assign(
-        dimension=coarse["case"].map(lambda case: scene_of("thesis", 0.01, case).dimension),
+        dimension=coarse["case"].map({case: scene.dimension for case, scene in scenes.items()}),
         cells=(thickness / coarse["dx"]).round(6),
         **{column: coarse[f"{name}_m_off"].round(6) for name, column in ERRORS.items()},
     )

@@ -3,6 +3,7 @@
 import signal
 import threading
 import time
+from collections import Counter
 from dataclasses import replace
 
 import pytest
@@ -11,6 +12,7 @@ from study_helpers import outcome, tiny_scene, tiny_study
 
 from snowshed import InputError, SnowshedNote, _core
 from snowshed.base.notes import record_notes
+from snowshed.snow.accuracy.stack_errors import BEGINNING
 from snowshed.study import Study, StudyError, StudyInterrupted, cost_estimate, resume, session
 from snowshed.study.outcome import RunOutcome
 from snowshed.study.owner import ownership
@@ -334,3 +336,13 @@ def test_notes_of_earlier_results_are_told_again_in_one_summary(scripted_workers
             wider.run(folder)
         assert reported == ["2 runs: the slab is thin"]
     assert len(scripted_workers.tasks) == 2
+
+
+def test_the_errors_of_many_stacks_are_one_note_and_hide_no_other():
+    errors = {f"{BEGINNING} in recorded runs ({cells} cells)": cells for cells in range(1, 20)}
+    with record_notes() as notes:
+        session._issue_run_notes(Counter({**errors, "nothing slid": 1}))
+    assert notes == [
+        "1 run: nothing slid",
+        f"19 runs: {BEGINNING} in recorded runs (19 cells); 171 more have other errors",
+    ]

@@ -24,6 +24,7 @@ from snowshed.base.notes import ResultNote, issue_note
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Progress, Reporter
 from snowshed.io.locks import is_held
+from snowshed.snow.accuracy.stack_errors import BEGINNING
 from snowshed.study import cost_estimate
 from snowshed.study.errors import StudyError, StudyInterrupted
 from snowshed.study.locks import is_owner
@@ -184,11 +185,16 @@ def _compute(
 
 
 def _issue_run_notes(notes: Counter[str]) -> None:
-    """Issue the notes on runs, the most frequent first."""
-    for note, runs in notes.most_common(MAX_NOTES):
-        issue_note(f"{runs} {'run' if runs == 1 else 'runs'}: {note}", ResultNote)
-    if len(notes) > MAX_NOTES:
-        issue_note(f"{len(notes) - MAX_NOTES} further notes on runs", ResultNote)
+    """Issue the notes on runs, the most frequent first, and at last one on the errors of stacks."""
+    errors = Counter({note: n for note, n in notes.items() if note.startswith(BEGINNING)})
+    others = notes - errors
+    for note, runs in others.most_common(MAX_NOTES):
+        issue_note(f"{plural(runs, 'run')}: {note}", ResultNote)
+    if len(others) > MAX_NOTES:
+        issue_note(f"{len(others) - MAX_NOTES} further notes on runs", ResultNote)
+    for note, runs in errors.most_common(1):
+        rest = "" if len(errors) == 1 else f"; {sum(errors.values()) - runs} more have other errors"
+        issue_note(f"{plural(runs, 'run')}: {note}{rest}", ResultNote)
 
 
 def _check_version(store: Store, pending: Sequence[StoredRun]) -> None:

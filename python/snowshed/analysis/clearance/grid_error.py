@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Optional
 
 from snowshed.snow.accuracy.mechanisms import Mechanisms
-from snowshed.snow.accuracy.panel_errors import PanelErrors, panel_errors, recorded_schemes
-from snowshed.snow.accuracy.recorded import load_recorded
-from snowshed.snow.accuracy.recorded_stacks import recorded_stacks
+from snowshed.snow.accuracy.panel_errors import panel_errors, recorded_schemes
 from snowshed.snow.accuracy.solutions import quickest
-from snowshed.snow.accuracy.stack_errors import resolved_stacks
+from snowshed.snow.accuracy.stack_errors import packaged_stacks, resolved_stacks
 
 #: Fewest cells across a slab.
 MIN_CELLS = 2.0
@@ -109,26 +107,23 @@ def recorded_grid_error(
     True
     """
     mechanisms = Mechanisms.of_scene(scene) or Mechanisms()
-    errors = panel_errors(mechanisms, cells, slide_offs, planar=True)
-    if errors is not None:
-        return _height_error(mechanisms, errors)
-    recorded = [Mechanisms(scheme) for scheme in recorded_schemes()]
-    of_schemes = [
-        _height_error(plain, errors)
-        for plain in recorded
-        if (errors := panel_errors(plain, cells, slide_offs, planar=True))
-    ]
-    largest = max(of_schemes, key=lambda error: error.size)
+    error = _height_error(mechanisms, cells, slide_offs)
+    if error is not None:
+        return error
+    errors = (_height_error(Mechanisms(name), cells, slide_offs) for name in recorded_schemes())
+    largest = max(filter(None, errors), key=lambda recorded: recorded.size)
     note = f"no stacks are recorded for {mechanisms.label}, so it is the largest of all schemes"
     return GridError(largest.size, f"{note}: {largest.source}")
 
 
 def _timed_schemes() -> list[str]:
-    stacks = recorded_stacks(load_recorded())
-    return sorted({Mechanisms.of_settings(stack.settings).scheme for stack in stacks})
+    return sorted({Mechanisms.of_settings(stack.settings).scheme for stack in packaged_stacks()})
 
 
-def _height_error(mechanisms: Mechanisms, errors: PanelErrors) -> GridError:
+def _height_error(mechanisms: Mechanisms, cells: float, slide_offs: int) -> Optional[GridError]:
+    errors = panel_errors(mechanisms, cells, slide_offs, planar=True)
+    if errors is None:
+        return None
     clauses = [
         f"recorded stacks of {errors.slide_offs} or more slide-offs ({errors.panels}, "
         f"{mechanisms.label}, {errors.cells_text}) were "

@@ -8,8 +8,9 @@ do the errors of all recorded panels. Each scheme has runs and a finest grid of 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Optional, Union
 
 from snowshed.base.arguments import checked
@@ -32,6 +33,8 @@ from snowshed.snow.accuracy.recorded_stacks import (
     slab_thickness,
 )
 
+#: Beginning of every sentence on the error of a stack.
+BEGINNING = "error of the stack"
 #: The only settings in which a plain recorded run may differ from the defaults.
 _PLAIN = {"dimension", "between", "events", ORDER_IN, SCHEME, *SCHEME_SETTINGS}
 
@@ -89,7 +92,7 @@ class StackError:
             else f"; this scene has {number(self.cells, 2)}"
         )
         return _clauses(
-            f"error of the stack in recorded runs ({_scene_label(self.settings)}, {cells} in the "
+            f"{BEGINNING} in recorded runs ({_scene_label(self.settings)}, {cells} in the "
             f"slab{own_cells}): {bias}, relative to the finest recorded grid of this scheme, "
             "which is itself not converged",
             "" if self.panels is None else self.panels.sentence,
@@ -131,7 +134,8 @@ def stack_error(
     if thickness is None or mechanisms is None:
         return None
     cells = thickness / float(data["numerics"][ORDER_IN])
-    stacks = _plain_stacks(load_recorded() if measurements is None else measurements, mechanisms)
+    recorded = packaged_stacks() if measurements is None else recorded_stacks(measurements)
+    stacks = _plain_stacks(recorded, mechanisms)
     wanted = {**circumstances(data), ORDER_IN: PRESET_THICKNESS / cells}
     chosen = nearest(stacks, wanted)
     if not chosen:
@@ -169,7 +173,7 @@ def error_sentence(scene: ResolvedScene) -> str:
     mechanisms = Mechanisms.of_scene(scene.data)
     if slab_thickness(scene.data) is None or mechanisms is None:
         return ""
-    return f"error of the stack: {_no_runs_text(mechanisms)}; --check measures it"
+    return f"{BEGINNING}: {_no_runs_text(mechanisms)}; --check measures it"
 
 
 def recorded_bias(dimension: int, events: int, mechanisms: Optional[Mechanisms] = None) -> str:
@@ -230,6 +234,18 @@ def resolved_stacks(
     return _resolved(_nearest_stacks(dimension, events, mechanisms or Mechanisms()))
 
 
+@cache
+def packaged_stacks() -> Sequence[RecordedStack]:
+    """Return the recorded stacks of the package, which are read once: every run needs them.
+
+    Examples
+    --------
+    >>> len(packaged_stacks()) > 50
+    True
+    """
+    return recorded_stacks(load_recorded())
+
+
 def _resolved(stacks: Iterable[RecordedStack]) -> dict[float, RecordedStack]:
     by_cells = {PRESET_THICKNESS / float(stack.settings[ORDER_IN]): stack for stack in stacks}
     return {cells: stack for cells, stack in by_cells.items() if cells > MIN_CELLS_ACROSS - 1e-9}
@@ -237,17 +253,15 @@ def _resolved(stacks: Iterable[RecordedStack]) -> dict[float, RecordedStack]:
 
 def _nearest_stacks(dimension: int, events: int, mechanisms: Mechanisms) -> list[RecordedStack]:
     return nearest(
-        _plain_stacks(load_recorded(), mechanisms), {"dimension": dimension, "events": events}
+        _plain_stacks(packaged_stacks(), mechanisms), {"dimension": dimension, "events": events}
     )
 
 
-def _plain_stacks(
-    measurements: Iterable[MeasuredSolution], mechanisms: Mechanisms
-) -> list[RecordedStack]:
+def _plain_stacks(recorded: Iterable[RecordedStack], mechanisms: Mechanisms) -> list[RecordedStack]:
     """Return the recorded stacks with these mechanisms, and with defaults otherwise."""
     return [
         stack
-        for stack in recorded_stacks(measurements)
+        for stack in recorded
         if set(stack.settings) <= _PLAIN and Mechanisms.of_settings(stack.settings) == mechanisms
     ]
 
