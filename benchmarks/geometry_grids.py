@@ -46,11 +46,9 @@ GRIDS = (
 
 def studies(grid: Grid) -> Iterator[Study]:
     """Return the studies of a grid, one for each length of the panel."""
-    base = geometry_study(dx=grid.cells).scene.with_(
+    base = geometry_study(dx=grid.cells, scheme=grid.scheme).scene.with_(
         {"panel.friction": FRICTION, "panel.height": HEIGHT, "events.between": "carry"}
     )
-    if grid.scheme != "thesis":
-        base.update({"numerics.scheme": grid.scheme, "numerics.damping_rate": None})
     for length, seeds in grid.seeds.items():
         scene = base.with_({"panel.length": length})
         yield Study.product(scene, {"panel.tilt": TILTS}, seeds=range(1, seeds + 1))

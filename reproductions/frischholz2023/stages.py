@@ -41,17 +41,15 @@ class ThesisComputation:
         The folder, and the settings.
     table
         Rows of panels to use for chapter 5 instead of simulating them. Without it, a reproduction
-        that simulates no panels takes the table that comes with snowshed, if its scheme is that of
-        the table: the thesis's.
+        that simulates no panels takes the table of its scheme that comes with snowshed.
     """
 
     def __init__(self, path: Path, settings: Settings, table: Optional[Path]) -> None:
         self.folder = folder = ReproductionFolder(path)
         self.settings = settings
-        has_thesis_scheme = settings.scheme == "thesis"
-        if table is None and not settings.simulates_panels and has_thesis_scheme:
-            table = geometry_table()
-        left_out: set[str] = set() if has_thesis_scheme else {*THESIS_SCHEME_STAGES}
+        if table is None and not settings.simulates_panels:
+            table = geometry_table(scheme=settings.scheme)
+        left_out = set() if settings.scheme == "thesis" else {*THESIS_SCHEME_STAGES}
         if table is not None:
             left_out.add("geometry")
         self.table = table

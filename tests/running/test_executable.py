@@ -15,7 +15,7 @@ from helpers.bad_scenes import CLOSED_MESH, bad_scene  # noqa: F401
 from helpers.interrupted_runs import interrupt_at
 from helpers.processes import EXECUTABLE, snowshed_run
 
-from snowshed import Interrupted, ResolvedScene, _core, run_events
+from snowshed import Interrupted, ResolvedScene, ResultNote, _core, run_events
 from snowshed.cli.main import main
 from snowshed.running import sequence
 
@@ -273,6 +273,15 @@ def test_python_resumes_a_run_of_the_executable(longer, measured, tmp_path, mome
     assert_same_results(tmp_path / "out", measured)
 
 
+def test_the_error_of_a_stack_of_the_executable_is_noted_when_it_is_measured(longer, tmp_path):
+    scene, results = longer
+    shutil.copytree(results, tmp_path / "out")
+    with pytest.warns(ResultNote, match="error of the stack in recorded runs"):
+        run_events(ResolvedScene.load(scene), tmp_path / "out", resume=True, pictures=False)
+    notes = json.loads((tmp_path / "out" / "run.json").read_text())["notes"]
+    assert sum(note.startswith("error of the stack") for note in notes) == 1
+
+
 @pytest.mark.parametrize("moment", ["within", "between"])
 def test_the_executable_resumes_a_run_of_python(longer, measured, tmp_path, monkeypatch, moment):
     monkeypatch.setattr(sequence, "REPORT_INTERVAL", 0.0)
@@ -281,7 +290,8 @@ def test_the_executable_resumes_a_run_of_python(longer, measured, tmp_path, monk
     done = snowshed_run(scene, "-o", tmp_path / "out", "--resume")
     assert done.returncode == 0
     assert done.stderr.endswith(
-        f"for tables and pictures: snowshed run {scene} -o {tmp_path / 'out'} --resume\n"
+        "for tables, pictures and the error of the stack: "
+        f"snowshed run {scene} -o {tmp_path / 'out'} --resume\n"
     )
     assert particle_files(tmp_path / "out") == particle_files(results)
     run_events(ResolvedScene.load(scene), tmp_path / "out", resume=True, pictures=False)

@@ -14,22 +14,24 @@ from snowshed.base.arguments import checked
 from snowshed.base.callers import resuming_call
 from snowshed.base.paths import PathLike
 from snowshed.base.progress import Reporter
-from snowshed.io.atomic import replacing_folder
+from snowshed.io.atomic import replacing_folder, write_text
 from snowshed.io.folders import check_empty
-from snowshed.io.json_file import read_object
+from snowshed.io.json_file import read_object, sealed
+from snowshed.io.run_files import RECORD
 from snowshed.methods.registry import method_of
 from snowshed.results.folder import RunFolder
 from snowshed.running.ageing.ageing import Ageing
 from snowshed.running.run import run_events
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import ResolvedScene
+from snowshed.snow.accuracy.stack_errors import BEGINNING
 
 if TYPE_CHECKING:
     import pandas as pd
 
 #: Files of a run from which the new run continues.
 CONTINUED_FILES = (
-    *("run.json", "events.csv", "outline.csv", "conversions.csv", "ageing.csv", "ageing.json"),
+    *(RECORD, "events.csv", "outline.csv", "conversions.csv", "ageing.csv", "ageing.json"),
     *(
         "energy.csv",
         "forces.csv",
@@ -215,5 +217,14 @@ def _prepare(earlier: RunFolder, scene: ResolvedScene, folder: Path) -> None:
                 shutil.copytree(there, beside / name)
             elif there.exists():
                 shutil.copyfile(there, beside / name)
+        _drop_stack_error(beside / RECORD)
         simulation.save(os.fspath(beside / "checkpoint.bin"))
         scene.save(beside / "scene.json")
+
+
+def _drop_stack_error(file: Path) -> None:
+    """Remove the note on the error of the stack from a record: it held for fewer events."""
+    record = read_object(file)
+    record.pop("checksum", None)
+    notes = [note for note in record.get("notes", ()) if not note.startswith(BEGINNING)]
+    write_text(file, sealed({**record, "notes": notes}))

@@ -97,7 +97,10 @@ class StackRun(MethodRun):
             positions = particles["position"].astype(float)
             on_panel = self.simulation.on_panel_at(positions, facts["laid_height_m"])
             masses, density = (particles[name].astype(float) for name in ("mass", "density"))
-            self._record(facts, self._measure_particles(positions, masses, density, on_panel))
+            stack = self._measure_particles(positions, masses, density, on_panel)
+            self._record(facts, stack)
+            if event == self.simulation.event_count:
+                self._note_last(stack)
         self._note_tables()
 
     def between_events(self) -> None:
@@ -121,10 +124,14 @@ class StackRun(MethodRun):
         self._record(facts, self.stack)
         self._note_residual(facts)
         if facts["event"] == self.simulation.event_count:
-            for note in notes_after(parse_events(self.results.events.path), self.scene.data):
-                record_note(self.sequence, note, ResultNote)
-            if self.stack.height > 0 and (error := error_sentence(self.scene)):
-                record_note(self.sequence, error, ResultNote)
+            self._note_last(self.stack)
+
+    def _note_last(self, stack: StackMeasure) -> None:
+        """Note what the events say about the last stack, and its error."""
+        for note in notes_after(parse_events(self.results.events.path), self.scene.data):
+            record_note(self.sequence, note, ResultNote)
+        if stack.height > 0 and (error := error_sentence(self.scene)):
+            record_note(self.sequence, error, ResultNote)
 
     def _note_residual(self, facts: Mapping[str, Any]) -> None:
         """Note that the time integration gained or lost too much energy."""

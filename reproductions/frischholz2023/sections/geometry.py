@@ -78,7 +78,7 @@ def columns_grid(table: pd.DataFrame) -> HtmlTable:
 
 def _settings(work: ThesisComputation) -> list[tuple[str, HtmlTable]]:
     """Return the common settings of all panels, unless the table is the user's."""
-    if work.table is not None and work.table != shipped_rows():
+    if work.table is not None and work.table != shipped_rows(scheme=work.settings.scheme):
         return []
     scene = geometry(work.settings)[0].runs()[0].scene
     return [("Table 5.1.1: settings of all panels", settings_grid(printed.PANELS_SCENE, [scene]))]

@@ -218,16 +218,15 @@ def test_a_scheme_applies_to_all_simulations_with_its_damping():
             assert (numerics["scheme"], numerics["damping_rate"]) == ("objective", 380)
 
 
-def test_another_scheme_uses_neither_deviations_nor_rows_of_the_thesis(tmp_path):
+def test_another_scheme_uses_no_deviations_and_its_own_rows_of_the_package(tmp_path):
     computation = ThesisComputation(tmp_path / "out", replace(TINY, scheme="objective"), None)
     assert list(computation.study_stages) == [
         "lab",
         "s-index",
         "fixation",
         "calibration",
-        "geometry",
     ]
-    assert computation.table is None
+    assert set(computation.rows.read().settings["scheme"].split()) == {"objective"}
 
 
 def test_planar_is_middle_in_two_dimensions():

@@ -32,12 +32,13 @@ def keep(tmp_path):
 
     def keep_claims(kind, *claims):
         folder = tmp_path / "-".join(kind)
-        folder.mkdir()
+        folder.mkdir(exist_ok=True)
         identity = {"size": kind[0], "scheme": kind[1]}
         (folder / "reproduction.json").write_text(json.dumps(identity), "utf-8")
         (folder / "claims.csv").write_text(claims_csv(claims), "utf-8")
-        with Store.create(folder / "runs"):
-            pass
+        if not (folder / "runs").exists():
+            with Store.create(folder / "runs"):
+                pass
         schemes_page.keep(folder, tmp_path)
 
     # The claims of --middle with the scheme thesis are those of another page.
@@ -52,22 +53,32 @@ def test_the_page_matches_the_results():
     assert schemes_page.PAGE.read_text(encoding="utf-8") == schemes_page.page()
 
 
-@pytest.mark.parametrize("size", schemes_page.DIMENSIONS)
-def test_exactly_the_changed_verdicts_have_a_reason(size):
-    pairs = schemes_page._pairs(schemes_page.DATA, size)
+@pytest.mark.parametrize("group", schemes_page.GROUPS)
+def test_exactly_the_changed_verdicts_have_a_reason(group):
+    pairs = schemes_page._pairs(schemes_page.DATA, group)
     changed = {a.text for a, b in pairs if a.finding.verdict != b.finding.verdict}
-    assert changed == set(REASONS[size])
+    assert changed == set(REASONS[group])
 
 
 def test_changed_and_unchanged_claims_are_listed_separately(keep, tmp_path):
     keep(PLANAR_THESIS, judged_claim(CONFIRMED, GROWS), FALLS, PANEL)
     keep(PLANAR, judged_claim(CONTRADICTED, GROWS), FALLS, PANEL)
-    introduction, _, _, changed, unchanged = schemes_page.page(tmp_path).split("\n## ")
-    assert "in 3D 0 of 1 and in 2D 1 of 2." in introduction
+    introduction, _, _, changed, unchanged, _, rows = schemes_page.page(tmp_path).split("\n## ")
+    assert "in 3D 0 of 1, in 2D 1 of 2, in chapter 5 0 of 1." in introduction
     assert "| `objective`, 2D | 1 | 1 | 0 |" in introduction
     row = f"| 3.3 | {GROWS} | confirmed: slope, m: confirmed | contradicted: slope, m: contradicted"
     assert row in changed and "It falls." not in changed
     assert "It falls." in unchanged and "It is long." not in unchanged
+    assert "It is long." in rows and "It falls." not in rows
+
+
+def test_claims_on_rows_are_kept_beside_those_of_a_reproduction_without_them(keep, tmp_path):
+    keep(PLANAR_THESIS, FALLS)
+    keep(PLANAR, FALLS, PANEL)
+    keep(PLANAR, judged_claim(CONTRADICTED, PANEL.text, PANEL.source))
+    with pytest.raises(InputError, match=r"no reason for 'It is long\.'"):
+        schemes_page.page(tmp_path)
+    assert "It falls." in (tmp_path / "claims-planar-objective.csv").read_text(encoding="utf-8")
 
 
 def test_claims_of_one_scheme_only_are_named(keep, tmp_path):

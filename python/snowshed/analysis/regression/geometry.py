@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from math import ceil, inf
-from typing import Optional
+from typing import Optional, get_args
 
 from snowshed._core import InputError
 from snowshed.base.arguments import checked
+from snowshed.methods.mpm.settings import Scheme
 from snowshed.scene.accuracy_settings import ACCURACY
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import Scene
@@ -27,12 +28,14 @@ GRIDS = (
 )
 #: Treatments of the stack between events; each is a separate study.
 BETWEEN = ("carry", "reseed")
+#: Schemes of the MPM, the thesis's first; each is a separate study.
+SCHEMES: tuple[str, ...] = get_args(Scheme)
 #: The panel's friction, which the thesis does not print. Of 0.3 to 0.8, which were tried on some of
 #: the panels, it gives ratios of height to length nearest to Table 5.3.1.
 FRICTION = 0.8
 #: Damping rate of PIC, 1/s. It corresponds to the thesis's share of 0.01 in each step, with cells
 #: of 1 cm and the calibrated snow in 2D (steps of 0.054 ms; in 3D it would be 211 1/s). The rate
-#: holds for cells of any size.
+#: holds for cells of any size. Schemes other than the thesis's have a rate of their own.
 DAMPING_RATE = 190.0
 #: Number of seeds of the shortest panels for each seed of panels up to some length, m. Stacks of
 #: short panels scatter most, and long panels take longest. With these shares, one more stack of
@@ -48,6 +51,7 @@ def geometry_study(
     friction: float = FRICTION,
     dx: float = 0.01,
     seeds: int = 1,
+    scheme: str = SCHEMES[0],
     settings: Optional[Mapping[str, object]] = None,
     name: str = "",
     trial: bool = False,
@@ -70,10 +74,12 @@ def geometry_study(
         Number of stacks for each panel up to 1 m, with different random seedings. Longer panels
         take more time and scatter less: panels up to 2 m have a third as many, up to 4 m a sixth,
         the others a sixteenth, rounded up.
+    scheme
+        Scheme of the MPM, "thesis" or "objective".
     settings
-        Further values by dotted paths. They override `between` and `dx`.
+        Further values by dotted paths. They override `between`, `dx` and `scheme`.
     name
-        Name of the study. [default: from its treatment of the stack]
+        Name of the study. [default: from its treatment of the stack, and its scheme]
     trial
         Whether to return a trial: a few panels on a coarse grid, which take seconds; its numbers
         are meaningless.
@@ -81,21 +87,25 @@ def geometry_study(
     Raises
     ------
     InputError
-        If `between` is unknown, or the scene has no such setting.
+        If `between` or `scheme` is unknown, or the scene has no such setting.
 
     Examples
     --------
     >>> len(geometry_study("reseed").runs())  # panels
     122
     """
-    scene = Scene.preset("geometry").update({"snow": Snow.preset("calibrated").to_data()})
-    if trial:
-        if settings:
-            raise InputError("settings: the trial has its own; allowed: none")
-        return _trial(scene, between, friction, seeds)
     changes = dict(settings or {})
+    if trial and changes:
+        raise InputError("settings: the trial has its own; allowed: none")
     between = str(changes.pop("events.between", between))
+    scheme = str(changes.pop("numerics.scheme", scheme))
     check_between(between)
+    check_scheme(scheme)
+    snow = Snow.preset("calibrated").to_data()
+    scene = Scene.preset("geometry").update({"snow": snow, "numerics.scheme": scheme})
+    if trial:
+        return _trial(scene, between, friction, seeds)
+    has_rate = scheme == SCHEMES[0] and "numerics.flip_ratio" not in changes
     scene.update(
         {
             "dimension": 2,
@@ -103,7 +113,7 @@ def geometry_study(
             "events.max_time": 30.0,  # s; 10 m at 40 degrees take 9 s
             "seeding.particles_per_voxel": 4,  # the fewest in 2D (A.3.2)
             "numerics.dx": dx,
-            **({} if "numerics.flip_ratio" in changes else {"numerics.damping_rate": DAMPING_RATE}),
+            **({"numerics.damping_rate": DAMPING_RATE} if has_rate else {}),
             **changes,
         }
     )
@@ -116,7 +126,7 @@ def geometry_study(
         for share in SHARES.values()
         if (some := [length for length in lengths if _share(length) == share])
     ]
-    return Study(scene, parts, name or f"geometry-{between}", description=DESCRIPTION)
+    return Study(scene, parts, name or rows_name(between, scheme), description=DESCRIPTION)
 
 
 def _trial(scene: Scene, between: str, friction: float, seeds: int) -> Study:
@@ -155,6 +165,23 @@ def check_between(between: str) -> None:
     """Raise an InputError for an unknown treatment between events."""
     if between not in BETWEEN:
         raise InputError(f"between: {between!r} is unknown; allowed: {', '.join(BETWEEN)}")
+
+
+def check_scheme(scheme: str) -> None:
+    """Raise an InputError for an unknown scheme."""
+    if scheme not in SCHEMES:
+        raise InputError(f"scheme: {scheme!r} is unknown; allowed: {', '.join(SCHEMES)}")
+
+
+def rows_name(between: str, scheme: str) -> str:
+    """Return the name of the study, and of its table; that of the thesis's scheme has no scheme.
+
+    Examples
+    --------
+    >>> rows_name("carry", "thesis"), rows_name("carry", "objective")
+    ('geometry-carry', 'geometry-carry-objective')
+    """
+    return "-".join(["geometry", between, *([scheme] if scheme != SCHEMES[0] else [])])
 
 
 def _share(length: float) -> int:

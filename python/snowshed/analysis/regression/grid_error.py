@@ -108,9 +108,9 @@ def recorded_grid_error(model: StackModel) -> Optional[PanelGridError]:
 
     Examples
     --------
-    >>> from snowshed.analysis.regression.dataset import MODEL
+    >>> from snowshed.analysis.regression.dataset import model_file
     >>> from snowshed.analysis.regression.model_file import load_model
-    >>> error = recorded_grid_error(load_model(MODEL))
+    >>> error = recorded_grid_error(load_model(model_file()))
     >>> error.cells, error.finest_cells, error.panels
     (0.015, 0.005, 8)
     """

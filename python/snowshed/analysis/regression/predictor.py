@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Optional, Union
 import numpy as np
 
 from snowshed._core import InputError
-from snowshed.analysis.regression.dataset import MODEL
+from snowshed.analysis.regression.dataset import model_file
+from snowshed.analysis.regression.geometry import SCHEMES
 from snowshed.analysis.regression.grid_error import PanelGridError, recorded_grid_error
 from snowshed.analysis.regression.model_file import StackModel, load_model
 from snowshed.analysis.regression.questions import Numbers, Questions
@@ -114,6 +115,7 @@ def predict(
     events: Optional[Numbers] = None,
     inputs: Optional[Mapping[str, Numbers]] = None,
     model: Union[PathLike, StackModel, None] = None,
+    scheme: Optional[str] = None,
     kind: Optional[str] = None,
     extrapolate: bool = False,
 ) -> Prediction:
@@ -137,6 +139,9 @@ def predict(
     model
         A model file of ``snowshed regress``, or its content from `load_model`, which saves reading
         it for every question. [default: the model in the package]
+    scheme
+        Scheme of the MPM with which the stacks of the model in the package were computed:
+        "thesis" or "objective". [default: thesis]
     kind
         "rbf", "gaussian-process" or "linear"; None: the first of these that the file holds.
     extrapolate
@@ -147,7 +152,8 @@ def predict(
     OutsideDataError
         If a panel lies outside the data; it names the panels.
     InputError
-        If there is no such model, or a column or value is not possible.
+        If there is no such model, a model is given with a scheme, or a column or value is not
+        possible.
 
     Examples
     --------
@@ -157,8 +163,10 @@ def predict(
     >>> predict(height=2, length=[2, 4, 6], tilt=60, events=5).array("height").shape
     (3, 5)
     """
+    if model is not None and scheme is not None:
+        raise InputError("scheme: has no effect with a given model, whose data have a scheme")
     if not isinstance(model, StackModel):
-        model = _packaged_model() if model is None else load_model(model)
+        model = _packaged_model(scheme or SCHEMES[0]) if model is None else load_model(model)
     named = {"height": height, "length": length, "tilt": tilt, "events": events, **(inputs or {})}
     questions = Questions.of(panels, named, model.names)
     kind = model.kinds[0] if kind is None else kind
@@ -179,8 +187,8 @@ def predict(
 
 
 @cache
-def _packaged_model() -> StackModel:
-    return load_model(MODEL)
+def _packaged_model(scheme: str) -> StackModel:
+    return load_model(model_file(scheme))
 
 
 def _objections(model: StackModel, questions: Questions) -> dict[int, list[str]]:

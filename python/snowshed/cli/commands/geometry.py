@@ -41,6 +41,11 @@ from snowshed.cli.output.terminal import write_out
     help="Seeds of each panel up to 1 m long; the regression uses the mean of their stacks. Longer "
     "panels get fewer: a third up to 2 m, a sixth up to 4 m, a sixteenth beyond (rounded up).",
 )
+@click.option(
+    "--scheme",
+    default="thesis",
+    help="Scheme of the MPM: thesis or objective.  [default: thesis]",
+)
 @click.option("--trial", is_flag=True, help="A few panels on a coarse grid: seconds.")
 @click.option("-o", "--output", "file", type=PATH, help="File to write.  [default: stdout]")
 @quiet_notes_option
@@ -51,6 +56,7 @@ def geometry(
     friction: float,
     dx: float,
     seeds: int,
+    scheme: str,
     trial: bool,
     file: Optional[Path],
 ) -> None:
@@ -67,7 +73,9 @@ def geometry(
 
     if trial:
         refuse_without_effect(["dx"], "with --trial, which has its own cell size")
-    study = geometry_study(between, friction=friction, dx=dx, seeds=seeds, trial=trial)
+    study = geometry_study(
+        between, friction=friction, dx=dx, seeds=seeds, scheme=scheme, trial=trial
+    )
     if file is None:
         write_out(study.to_toml())
     else:

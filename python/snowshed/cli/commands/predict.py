@@ -33,6 +33,10 @@ TARGET_TITLES = {"ratio": "height / length", "height": "height", "length": "leng
 )
 @click.option("--events", type=int, default=5, help="Number of slide-offs.  [default: 5]")
 @click.option("--model", type=PATH, help="Model file of regress.  [default: the shipped model]")
+@click.option(
+    "--scheme",
+    help="Scheme of the shipped model's simulations: thesis or objective.  [default: thesis]",
+)
 @click.option("--kind", help="Model: rbf, gaussian-process, linear.  [default: first available]")
 @click.option(
     "--extrapolate",
@@ -47,6 +51,7 @@ def predict(
     inputs: Sequence[str],
     events: int,
     model: Optional[Path],
+    scheme: Optional[str],
     kind: Optional[str],
     extrapolate: bool,
     as_json: bool,
@@ -62,6 +67,7 @@ def predict(
     from snowshed.analysis.regression.predictor import predict as ask
 
     asked: dict[str, Any] = {"height": height, "length": length, "tilt": tilt, "events": events}
+    asked["scheme"] = scheme
     others = named_once("--input", map(_input, inputs))
     try:
         prediction = ask(**asked, inputs=others, model=model, kind=kind, extrapolate=extrapolate)

@@ -282,4 +282,12 @@ def _no_runs_text(mechanisms: Mechanisms) -> str:
 
 
 def _bias_text(share: float) -> str:
-    return f"{100 * abs(share):.0f} % too {'large' if share > 0 else 'small'}"
+    """Return a relative deviation as text.
+
+    Examples
+    --------
+    >>> _bias_text(0.35), _bias_text(-0.001)
+    ('35 % too large', 'within 1 %')
+    """
+    percent = f"{100 * abs(share):.0f}"
+    return "within 1 %" if percent == "0" else f"{percent} % too {'large' if share > 0 else 'small'}"
