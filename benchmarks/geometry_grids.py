@@ -2,9 +2,9 @@
 
 Usage: python -m benchmarks.geometry_grids FOLDER
 
-The stacks have the settings of the data set's rows, and those of the scheme objective on one grid.
-`snowshed predict` takes the error of the grid from them. Two cores take more than an hour. Runs
-that are in FOLDER already are not made again.
+The stacks have the settings of the data set's rows with each scheme. `snowshed predict` takes the
+error of the grid from them. Two cores take two hours. Runs that are in FOLDER already are not made
+again.
 """
 
 from __future__ import annotations
@@ -41,6 +41,8 @@ GRIDS = (
     Grid("thesis", 0.01, MANY),
     Grid("thesis", 0.005, {**MANY, 4.0: 1}),
     Grid("objective", 0.015, {0.5: 3, 1.0: 2, 2.0: 1, 4.0: 1}),
+    Grid("objective", 0.01, {0.5: 2, 1.0: 2, 2.0: 1}),
+    Grid("objective", 0.005, {0.5: 1, 1.0: 1}),
 )
 
 

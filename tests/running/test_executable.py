@@ -290,8 +290,7 @@ def test_the_executable_resumes_a_run_of_python(longer, measured, tmp_path, monk
     done = snowshed_run(scene, "-o", tmp_path / "out", "--resume")
     assert done.returncode == 0
     assert done.stderr.endswith(
-        "for tables, pictures and the error of the stack: "
-        f"snowshed run {scene} -o {tmp_path / 'out'} --resume\n"
+        f"for tables, pictures and all notes: snowshed run {scene} -o {tmp_path / 'out'} --resume\n"
     )
     assert particle_files(tmp_path / "out") == particle_files(results)
     run_events(ResolvedScene.load(scene), tmp_path / "out", resume=True, pictures=False)

@@ -34,8 +34,8 @@ def test_an_extended_run_equals_a_run_with_all_events(tmp_path, between):
     names += ["conversions.csv"] * (between == "reseed")
     for name in names:
         assert (tmp_path / "more" / name).read_bytes() == (tmp_path / "three" / name).read_bytes()
-    more, three = (json.loads((tmp_path / name / "run.json").read_text()) for name in ("more", "three"))
-    assert more["notes"] == three["notes"]
+    records = [json.loads((tmp_path / name / "run.json").read_text()) for name in ("more", "three")]
+    assert records[0]["notes"] == records[1]["notes"]
     assert fingerprints(tmp_path / "one") == before
 
 

@@ -168,7 +168,7 @@ int run_scene(const Options& o) {
         "interrupted; resume with: snowshed-run " + o.scene + " -o " + o.folder + " --resume", 130);
   }
   if (!o.quiet)
-    std::fprintf(stderr, "for tables, pictures and the error of the stack: snowshed run %s -o %s --resume\n",
+    std::fprintf(stderr, "for tables, pictures and all notes: snowshed run %s -o %s --resume\n",
                  printable(o.scene).c_str(), printable(o.folder).c_str());
   return 0;
 }

@@ -9,7 +9,7 @@ import pytest
 
 from snowshed.analysis.regression import grid_error as recorded
 from snowshed.analysis.regression import load_model, predict
-from snowshed.analysis.regression.dataset import MODEL
+from snowshed.analysis.regression.dataset import model_file
 from snowshed.analysis.regression.grid_error import NORMAL_90, recorded_grid_error
 from snowshed.cli.commands.predict import prediction_json, print_prediction
 
@@ -28,7 +28,7 @@ OTHER_ROWS = {
 
 @pytest.fixture
 def model():
-    return load_model(MODEL)
+    return load_model(model_file())
 
 
 def record_stacks(monkeypatch, folder, factors):
@@ -84,7 +84,8 @@ def test_another_scheme_is_compared_on_the_same_cells(monkeypatch, tmp_path, mod
     error = recorded_grid_error(model)
     np.testing.assert_allclose(error.others["scheme objective"]["height"], [np.log(0.9)])
     assert "with scheme objective on the same cells they are 10 % lower" in error.sentence
-    settings = {**model.settings, "scheme": "objective", "damping_rate": "380.0"}
+    settings = {"dx": "0.015", "scheme": "objective", "damping_rate": "380.0"}
+    settings = {**settings, **recorded.RECORDED_WITH}
     assert recorded_grid_error(replace(model, settings=settings)) is None  # on one grid only
 
 

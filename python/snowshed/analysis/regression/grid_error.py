@@ -125,7 +125,8 @@ def recorded_grid_error(model: StackModel) -> Optional[PanelGridError]:
 def _recorded() -> Mapping[str, pd.DataFrame]:
     """Return recorded mean stacks by the label of their mechanisms.
 
-    A table has a row for each panel and event, and the columns (target, size of the cells).
+    A table has a row for each panel and event, and the columns (target, size of the cells) for the
+    grids on which the mechanisms were computed.
     """
     import pandas as pd
 
@@ -135,7 +136,9 @@ def _recorded() -> Mapping[str, pd.DataFrame]:
     means["ratio"] = means["height"] / means["length"]
     wide = pd.DataFrame(means.unstack(CELLS))
     return {
-        Mechanisms.of_settings({SCHEME: scheme, DAMPING: damping}).label: table.droplevel([0, 1])
+        Mechanisms.of_settings({SCHEME: scheme, DAMPING: damping}).label: (
+            table.droplevel([0, 1]).dropna(axis="columns", how="all")
+        )
         for (scheme, damping), table in wide.groupby([SCHEME, DAMPING])
     }
 

@@ -122,15 +122,17 @@ def _interval_text(prediction: Prediction) -> str:
     from snowshed.snow.accuracy.mechanisms import Mechanisms
     from snowshed.snow.accuracy.stack_errors import recorded_bias
 
+    mechanisms = Mechanisms.of_texts(prediction.settings)
     if prediction.grid_error:
+        sources = filter(None, [prediction.grid_error, mechanisms.calibration_note])
         return (
             "68 % of the stacks on these cells lie within ±. The interval [ ] of 90 % also "
-            f"contains the error of the grid: {prediction.grid_error}"
+            f"contains the error of the grid: {'; '.join(sources)}"
         )
     bias = recorded_bias(
         int(prediction.settings.get("dimension", 2)),
         int(prediction.table["event"].max()),
-        Mechanisms.of_texts(prediction.settings),
+        mechanisms,
     )
     return (
         "68 % of the stacks lie within ±, 90 % within [ ]. Neither contains the error of the "
@@ -139,13 +141,15 @@ def _interval_text(prediction: Prediction) -> str:
 
 
 def _scene(prediction: Prediction) -> str:
-    """Return the settings of the simulated scene, without those of the method."""
+    """Return the settings of the simulated scene, and its scheme in place of the other settings."""
+    from snowshed.snow.accuracy.mechanisms import Mechanisms
+
     settings = [
         f"{name} {value}"
         for name, value in prediction.settings.items()
         if "." in name or name in ("dimension", "dx", "trimming")
     ]
-    return ", ".join(settings)
+    return ", ".join([*settings, Mechanisms.of_texts(prediction.settings).label])
 
 
 def prediction_json(prediction: Prediction) -> str:

@@ -289,5 +289,5 @@ def _bias_text(share: float) -> str:
     >>> _bias_text(0.35), _bias_text(-0.001)
     ('35 % too large', 'within 1 %')
     """
-    percent = f"{100 * abs(share):.0f}"
-    return "within 1 %" if percent == "0" else f"{percent} % too {'large' if share > 0 else 'small'}"
+    size = f"{100 * abs(share):.0f}"
+    return "within 1 %" if size == "0" else f"{size} % too {'large' if share > 0 else 'small'}"
