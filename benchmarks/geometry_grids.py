@@ -3,8 +3,8 @@
 Usage: python -m benchmarks.geometry_grids FOLDER
 
 The stacks have the settings of the data set's rows with each scheme. `snowshed predict` takes the
-error of the grid from them. Two cores take two hours. Runs that are in FOLDER already are not made
-again.
+error of the grid from them. Two cores take two hours. Runs of this build that are in FOLDER
+already are not made again.
 """
 
 from __future__ import annotations

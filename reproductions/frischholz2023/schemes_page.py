@@ -205,7 +205,12 @@ def _left_out(data: Path, pairs: Mapping[str, Sequence[Pair]]) -> list[str]:
 
 def _origins(data: Path) -> Mapping[str, Mapping[str, object]]:
     of_thesis = read_object(data / COMPUTED_FILE)
-    return {"-".join(OF_CLAIMS_PAGE): of_thesis, **read_object(data / ORIGINS_FILE)}
+    of_rows = dict.fromkeys(("runs", "date", "cpu"), "")  # which their own page names
+    return {
+        "-".join(OF_CLAIMS_PAGE): of_thesis,
+        **{f"panels-{scheme}": of_rows for scheme in (THESIS, OBJECTIVE)},
+        **read_object(data / ORIGINS_FILE),
+    }
 
 
 def _counts_grid(
@@ -215,11 +220,11 @@ def _counts_grid(
     for name, group in GROUPS.items():
         for k, scheme in enumerate((THESIS, OBJECTIVE)):
             count = Counter(pair[k].finding.verdict for pair in pairs[name])
-            origin = origins.get(f"{name}-{scheme}", {})
+            origin = origins[f"{name}-{scheme}"]
             rows.append(
                 [f"`{scheme}`, {group.label}"]
                 + [str(count[verdict]) for verdict in VERDICTS]
-                + [str(origin.get(column, "")) for column in ("runs", "date", "cpu")]
+                + [str(origin[column]) for column in ("runs", "date", "cpu")]
             )
     return HtmlTable(["scheme", *VERDICTS, "simulations", "date", "processor"], rows, "lrrrrll")
 

@@ -39,6 +39,15 @@ def test_an_extended_run_equals_a_run_with_all_events(tmp_path, between):
     assert fingerprints(tmp_path / "one") == before
 
 
+def test_an_extended_run_drops_the_notes_of_its_earlier_end(tmp_path):
+    scene = tiny_scene(**{"events.count": 1, "events.max_time": 0.1})
+    run_events(scene, tmp_path / "one", pictures=False)
+    extend_run(tmp_path / "one", tmp_path / "two", 1, pictures=False)
+    notes = json.loads((tmp_path / "two" / "run.json").read_text())["notes"]
+    ends = [note.split(" before")[0] for note in notes if "ended before the snow rested" in note]
+    assert ends == ["2 of 2 events ended"]
+
+
 def test_new_snow_lies_on_the_old_snow(finished, tmp_path):
     light = Snow(density=120.0, cohesion=0.05)
     table = extend_run(finished, tmp_path / "new", 1, snow=light, thickness=0.04, pictures=False)

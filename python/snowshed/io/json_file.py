@@ -50,6 +50,8 @@ def parse_object(text: str | bytes, where: str) -> dict[str, Any]:
 def sealed(data: Mapping[str, Any]) -> str:
     """Return the text of an object with its checksum; a long value stands in one line.
 
+    A checksum that the object has from a file is replaced.
+
     Examples
     --------
     >>> print(sealed({"wall_s": 2.5}), end="")
@@ -58,7 +60,11 @@ def sealed(data: Mapping[str, Any]) -> str:
       "checksum": "e0ffe2c4"
     }
     """
-    values = (f"  {json.dumps(key)}: {_value_text(value)}" for key, value in data.items())
+    values = (
+        f"  {json.dumps(key)}: {_value_text(value)}"
+        for key, value in data.items()
+        if key != "checksum"
+    )
     text = "{\n" + ",\n".join(values) + SEAL.decode()
     content = text.encode()[: -len(SEAL)]
     return f'{text}{zlib.crc32(content):08x}"\n}}\n'

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional
 
@@ -19,12 +19,12 @@ from snowshed.io.folders import check_empty
 from snowshed.io.json_file import read_object, sealed
 from snowshed.io.run_files import RECORD
 from snowshed.methods.registry import method_of
-from snowshed.results.folder import RunFolder
+from snowshed.results.folder import RunFolder, parse_events
 from snowshed.running.ageing.ageing import Ageing
 from snowshed.running.run import run_events
+from snowshed.running.scene_notes import notes_of_end
 from snowshed.scene.components import Snow
 from snowshed.scene.scene import ResolvedScene
-from snowshed.snow.accuracy.stack_errors import BEGINNING
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -120,7 +120,7 @@ def extend_run(
     longer = extended_scene(scene, events, snow=snow, thickness=thickness)
     check_empty(folder)
     ageing = read_object(earlier.ageing) if earlier.ageing.is_file() else None
-    _prepare(earlier, longer, Path(folder))
+    _prepare(earlier, scene, longer, Path(folder))
     return run_events(
         longer,
         folder,
@@ -205,7 +205,9 @@ def _change_slab(slab: dict[str, Any], done: int, last: int, changes: Mapping[st
     slab["thickness"] = 0.0  # the layers have the thickness
 
 
-def _prepare(earlier: RunFolder, scene: ResolvedScene, folder: Path) -> None:
+def _prepare(
+    earlier: RunFolder, earlier_scene: ResolvedScene, scene: ResolvedScene, folder: Path
+) -> None:
     """Make the new folder, whole or not at all, as if its own run had computed the past events."""
     simulation = _core.Simulation.load_into(
         scene.core, scene.base_dir, os.fspath(earlier.checkpoint)
@@ -217,14 +219,15 @@ def _prepare(earlier: RunFolder, scene: ResolvedScene, folder: Path) -> None:
                 shutil.copytree(there, beside / name)
             elif there.exists():
                 shutil.copyfile(there, beside / name)
-        _drop_stack_error(beside / RECORD)
+        if earlier.events.path.is_file():
+            ended = notes_of_end(parse_events(earlier.events.path), earlier_scene)
+            _drop_notes(beside / RECORD, ended)
         simulation.save(os.fspath(beside / "checkpoint.bin"))
         scene.save(beside / "scene.json")
 
 
-def _drop_stack_error(file: Path) -> None:
-    """Remove the note on the error of the stack from a record: it held for fewer events."""
+def _drop_notes(file: Path, ended: Sequence[str]) -> None:
+    """Remove the notes on the end of a run from its record, because it goes on."""
     record = read_object(file)
-    record.pop("checksum", None)
-    notes = [note for note in record.get("notes", ()) if not note.startswith(BEGINNING)]
+    notes = [note for note in record.get("notes", ()) if note not in ended]
     write_text(file, sealed({**record, "notes": notes}))

@@ -11,6 +11,7 @@ from snowshed.base.formatting import plural
 from snowshed.methods.registry import method_of, resolution_of
 from snowshed.scene.accuracy_settings import MIN_CELLS_ACROSS
 from snowshed.scene.components import Snow
+from snowshed.snow.accuracy.stack_errors import error_sentence
 from snowshed.snow.relations.strength import TENSILE_STRENGTH
 
 if TYPE_CHECKING:
@@ -178,6 +179,21 @@ def notes_after(table: pd.DataFrame, scene: Mapping[str, Any]) -> list[str]:
         *_notes_on_records(table, scene),
         *_notes_on_snow_that_stays(table.iloc[-1], scene),
     ]
+
+
+def notes_of_end(table: pd.DataFrame, scene: ResolvedScene) -> list[str]:
+    """Return the notes on a finished run: those on its events, and the error of its last stack.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> notes = notes_of_end(pd.DataFrame({"height_m": [0.1]}), Scene.preset("lab-50").resolve())
+    >>> [note[:18] for note in notes]
+    ['error of the stack']
+    """
+    has_stack = "height_m" in table and table["height_m"].iloc[-1] > 0
+    error = error_sentence(scene) if has_stack else ""
+    return [*notes_after(table, scene.data), *([error] if error else [])]
 
 
 def _notes_on_ends(table: pd.DataFrame) -> list[str]:

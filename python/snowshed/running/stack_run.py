@@ -34,9 +34,8 @@ from snowshed.results.reader import HISTORY
 from snowshed.results.solids_file import write_solids
 from snowshed.running.conversion import conversion_row
 from snowshed.running.method_run import Cell, MethodRun
-from snowshed.running.scene_notes import notes_after
+from snowshed.running.scene_notes import notes_of_end
 from snowshed.running.sequence import record_note, seal_files
-from snowshed.snow.accuracy.stack_errors import error_sentence
 from snowshed.snow.stack.measure import StackMeasure
 from snowshed.snow.stack.particles import measure_particles
 
@@ -97,10 +96,9 @@ class StackRun(MethodRun):
             positions = particles["position"].astype(float)
             on_panel = self.simulation.on_panel_at(positions, facts["laid_height_m"])
             masses, density = (particles[name].astype(float) for name in ("mass", "density"))
-            stack = self._measure_particles(positions, masses, density, on_panel)
-            self._record(facts, stack)
+            self._record(facts, self._measure_particles(positions, masses, density, on_panel))
             if event == self.simulation.event_count:
-                self._note_last(stack)
+                self._note_end()
         self._note_tables()
 
     def between_events(self) -> None:
@@ -124,14 +122,11 @@ class StackRun(MethodRun):
         self._record(facts, self.stack)
         self._note_residual(facts)
         if facts["event"] == self.simulation.event_count:
-            self._note_last(self.stack)
+            self._note_end()
 
-    def _note_last(self, stack: StackMeasure) -> None:
-        """Note what the events say about the last stack, and its error."""
-        for note in notes_after(parse_events(self.results.events.path), self.scene.data):
+    def _note_end(self) -> None:
+        for note in notes_of_end(parse_events(self.results.events.path), self.scene):
             record_note(self.sequence, note, ResultNote)
-        if stack.height > 0 and (error := error_sentence(self.scene)):
-            record_note(self.sequence, error, ResultNote)
 
     def _note_residual(self, facts: Mapping[str, Any]) -> None:
         """Note that the time integration gained or lost too much energy."""

@@ -152,7 +152,6 @@ def _files(inputs: Mapping[str, Any], content: Content) -> list[str]:
 def _write(folder: PathLike, study: str, record: dict[str, Any]) -> None:
     with Store.open(folder) as store:
         notes = Counter(note for run in store.runs(study) for note in run.notes)
-    record.pop("checksum", None)
     record["notes"] = [{"note": note, "runs": runs} for note, runs in notes.most_common()]
     write_text(record_path(folder, study), sealed(record))
 

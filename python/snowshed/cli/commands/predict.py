@@ -16,6 +16,7 @@ from snowshed.cli.output.terminal import narrow_table, say, wide_console, write_
 
 if TYPE_CHECKING:
     from snowshed.analysis.regression.predictor import Prediction
+    from snowshed.snow.accuracy.mechanisms import Mechanisms
 
 TARGET_TITLES = {"ratio": "height / length", "height": "height", "length": "length"}
 
@@ -66,8 +67,8 @@ def predict(
     """  # noqa: D301 - click wants the control character
     from snowshed.analysis.regression.predictor import predict as ask
 
-    asked: dict[str, Any] = {"height": height, "length": length, "tilt": tilt, "events": events}
-    asked["scheme"] = scheme
+    panel = {"height": height, "length": length, "tilt": tilt}
+    asked: dict[str, Any] = {**panel, "events": events, "scheme": scheme}
     others = named_once("--input", map(_input, inputs))
     try:
         prediction = ask(**asked, inputs=others, model=model, kind=kind, extrapolate=extrapolate)
@@ -96,6 +97,7 @@ def _input(text: str) -> tuple[str, float]:
 def print_prediction(prediction: Prediction, title: str) -> None:
     """Print the answers, one line per event, and mark extrapolated ones."""
     from snowshed.analysis.regression.rows import TARGETS
+    from snowshed.snow.accuracy.mechanisms import Mechanisms
     from snowshed.snow.stack.quantities import measure_named
 
     rows = prediction.table
@@ -113,16 +115,16 @@ def print_prediction(prediction: Prediction, title: str) -> None:
         table.add_row(f"{event}{mark}", *cells)
     wide_console().print(table)
     label = measure_named(prediction.measure).label
-    wide_console().print(f" The stack is {'; '.join(filter(None, [label, _scene(prediction)]))}.")
-    wide_console().print(f" {_interval_text(prediction)}.")
+    mechanisms = Mechanisms.of_texts(prediction.settings)
+    settings = ", ".join([*_scene_settings(prediction), mechanisms.label])
+    wide_console().print(f" The stack is {label}; {settings}.")
+    wide_console().print(f" {_interval_text(prediction, mechanisms)}.")
 
 
-def _interval_text(prediction: Prediction) -> str:
+def _interval_text(prediction: Prediction, mechanisms: Mechanisms) -> str:
     """Return what the intervals contain of scatter and of the error of the grid."""
-    from snowshed.snow.accuracy.mechanisms import Mechanisms
     from snowshed.snow.accuracy.stack_errors import recorded_bias
 
-    mechanisms = Mechanisms.of_texts(prediction.settings)
     if prediction.grid_error:
         sources = filter(None, [prediction.grid_error, mechanisms.calibration_note])
         return (
@@ -140,16 +142,13 @@ def _interval_text(prediction: Prediction) -> str:
     )
 
 
-def _scene(prediction: Prediction) -> str:
-    """Return the settings of the simulated scene, and its scheme in place of the other settings."""
-    from snowshed.snow.accuracy.mechanisms import Mechanisms
-
-    settings = [
+def _scene_settings(prediction: Prediction) -> list[str]:
+    """Return the settings of the simulated scene, without those of the method."""
+    return [
         f"{name} {value}"
         for name, value in prediction.settings.items()
         if "." in name or name in ("dimension", "dx", "trimming")
     ]
-    return ", ".join([*settings, Mechanisms.of_texts(prediction.settings).label])
 
 
 def prediction_json(prediction: Prediction) -> str:
