@@ -187,11 +187,13 @@ def notes_of_end(table: pd.DataFrame, scene: ResolvedScene) -> list[str]:
     Examples
     --------
     >>> import pandas as pd
-    >>> notes = notes_of_end(pd.DataFrame({"height_m": [0.1]}), Scene.preset("lab-50").resolve())
+    >>> from snowshed import Scene
+    >>> table = pd.DataFrame({"mass_kg": [1.0], "on_panel_kg": [0.0], "height_m": [0.1]})
+    >>> notes = notes_of_end(table, Scene.preset("lab-50").resolve())
     >>> [note[:18] for note in notes]
     ['error of the stack']
     """
-    has_stack = "height_m" in table and table["height_m"].iloc[-1] > 0
+    has_stack = table["height_m"].iloc[-1] > 0
     error = error_sentence(scene) if has_stack else ""
     return [*notes_after(table, scene.data), *([error] if error else [])]
 
